@@ -1,0 +1,109 @@
+"""The variables that matter to a question: those its predicates read, and all that decides how these are written."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import combinations, product
+
+from sequence_planner.automaton.structure import Automaton, reads, target
+from sequence_planner.expressions.syntax import Assignment, Constant, Expression, Variable, variables
+from sequence_planner.expressions.types import Value
+
+Transition = tuple[tuple[Expression, ...], tuple[Assignment, ...]]
+
+
+def read_variables(automaton: Automaton, expressions: Iterable[Expression]) -> frozenset[str]:
+    """The variables that `expressions` read, with each flag replaced by what its predicate reads."""
+    found: set[str] = set()
+    pending = [name for expression in expressions for name in variables(expression)]
+    seen: set[str] = set()
+    while pending:
+        name = pending.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        if name in automaton.variables:
+            found.add(name)
+        else:
+            pending.extend(variables(automaton.flag_predicates[name]))
+    return frozenset(found)
+
+
+def cone_of_influence(automaton: Automaton, questions: Iterable[Expression]) -> tuple[str, ...]:
+    """The variables that can influence `questions` without restart abilities, in order of declaration.
+
+    The automaton restricted to them answers the questions as the whole does: whatever writes one of them depends on
+    them alone, and so does whether two effects, or two finishes, are compatible.
+    """
+    starts, finishes, effects = _transitions(automaton)
+    relevant = set(read_variables(automaton, questions))
+    while True:
+        before = len(relevant)
+        for phase in (starts, finishes, effects):
+            inside = [t for t in phase if any(target(action) in relevant for action in t[1])]
+            for guards, actions in inside:
+                relevant |= read_variables(automaton, guards)
+                for action in actions:
+                    if target(action) in relevant:
+                        relevant |= _read_by(automaton, action)
+            if phase is effects:
+                # Without an effect from outside the one inside can still happen, so only these can stand in its way.
+                relevant |= _disputed(automaton, combinations(inside, 2), relevant)
+            elif phase is finishes:
+                # A finish is refused by any other that it conflicts with, also by one that writes nothing relevant.
+                relevant |= _disputed(automaton, product(inside, finishes), relevant)
+        if len(relevant) == before:
+            return tuple(name for name in automaton.variables if name in relevant)
+
+
+def _transitions(automaton: Automaton) -> tuple[list[Transition], list[Transition], list[Transition]]:
+    abilities = automaton.abilities.values()
+    starts: list[Transition] = [((a.enabled, a.start_guard), a.start_actions) for a in abilities if not a.restart]
+    finishes: list[Transition] = [
+        ((a.finish_guard,), a.finish_actions) for a in abilities if a.finish_guard is not None
+    ]
+    effects: list[Transition] = [((e.guard,), e.actions) for e in automaton.effects]
+    return starts, finishes, effects
+
+
+def _read_by(automaton: Automaton, action: Assignment) -> frozenset[str]:
+    condition = () if action.condition is None else (action.condition,)
+    return read_variables(automaton, (action.value, *condition))
+
+
+def _disputed(
+    automaton: Automaton, pairs: Iterable[tuple[Transition, Transition]], relevant: set[str]
+) -> frozenset[str]:
+    """Further variables over which two transitions of one phase could conflict; conflicts decide what is applied."""
+    found: set[str] = set()
+    for one, other in pairs:
+        if one is other:
+            continue
+        first, second = one[1], other[1]
+        writes_first = {target(action): action for action in first}
+        writes_second = {target(action): action for action in second}
+        shared = [n for n in writes_first if n in writes_second]
+        if any(n in relevant and _always_differ(writes_first[n], writes_second[n]) for n in shared):
+            continue  # never applied together, which the relevant variables already show
+        for name in shared:
+            if name not in relevant and not _always_equal(writes_first[name], writes_second[name]):
+                found |= {name, *reads(writes_first[name]), *reads(writes_second[name])} & set(automaton.variables)
+    return frozenset(found)
+
+
+def _possible(action: Assignment) -> frozenset[Value]:
+    if isinstance(action.value, Constant):
+        return frozenset({action.value.value})
+    if isinstance(action.value, Variable):
+        return frozenset(action.value.type.domain)
+    assert isinstance(action.target, Variable)
+    return frozenset(action.target.type.domain)
+
+
+def _always_differ(one: Assignment, other: Assignment) -> bool:
+    unconditional = one.condition is None and other.condition is None
+    return unconditional and not _possible(one) & _possible(other)
+
+
+def _always_equal(one: Assignment, other: Assignment) -> bool:
+    return one.value == other.value and isinstance(one.value, Constant | Variable)

@@ -1,0 +1,161 @@
+"""The automaton: variables, abilities, effects, operations and specifications, all ground and resolved."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+from functools import cached_property
+
+from sequence_planner.expressions.syntax import Assignment, Expression, Variable, variables
+from sequence_planner.expressions.types import BOOLEAN, Type, Value
+
+# A state gives every variable and every ability flag a value; None is unknown. Never changed once made.
+State = Mapping[str, Value | None]
+
+
+class Kind(StrEnum):
+    """Who writes a variable."""
+
+    MEASURED = "measured"
+    OUTPUT = "output"
+    ESTIMATED = "estimated"
+
+
+@dataclass(frozen=True)
+class VariableDeclaration:
+    """A variable by its full name; `resource` is None for those of the station."""
+
+    name: str
+    type: Type
+    kind: Kind
+    initial: Value
+    resource: str | None
+
+
+@dataclass(frozen=True)
+class Effect:
+    """An expected reaction of measured variables, taking between `shortest` and `longest` seconds."""
+
+    name: str
+    resource: str
+    kind: str
+    guard: Expression
+    actions: tuple[Assignment, ...]
+    shortest: float = 0.0
+    longest: float = 0.0
+    fault: bool = False
+
+
+@dataclass(frozen=True)
+class HumanTask:
+    """What a person is asked to do, and the measured variable that says it is done."""
+
+    text: str
+    acknowledgement: str
+
+
+@dataclass(frozen=True)
+class Ability:
+    """A ground ability. `finish_guard` is None when it is done at its start."""
+
+    name: str
+    resource: str
+    title: str
+    enabled: Expression
+    start_guard: Expression
+    start_actions: tuple[Assignment, ...]
+    executing: Expression
+    finished: Expression
+    finish_guard: Expression | None
+    finish_actions: tuple[Assignment, ...]
+    restart: bool = False
+    human: HumanTask | None = None
+    time_limit: float | None = None
+
+    def flag(self, which: str) -> str:
+        """The full name of its flag `enabled`, `executing` or `finished`."""
+        return f"{self.name}.{which}"
+
+
+@dataclass(frozen=True)
+class Flag:
+    """A truth value that equals its predicate after every synchronisation."""
+
+    name: str
+    predicate: Expression
+
+
+@dataclass(frozen=True)
+class Operation:
+    """A ground operation; of several that cannot be planned together, the highest `priority` is kept."""
+
+    name: str
+    title: str
+    precondition: Expression
+    goal: Expression
+    priority: int = 0
+
+
+@dataclass(frozen=True)
+class Specification:
+    """A ground specification: no state may satisfy `forbidden`."""
+
+    name: str
+    title: str
+    forbidden: Expression
+
+
+@dataclass(frozen=True)
+class Automaton:
+    """All of it. `flags` are in an order in which none depends on a later one."""
+
+    name: str
+    title: str
+    description: str
+    resources: Mapping[str, str]  # name: title
+    variables: Mapping[str, VariableDeclaration]
+    abilities: Mapping[str, Ability]
+    flags: tuple[Flag, ...]
+    effects: tuple[Effect, ...] = ()
+    operations: Mapping[str, Operation] = field(default_factory=dict)
+    specifications: Mapping[str, Specification] = field(default_factory=dict)
+    rest: Expression | None = None  # None: every state is one of rest
+
+    def names(self, kind: Kind) -> tuple[str, ...]:
+        """The variables of a kind, in order of declaration."""
+        return tuple(name for name, variable in self.variables.items() if variable.kind is kind)
+
+    @cached_property
+    def outputs(self) -> frozenset[str]:
+        """The output variables."""
+        return frozenset(self.names(Kind.OUTPUT))
+
+    @cached_property
+    def types(self) -> Mapping[str, Type]:
+        """The type of each variable and flag."""
+        types: dict[str, Type] = {name: variable.type for name, variable in self.variables.items()}
+        return types | dict.fromkeys((flag.name for flag in self.flags), BOOLEAN)
+
+    @cached_property
+    def flag_predicates(self) -> Mapping[str, Expression]:
+        """The predicate of each flag."""
+        return {flag.name: flag.predicate for flag in self.flags}
+
+    @cached_property
+    def initial_valuation(self) -> State:
+        """The declared initial value of each variable; flags are undetermined."""
+        values: dict[str, Value | None] = {name: variable.initial for name, variable in self.variables.items()}
+        return values | dict.fromkeys((flag.name for flag in self.flags), None)
+
+
+def target(action: Assignment) -> str:
+    """The full name of the variable an action writes."""
+    assert isinstance(action.target, Variable)
+    return action.target.name
+
+
+def reads(action: Assignment) -> frozenset[str]:
+    """The variables an action reads."""
+    condition = () if action.condition is None else variables(action.condition)
+    return frozenset((*variables(action.value), *condition))

@@ -1,0 +1,207 @@
+"""The command line. Exit codes: 0 fine, 2 unusable input or surroundings; what is wrong is said on standard error."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import signal
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+from sequence_planner.control.process import Running, control
+from sequence_planner.control.unix_socket import SocketTakenError
+from sequence_planner.emulation.process import BY_HAND_TOPIC, BY_HAND_TYPE, Emulation, emulate
+from sequence_planner.launcher import Launch, launch
+from sequence_planner.lifeline import end_with_launcher
+from sequence_planner.logs import configure_logs
+from sequence_planner.model.loading import load_station
+from sequence_planner.model.source import ModelError
+from sequence_planner.pipelines.building import load_messages
+from sequence_planner.ros.ament import write_ament_package
+from sequence_planner.ros.choice import TransportChoice, open_transport
+from sequence_planner.ros.exclusivity import DISCOVERY
+from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.transport import QualityOfService, Transport, TransportError
+from sequence_planner.station import ReadyStation, prepare_station
+from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
+from sequence_planner.web.server import serve
+from sequence_planner.web.settings import Settings, SettingsError
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, help="Model and control automation stations on ROS 2.")
+
+Model = Annotated[Path, typer.Argument(metavar="MODEL", help="The station's folder.")]
+TransportOption = Annotated[
+    TransportChoice, typer.Option(help="How to speak ROS 2; auto takes rclpy where it can be imported.")
+]
+Launched = Annotated[
+    bool, typer.Option("--launched", hidden=True, help="End when standard input does; `run` sets this.")
+]
+Socket = Annotated[Path, typer.Option(help="The local socket between controller and server.")]
+
+
+@app.command()
+def run(
+    model: Model,
+    host: Annotated[str, typer.Option(help="Address of the page; the loopback only.")] = "127.0.0.1",
+    port: Annotated[int, typer.Option(help="Port of the page.")] = 8000,
+    transport: TransportOption = "auto",
+    emulator: Annotated[bool, typer.Option("--emulator", help="Run emulated devices beside it.")] = False,
+    start: Annotated[bool, typer.Option("--start", help="Start production at once; only with --emulator.")] = False,
+    emulator_speed: Annotated[float, typer.Option(min=0.1, max=100, help="Emulated devices go so much faster.")] = 1.0,
+) -> None:
+    """Run a station: controller, server and page."""
+    if start and not emulator:
+        _refuse("--start is for emulated devices: with real ones a person starts production on the page")
+    _prepare(model)
+    try:
+        raise typer.Exit(launch(Launch(model, host, port, transport, emulator, start, emulator_speed)))
+    except SettingsError as error:
+        _refuse(str(error))
+
+
+@app.command()
+def check(model: Model) -> None:
+    """Check a station: its documents, its pipelines, and that its specifications can be met."""
+    station = _prepare(model)
+    try:
+        supervisor = synthesise(station.automaton)
+    except SynthesisError as error:
+        _refuse(f"{model}: {error}")
+    typer.echo(
+        f"{station.automaton.title}: {len(station.automaton.variables)} variables, "
+        f"{len(station.automaton.abilities)} abilities, {len(station.automaton.operations)} operations; "
+        f"the supervisor guards {len(supervisor.guards)} abilities"
+    )
+
+
+@app.command("emulate")
+def emulate_command(
+    model: Model,
+    transport: TransportOption = "auto",
+    speed: Annotated[float, typer.Option(min=0.1, max=100, help="Go so much faster than real devices.")] = 1.0,
+    seed: Annotated[int, typer.Option(help="Draws the delays.")] = 0,
+    launched: Launched = False,
+) -> None:
+    """Run emulated devices for a station, in place of real ones."""
+    _begin(launched)
+    station = _prepare(model)
+    _until_interrupted(lambda connect: emulate(Emulation(station, speed, seed), connect), station.registry, transport)
+
+
+@app.command("by-hand")
+def by_hand(
+    change: Annotated[str, typer.Argument(help='Such as "robot.pose := home".')], transport: TransportOption = "auto"
+) -> None:
+    """Move an emulated device by hand, as somebody might move a real one."""
+    asyncio.run(_send_by_hand(change, transport))
+
+
+@app.command()
+def messages(
+    model: Model, ament: Annotated[Path, typer.Option(help="Folder to write the ROS 2 packages of its messages to.")]
+) -> None:
+    """Write the station's message definitions as packages that colcon builds, for ROS 2 with rclpy."""
+    try:
+        station = load_station(model)
+        load_messages(station)
+    except ModelError as error:
+        _refuse(str(error))
+    for package in write_ament_package(station.messages, ament):
+        typer.echo(package)
+
+
+@app.command(hidden=True)
+def controller(
+    model: Model,
+    socket: Socket,
+    transport: TransportOption = "auto",
+    emulated: Annotated[bool, typer.Option("--emulated")] = False,
+    start: Annotated[bool, typer.Option("--start")] = False,
+    launched: Launched = False,
+) -> None:
+    """Run the controller alone; `run` does this."""
+    _begin(launched, socket.parent)
+    station = _prepare(model)
+    _until_interrupted(
+        lambda connect: control(Running(station, socket, connect, emulated, start)), station.registry, transport
+    )
+
+
+@app.command(hidden=True)
+def server(
+    socket: Socket,
+    page: Annotated[Path, typer.Option()],
+    host: Annotated[str, typer.Option()] = "127.0.0.1",
+    port: Annotated[int, typer.Option()] = 8000,
+    launched: Launched = False,
+) -> None:
+    """Run the server alone; `run` does this."""
+    _begin(launched)
+    serve(Settings(controller_socket=socket, page=page, host=host, port=port))
+
+
+def main() -> None:
+    """Run the command line."""
+    app()
+
+
+def _begin(launched: bool, folder: Path | None = None) -> None:
+    """Set up a process of the station; `folder` is one that the launcher has made for it."""
+    configure_logs()
+    if launched:
+        end_with_launcher(folder)
+
+
+def _refuse(message: str) -> NoReturn:
+    typer.echo(message, err=True)
+    raise typer.Exit(2)
+
+
+def _prepare(model: Path) -> ReadyStation:
+    try:
+        return prepare_station(model)
+    except ModelError as error:
+        _refuse(str(error))
+
+
+def _until_interrupted(
+    life: Callable[[Callable[[str], Transport]], Awaitable[None]], registry: MessageRegistry, choice: TransportChoice
+) -> None:
+    """Run a coroutine that connects to the network, until SIGTERM or SIGINT; trouble ends with exit code 2."""
+
+    async def live() -> None:
+        loop = asyncio.get_running_loop()
+        running = asyncio.ensure_future(life(lambda node: open_transport(choice, registry, node, loop)))
+        for number in (signal.SIGTERM, signal.SIGINT):
+            loop.add_signal_handler(number, running.cancel)
+        with contextlib.suppress(asyncio.CancelledError):
+            await running
+
+    try:
+        asyncio.run(live())
+    except (TransportError, SynthesisError, SocketTakenError) as error:
+        _refuse(str(error))
+
+
+async def _send_by_hand(change: str, choice: TransportChoice) -> None:
+    registry = MessageRegistry.from_folder(None)
+    try:
+        transport = open_transport(choice, registry, "by_hand", asyncio.get_running_loop())
+    except TransportError as error:
+        _refuse(str(error))
+    try:
+        transport.advertise(BY_HAND_TOPIC, BY_HAND_TYPE, QualityOfService.RELIABLE)
+        await asyncio.sleep(DISCOVERY)
+        if not any(e.topic == BY_HAND_TOPIC and e.direction == "subscriber" and not e.own for e in transport.graph()):
+            _refuse("no emulated devices are running: start them with `sequence-planner emulate MODEL`")
+        transport.publish(BY_HAND_TOPIC, BY_HAND_TYPE, registry.encode(BY_HAND_TYPE, {"data": change}))
+        await asyncio.sleep(0.5)
+    finally:
+        transport.close()
+
+
+if __name__ == "__main__":
+    main()

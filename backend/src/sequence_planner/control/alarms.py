@@ -1,0 +1,165 @@
+"""What wants a person's attention now. An alarm lasts as long as its cause; one cause makes one alarm."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from sequence_planner.control.commander import Commander
+from sequence_planner.control.execution import Execution, TickOutcome
+from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.view import AlarmView, PlanStatus, Priority, Production
+from sequence_planner.expressions.evaluation import holds
+
+
+@dataclass(frozen=True)
+class Cause:
+    """Why there is an alarm. `key` stays the same as long as it is the same alarm."""
+
+    key: str
+    priority: Priority
+    text: str
+    action: str
+
+
+class Alarms:
+    """The alarms of a station; remembers since when each has been there."""
+
+    def __init__(self, execution: Execution, feeds: Feeds, network: NetworkWatch, commander: Commander) -> None:
+        self._execution = execution
+        self._feeds = feeds
+        self._network = network
+        self._commander = commander
+        self._since: dict[str, float] = {}
+        self._conflicts: set[tuple[str, str, str]] = set()
+        self.restless: tuple[str, ...] = ()  # abilities that finish again and again although nothing new is measured
+        self.failures: dict[str, str] = {}  # what of the controller's own work fails, and how
+
+    def note(self, outcome: TickOutcome) -> None:
+        """After a tick: a conflict is gone in the next one, and what came of it lasts until one of the two goes on."""
+        gone_on = {*outcome.finished, *outcome.started}
+        self._conflicts = {c for c in self._conflicts if gone_on.isdisjoint(c[:2])} | set(outcome.conflicts)
+
+    def current(self, planner_trouble: str | None, moment: Moment) -> dict[str, AlarmView]:
+        """All alarms now."""
+        causes = {
+            cause.key: cause
+            for part in (
+                self._controller(),
+                self._state(),
+                _topics(self._feeds, moment.monotonic),
+                _network(self._network, self._commander),
+                _plan(self._execution, planner_trouble),
+                _overdue(self._execution, moment.monotonic),
+            )
+            for cause in part
+        }
+        self._since = {key: self._since.get(key, moment.epoch) for key in causes}
+        return {
+            key: AlarmView(priority=c.priority, text=c.text, action=c.action, since=self._since[key])
+            for key, c in causes.items()
+        }
+
+    def _controller(self) -> Iterator[Cause]:
+        for what, how in self.failures.items():
+            yield Cause(
+                f"controller:{what}",
+                Priority.HIGH,
+                f"The controller fails at {what}: {how}",
+                "It goes on trying. Bring the station to rest, and give the controller's log to its maintainers.",
+            )
+        if self.restless:
+            yield Cause(
+                "restless",
+                Priority.MEDIUM,
+                f"{', '.join(self.restless)} finish again and again although nothing new is measured",
+                "Correct the model: after a finish its guard must no longer hold, or its actions change nothing.",
+            )
+
+    def _state(self) -> Iterator[Cause]:
+        execution = self._execution
+        known = all(execution.state[name] is not None for name in execution.supervisor.safe.names)
+        if known and not execution.safe:
+            broken = [
+                s.title for s in execution.automaton.specifications.values() if holds(s.forbidden, execution.state)
+            ]
+            what = f"broken: {', '.join(broken)}" if broken else "a specification could be broken by the devices alone"
+            yield Cause(
+                "unsafe-state",
+                Priority.HIGH,
+                f"The station is outside its safe states; {what}",
+                "Nothing is started until it is back. Bring the devices back by hand if they do not come alone.",
+            )
+        for one, other, variable in sorted(self._conflicts):
+            yield Cause(
+                f"conflict:{one}:{other}:{variable}",
+                Priority.HIGH,
+                f"{one} and {other} would finish with different values for {variable}",
+                "Neither was applied. Correct the model.",
+            )
+
+
+def _topics(feeds: Feeds, monotonic: float) -> Iterator[Cause]:
+    for name, feed in feeds.topics.items():
+        resource = feed.pipeline.topic.resource
+        if not feed.fresh(monotonic):
+            silence = "No message yet" if feed.last is None else "No message any more"
+            yield Cause(
+                f"silent:{name}",
+                Priority.MEDIUM,
+                f"{silence} on {name}: the values of {resource} are unknown",
+                f"Check that the node of {resource} runs and is reachable.",
+            )
+        elif feed.trouble is not None:
+            yield Cause(
+                f"message:{name}", Priority.MEDIUM, f"{name}: {feed.trouble}", "Check the node that publishes it."
+            )
+
+
+def _network(network: NetworkWatch, commander: Commander) -> Iterator[Cause]:
+    for topic, rival in network.rivals.items():
+        yield Cause(
+            f"rival:{topic}", Priority.HIGH, rival, "Nothing is started meanwhile. Stop the other one, or this station."
+        )
+    for topic, trouble in network.troubles.items():
+        yield Cause(f"network:{topic}", Priority.MEDIUM, trouble, "Check which nodes run, and how they were built.")
+    for topic, why in commander.owed.items():
+        resource = commander.topics[topic].pipeline.topic.resource
+        yield Cause(
+            f"command:{topic}",
+            Priority.HIGH,
+            f"{resource} has not been sent its command on {topic}: {why}",
+            "It is tried again, and nothing is started meanwhile. Check the network.",
+        )
+
+
+def _plan(execution: Execution, planner_trouble: str | None) -> Iterator[Cause]:
+    if planner_trouble is not None:
+        yield Cause("planner", Priority.MEDIUM, planner_trouble, "Tell the maintainers of this station's model.")
+        return  # that there is no plan has this cause
+    if execution.production is not Production.STARTED:
+        return
+    if execution.plan_status is PlanStatus.NONE and not execution.blind:  # a silent topic has an alarm of its own
+        yield Cause("no-plan", Priority.MEDIUM, execution.plan_reason, "See what the active operations need.")
+    elif execution.answer is not None and execution.active & set(execution.answer.left_out):
+        titles = [execution.automaton.operations[n].title for n in execution.answer.left_out if n in execution.active]
+        text = f"Left out of the plan: {', '.join(titles)}"
+        yield Cause("left-out", Priority.LOW, text, "These goals cannot be reached together with the others for now.")
+
+
+def _overdue(execution: Execution, monotonic: float) -> Iterator[Cause]:
+    for step in execution.order.running:
+        ability = execution.automaton.abilities[step.ability]
+        if ability.time_limit is None or step.started is None:
+            continue
+        if monotonic - step.started.monotonic > ability.time_limit:
+            executing = execution.state[ability.flag("executing")] is True
+            what = "has not finished" if executing else "is not executing and has not finished"
+            yield Cause(
+                f"overdue:{step.ability}",
+                Priority.MEDIUM,
+                f"{ability.title} {what} within {ability.time_limit:g} s",
+                f"Look after {execution.automaton.resources[ability.resource]}.",
+            )

@@ -1,0 +1,230 @@
+"""The controller: one event loop on which messages, commands, plans and time become ticks, and ticks become messages.
+
+It never waits for anything but its own events. Messages and acknowledgements wake it at once; otherwise it looks at the
+clock often enough to notice a topic that fell silent and a command that is due again.
+
+An error in one piece of its work takes nothing else down: a tick that raises has not happened, an alarm says so, and it
+is tried again at the next look at the clock.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from collections import deque
+from collections.abc import Callable, Sequence
+from functools import partial
+
+import structlog
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.control.alarms import Alarms
+from sequence_planner.control.commander import Commander
+from sequence_planner.control.commands import AcknowledgeTask, Command, CommandRefused, SetMode, StartProduction
+from sequence_planner.control.execution import Execution, TickOutcome
+from sequence_planner.control.feeds import Feeds, one_per_topic
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.planner_process import Listener, PlannerProcess
+from sequence_planner.control.tasks import TaskDesk
+from sequence_planner.control.view import Production, StationIdentity, StationView
+from sequence_planner.control.viewing import Viewing
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.plan import PlanAnswer, PlanRequest
+from sequence_planner.ros.transport import Sample, Transport
+from sequence_planner.station import ReadyStation
+
+LOG = structlog.get_logger(__name__)
+
+LOOK_EVERY = 0.05  # seconds between two looks at the clock
+GRAPH_EVERY = 1.0  # seconds between two looks at the ROS graph
+PLAN_DEADLINE = 5.0  # seconds a plan may take
+MOST_TICKS = 100  # in a row without anything new; then the station is taken to be restless
+
+
+class Controller:
+    """A running station. Used from one event loop; `run` is its life."""
+
+    def __init__(
+        self,
+        identity: StationIdentity,
+        station: ReadyStation,
+        supervisor: Supervisor,
+        transport: Transport,
+    ) -> None:
+        automaton, pipelines, registry = station.automaton, station.pipelines, station.registry
+        self.execution = Execution(automaton, supervisor)
+        self.execution.production = Production.WAITING
+        self.desk = TaskDesk(automaton, pipelines.feeds)
+        self.feeds = Feeds(pipelines.incoming, registry)
+        self.network = NetworkWatch(pipelines, registry)
+        self._transport = transport
+        self._commander = Commander(pipelines.outgoing, registry, transport)
+        self._alarms = Alarms(self.execution, self.feeds, self.network, self._commander)
+        self._viewing = Viewing(identity, self.execution, self.feeds, self.network)
+        listener = Listener(self._take_plan, self._miss_plan)
+        self._planner = PlannerProcess(automaton, supervisor, asyncio.get_running_loop(), listener)
+        self._samples: deque[Sample] = deque()
+        self._measured: dict[str, Value | None] = {}
+        self._wake = asyncio.Event()
+        self._again = False
+        self._due = True  # a tick is wanted whatever the measurements say
+        self._in_a_row = 0  # ticks that only followed from the one before
+        self._next_graph = 0.0
+        for pipeline in pipelines.incoming.values():
+            transport.subscribe(pipeline.topic.name, pipeline.topic.type_name, pipeline.topic.quality, self._hear)
+
+    async def run(self) -> None:
+        """Tick until cancelled."""
+        try:
+            while True:
+                moment = Moment.now()
+                self._step(moment)
+                if self._samples or (self._again and self._in_a_row < MOST_TICKS):
+                    await asyncio.sleep(0)
+                else:
+                    self._wake.clear()
+                    await _first(self._wake, LOOK_EVERY)
+        finally:
+            self._planner.close()
+
+    async def command(self, command: Command) -> None:
+        """Carry out a command. Raises `CommandRefused`."""
+        match command:
+            case SetMode(mode=mode):
+                self.execution.mode = mode
+            case StartProduction():
+                self._start_production()
+            case AcknowledgeTask(task=task, revision=revision):
+                self.desk.acknowledge(task, revision)
+        LOG.info("command", **command.model_dump(mode="json"))
+        self._tick_again()
+
+    def view(self) -> StationView:
+        """What there is to show now."""
+        moment = Moment.now()
+        alarms = self._alarms.current(self._planner.trouble, moment)
+        return self._viewing.view(self.desk, self._commander, alarms, moment)
+
+    def strangers(self, node: str) -> list[str]:
+        """What speaks against the station's devices being those of `node` alone, as the network is now."""
+        return self.network.strangers(self._transport.graph(), node)
+
+    def _start_production(self) -> None:
+        if self.execution.production is Production.STARTED:
+            raise CommandRefused("production-started", "Production is started", "Production has been started already.")
+        self._see_network()
+        if self.network.rivals:
+            text = "; ".join(self.network.rivals.values())
+            raise CommandRefused(
+                "other-commander", "Somebody else commands the devices", f"{text}. Stop the other one."
+            )
+        self.execution.start_production()
+        self._commander.publish_all(self.execution.published, Moment.now().monotonic)
+
+    def _hear(self, samples: Sequence[Sample]) -> None:
+        self._samples.extend(samples)
+        self._wake.set()
+
+    def _tick_again(self) -> None:
+        self._due = self._again = True
+        self._in_a_row = 0
+        self._wake.set()
+
+    def _look_at_network(self, moment: Moment) -> None:
+        if moment.monotonic >= self._next_graph:
+            self._next_graph = moment.monotonic + GRAPH_EVERY
+            self._see_network()
+
+    def _see_network(self) -> None:
+        for topic in self.network.look(self._transport.graph()):
+            self.feeds.abandon(topic)
+
+    def _step(self, moment: Moment) -> None:
+        """All ticks that are due: one for each part of what was heard, and one for the look at the clock."""
+        self._attempt("looking at the network", lambda: self._look_at_network(moment))
+        heard, self._samples = self._samples, deque()
+        self._again = False
+        for part in one_per_topic(heard):
+            # What a message says counts from when it was received, however late its turn comes.
+            self._attempt("a tick", partial(self._tick, part, moment, part[-1].received))
+        self._attempt("a tick", lambda: self._tick((), moment, moment.monotonic))
+        self._attempt("sending commands", lambda: self._repeat(moment))
+        self._attempt("asking for a plan", self._ask)
+
+    def _repeat(self, moment: Moment) -> None:
+        if self.execution.production is Production.STARTED:
+            self._commander.repeat(self.execution.published, moment.monotonic)
+
+    def _ask(self) -> None:
+        if not self._planner.busy and (request := self.execution.request(PLAN_DEADLINE)) is not None:
+            self._planner.ask(request)
+
+    def _tick(self, samples: Sequence[Sample], moment: Moment, monotonic: float) -> None:
+        """Take messages of `monotonic`, of which no topic has more than one, and tick if that is something new."""
+        self.feeds.take(samples)
+        measured = self.feeds.measured(monotonic) | self.desk.measured()
+        obstacles = self._obstacles()
+        news = measured != self._measured or obstacles != self.execution.obstacles
+        if not news and not self._due:
+            return
+        self._measured, self.execution.obstacles = measured, obstacles
+        self._due = True  # until it is done
+        outcome = self.execution.tick(measured, moment)
+        self._due = outcome.changed  # what a tick changed can make another possible at once
+        self._again = self._again or self._due
+        self._in_a_row = self._in_a_row + 1 if outcome.changed and not news else 0
+        self._alarms.restless = outcome.finished if self._in_a_row >= MOST_TICKS else ()
+        if outcome.outputs:
+            self._commander.publish(self.execution.published, outcome.outputs, moment.monotonic)
+        self.desk.update(self.execution.state, outcome.finished, outcome.ended, moment.epoch)
+        self._alarms.note(outcome)
+        self._viewing.note(outcome, moment.epoch)
+        _log(outcome)
+
+    def _obstacles(self) -> tuple[str, ...]:
+        """What keeps every ability from starting."""
+        owed = [f"the command on {topic} to be sent" for topic in self._commander.owed]
+        return (*self.network.rivals.values(), *owed)
+
+    def _attempt(self, what: str, act: Callable[[], None]) -> None:
+        """Do a piece of work. One that fails is shown and logged, once for each way in which it fails."""
+        try:
+            act()
+        except Exception as error:
+            how = f"{type(error).__name__}: {error}"
+            if self._alarms.failures.get(what) != how:
+                LOG.exception("the controller fails", at=what)
+            self._alarms.failures[what] = how
+        else:
+            self._alarms.failures.pop(what, None)
+
+    def _take_plan(self, request: PlanRequest, answer: PlanAnswer) -> None:
+        self._attempt("adopting a plan", lambda: self._adopt(request, answer))
+        self._tick_again()
+
+    def _adopt(self, request: PlanRequest, answer: PlanAnswer) -> None:
+        if self.execution.adopt(request, answer):
+            starts = [name for _, name in answer.plan.starts] if answer.plan else []
+            LOG.info("plan", verdict=str(answer.verdict), starts=starts)
+
+    def _miss_plan(self, why: str, again: bool) -> None:
+        self.execution.unanswered(why, again)
+        self._wake.set()
+
+
+def _log(outcome: TickOutcome) -> None:
+    for name in outcome.ended:
+        LOG.info("finished", ability=name)
+    for name in outcome.started:
+        LOG.info("started", ability=name)
+    for name in sorted(outcome.completed):
+        LOG.info("completed", operation=name)
+
+
+async def _first(event: asyncio.Event, seconds: float) -> None:
+    """Wait for the event, or so many seconds."""
+    try:
+        async with asyncio.timeout(seconds):
+            await event.wait()
+    except TimeoutError:
+        return

@@ -1,0 +1,80 @@
+"""What passes between the controller and the server: views one way, commands the other, and a reply to each command.
+
+Each message is one line of JSON on a Unix domain socket. A command's `id` is chosen by the server and comes back in
+the reply; it is null in the reply to a line in which no id could be found.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+
+from sequence_planner.control.commands import Command, CommandRefused
+from sequence_planner.control.view import StationView
+
+LONGEST_COMMAND = 64 * 1024  # bytes in a line from the server
+LONGEST_VIEW = 16 * 1024 * 1024  # bytes in a line from the controller
+
+
+class LinkMessage(BaseModel):
+    """Base of all messages: immutable, and nothing beside what is declared."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Refusal(LinkMessage):
+    """`CommandRefused` on its way to the server."""
+
+    slug: str
+    title: str
+    detail: str
+    status: int
+
+    @classmethod
+    def of(cls, refused: CommandRefused) -> Refusal:
+        """Write down a refusal."""
+        return cls(slug=refused.slug, title=refused.title, detail=refused.detail, status=refused.status)
+
+    def error(self) -> CommandRefused:
+        """Make the exception again that the controller raised."""
+        return CommandRefused(self.slug, self.title, self.detail, self.status)
+
+
+class ViewMessage(LinkMessage):
+    """The whole document as it is now."""
+
+    kind: Literal["view"] = "view"
+    view: StationView
+
+
+class Reply(LinkMessage):
+    """What became of a command; `problem` is there when `ok` is false."""
+
+    kind: Literal["reply"] = "reply"
+    id: int | None
+    ok: bool
+    problem: Refusal | None = None
+
+
+class CommandMessage(LinkMessage):
+    """A command and the number under which its reply is awaited.
+
+    `expires` is when nobody waits for it any more, in seconds of `time.monotonic`, which all processes of a machine
+    share: a controller that stood still must not start production long after the person who asked for it has left.
+    """
+
+    kind: Literal["command"] = "command"
+    id: int = Field(ge=0)
+    command: Command
+    expires: float | None = None
+
+
+FROM_CONTROLLER: TypeAdapter[ViewMessage | Reply] = TypeAdapter(
+    Annotated[ViewMessage | Reply, Field(discriminator="kind")]
+)
+
+
+def encode(message: LinkMessage) -> bytes:
+    """One line of JSON. Null members of the message itself stay: a view's nulls mean "unknown"."""
+    return message.model_dump_json().encode() + b"\n"

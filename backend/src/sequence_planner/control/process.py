@@ -1,0 +1,158 @@
+"""The controller's process: the station is prepared, the network joined, then it runs and shows itself on the link."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import time
+from collections.abc import AsyncIterator, Callable, Coroutine
+from dataclasses import dataclass
+from pathlib import Path
+
+import structlog
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.control.commands import Command, CommandRefused, StartProduction
+from sequence_planner.control.controller import Controller
+from sequence_planner.control.link import ControllerLink
+from sequence_planner.control.synthesis_process import synthesised
+from sequence_planner.control.view import Production, StationIdentity
+from sequence_planner.control.viewing import preparing_view
+from sequence_planner.emulation.process import NODE as EMULATED_DEVICES
+from sequence_planner.ros.exclusivity import require_sole_publisher
+from sequence_planner.ros.transport import Transport
+from sequence_planner.station import ReadyStation
+
+LOG = structlog.get_logger(__name__)
+
+SHOW_EVERY = 0.1  # seconds between two views
+NODE = "sequence_planner"
+
+
+@dataclass(frozen=True)
+class Running:
+    """What shall run, and how.
+
+    `start` starts production without a person, for demonstrations: as soon as emulated devices and nothing else are
+    there to be commanded.
+    """
+
+    station: ReadyStation
+    socket: Path
+    connect: Callable[[str], Transport]
+    emulated: bool
+    start: bool
+
+
+async def control(running: Running) -> None:
+    """Run the controller until cancelled.
+
+    Raises `SynthesisError` when there is no supervisor, and `TransportError` when the network cannot be joined or
+    somebody else commands the devices.
+    """
+    holder: list[Controller] = []
+
+    async def handle(command: Command) -> None:
+        if not holder:
+            raise CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
+        await holder[0].command(command)
+
+    async with ControllerLink(running.socket, handle) as link:
+        async with _beside(_show_preparing(running, link)):
+            supervisor = await _prepared(running)
+        transport = running.connect(NODE)
+        try:
+            controller = Controller(_identity(running, transport.name), running.station, supervisor, transport)
+            holder.append(controller)
+            async with contextlib.AsyncExitStack() as stack:
+                await stack.enter_async_context(_beside(_show(controller, link)))
+                if running.start:
+                    await stack.enter_async_context(_beside(start_when_alone(controller)))
+                await controller.run()
+        finally:
+            transport.close()
+
+
+async def start_when_alone(controller: Controller, look_every: float = 0.2) -> None:
+    """Start production without a person once emulated devices, and nobody else, are there to be commanded."""
+    said: list[str] = []
+    while controller.execution.production is Production.WAITING:
+        strangers = controller.strangers(f"/{EMULATED_DEVICES}")
+        if not strangers:
+            with contextlib.suppress(CommandRefused):  # since the network was looked at, somebody has come
+                await controller.command(StartProduction(actor="local"))
+        elif strangers != said:
+            said = strangers
+            LOG.info("production is not started by itself", because=strangers)
+        await asyncio.sleep(look_every)
+
+
+@contextlib.asynccontextmanager
+async def _beside(life: Coroutine[None, None, None]) -> AsyncIterator[None]:
+    """Run `life` as long as the block lasts. What it fails at is logged and does not disturb the block."""
+
+    async def logged() -> None:
+        try:
+            await life
+        except Exception:
+            LOG.exception("a task of the controller failed")
+
+    task = asyncio.create_task(logged())
+    try:
+        yield
+    finally:
+        task.cancel()
+        await asyncio.wait({task})
+
+
+async def _prepared(running: Running) -> Supervisor:
+    """The supervisor, computed while the network is asked whether somebody else commands the station's devices."""
+    began = time.monotonic()
+    try:
+        async with asyncio.TaskGroup() as both:
+            synthesis = both.create_task(synthesised(running.station.automaton))
+            both.create_task(_require_sole_command(running))
+    except ExceptionGroup as failed:
+        raise failed.exceptions[0] from None
+    supervisor = synthesis.result()
+    seconds = round(time.monotonic() - began, 2)
+    LOG.info("safe states computed", seconds=seconds, states=int(supervisor.safe.table.sum()))
+    return supervisor
+
+
+async def _require_sole_command(running: Running) -> None:
+    question = running.connect(f"{NODE}_check")
+    try:
+        commanded = {p.topic.name: p.topic.type_name for p in running.station.pipelines.outgoing.values()}
+        await require_sole_publisher(question, commanded, "the controller")
+    finally:
+        question.close()
+
+
+async def _show(controller: Controller, link: ControllerLink) -> None:
+    failed = ""
+    while True:
+        try:
+            link.publish(controller.view())
+        except Exception as error:  # who looks on is told that nothing is heard; the station goes on
+            if failed != (failed := repr(error)):
+                LOG.exception("the station cannot be shown")
+        await asyncio.sleep(SHOW_EVERY)
+
+
+async def _show_preparing(running: Running, link: ControllerLink) -> None:
+    identity = _identity(running, "")
+    while True:
+        link.publish(preparing_view(identity, time.time()))
+        await asyncio.sleep(SHOW_EVERY)
+
+
+def _identity(running: Running, transport: str) -> StationIdentity:
+    automaton = running.station.automaton
+    return StationIdentity(
+        name=automaton.name,
+        title=automaton.title,
+        description=automaton.description,
+        transport=transport,
+        emulated=running.emulated,
+    )

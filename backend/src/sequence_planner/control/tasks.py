@@ -1,0 +1,82 @@
+"""Tasks for people, and their acknowledgements as measured variables.
+
+A task is open as long as a human ability is executing. An acknowledgement names the task and its revision, so a late or
+repeated one never completes another task, be it one of a controller that has been started again since. It makes the
+ability's variable true until the ability has finished.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Collection, Iterable
+from dataclasses import dataclass
+
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.control.commands import CommandRefused
+from sequence_planner.expressions.types import Value
+
+
+@dataclass(frozen=True)
+class Task:
+    """A task that waits for a person; `created` in seconds since the epoch."""
+
+    id: str
+    revision: int
+    ability: str
+    title: str
+    text: str
+    created: float
+
+
+class TaskDesk:
+    """The open tasks of a station; `fed` are the variables that topics feed, such as those of a real watch."""
+
+    def __init__(self, automaton: Automaton, fed: Collection[str] = ()) -> None:
+        self._humans = {a.name: a for a in automaton.abilities.values() if a.human is not None}
+        variables = {a.human.acknowledgement for a in self._humans.values() if a.human is not None}
+        self._own = sorted(variables.difference(fed))
+        self._given: dict[str, str] = {}  # acknowledged variable: the ability whose task it was
+        self._life = secrets.token_hex(4)
+        self._numbers = 0
+        self.open: dict[str, Task] = {}
+
+    def measured(self) -> dict[str, Value | None]:
+        """The acknowledgement variables; of those that topics feed, the ones that were acknowledged here."""
+        return {**dict.fromkeys(self._own, False), **dict.fromkeys(self._given, True)}
+
+    def update(self, state: State, finished: Iterable[str], ended: Iterable[str], now: float) -> None:
+        """After a tick: open and close tasks, and let go of acknowledgements that have done their work.
+
+        `finished` are the abilities that took their finish actions, `ended` those of them that had been running.
+        """
+        done, over = set(finished), set(ended)
+        self._given = {variable: ability for variable, ability in self._given.items() if ability not in done}
+        executing = {name for name, ability in self._humans.items() if state[ability.flag("executing")] is True}
+        # An ability that ended and was started again in the same tick is another task.
+        self.open = {id_: task for id_, task in self.open.items() if task.ability in executing - over}
+        for name in sorted(executing - {task.ability for task in self.open.values()}):
+            human = self._humans[name].human
+            assert human is not None
+            self._numbers += 1
+            id_ = f"{self._life}-{self._numbers}"
+            self.open[id_] = Task(id_, 1, name, self._humans[name].title, human.text, now)
+
+    def acknowledge(self, id_: str, revision: int) -> Task:
+        """A person says the task is done. Raises `CommandRefused` when that task is not open in that revision."""
+        task = self.open.get(id_)
+        if task is None:
+            raise CommandRefused(
+                "task-gone",
+                "This task is gone",
+                f"Task {id_} is not open: it was done or withdrawn. Nothing was changed.",
+            )
+        if task.revision != revision:
+            raise CommandRefused(
+                "task-changed",
+                "This task has changed",
+                f"Task {id_} is at revision {task.revision}, and revision {revision} was acknowledged. Read it again.",
+            )
+        human = self._humans[task.ability].human
+        assert human is not None
+        self._given[human.acknowledgement] = task.ability
+        return task

@@ -1,0 +1,202 @@
+"""What a running station shows: one document, written by the controller and read by everybody else.
+
+The controller knows its clients only through this document. The server cuts it into numbered deltas
+(`sequence_planner.web.stream`), REST serves parts of it, and the page's TypeScript types are generated from it.
+Times are seconds since the epoch on the controller's clock; ages are left to the reader.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from pydantic import BaseModel, ConfigDict
+
+Value = bool | int | str
+
+
+class Mode(StrEnum):
+    """How the station executes (see `docs/semantics.md`)."""
+
+    AUTOMATIC = "automatic"
+    PAUSED = "paused"
+
+
+class Production(StrEnum):
+    """Whether outputs may be published: nothing is, until a person has started production."""
+
+    PREPARING = "preparing"  # the safe set is being computed, or the links are being checked
+    WAITING = "waiting"  # ready; waits for a person to start production
+    STARTED = "started"
+
+
+class VariableKind(StrEnum):
+    """Who writes a variable."""
+
+    MEASURED = "measured"
+    OUTPUT = "output"
+    ESTIMATED = "estimated"
+
+
+class StepStatus(StrEnum):
+    """Where a start of the plan stands."""
+
+    DONE = "done"
+    RUNNING = "running"
+    NEXT = "next"
+    PLANNED = "planned"
+
+
+class PlanStatus(StrEnum):
+    """What can be said about the plan."""
+
+    IDLE = "idle"  # no operation is active, so there is nothing to plan
+    PLANNING = "planning"  # none yet, a worker is at it
+    FOLLOWED = "followed"
+    BROKEN = "broken"  # the state departed from it; a new one is being looked for
+    NONE = "none"  # no plan was found
+
+
+class Priority(StrEnum):
+    """Urgency of an alarm, after ISA-18.2."""
+
+    HIGH = "high"
+    MEDIUM = "medium"
+    LOW = "low"
+
+
+class View(BaseModel):
+    """Base of all parts of the document: immutable, and nothing beside what is declared."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class StationIdentity(View):
+    """What is running."""
+
+    name: str
+    title: str
+    description: str
+    transport: str
+    emulated: bool
+
+
+class ResourceView(View):
+    """A resource and whether all its topics speak."""
+
+    title: str
+    online: bool
+    awaited_topics: list[str]
+
+
+class VariableView(View):
+    """A variable and its value; `value` is null when it is unknown, and `awaits` then names the topic."""
+
+    resource: str | None
+    kind: VariableKind
+    value: Value | None
+    domain: list[Value]
+    since: float | None
+    awaits: str | None
+
+
+class AbilityView(View):
+    """The flags of a ground ability; null is undetermined."""
+
+    resource: str
+    title: str
+    human: bool
+    restart: bool
+    enabled: bool | None
+    executing: bool | None
+    finished: bool | None
+    running_since: float | None
+
+
+class OperationView(View):
+    """An operation: active until its goal holds."""
+
+    title: str
+    active: bool
+    active_since: float | None
+    completed: int
+    goal: str
+    precondition: str
+    left_out: bool  # active, but not part of the plan, because not all goals can be planned together
+
+
+class PlanStepView(View):
+    """One start of the plan. `tick` counts from the tick in which the plan was made."""
+
+    id: str
+    ability: str
+    title: str
+    resource: str
+    status: StepStatus
+    tick: int
+    started: float | None
+    ended: float | None
+    waits_for: list[str]  # for the next step: what keeps it from starting, in the model's language
+
+
+class PlanView(View):
+    """The live plan: what is done, what runs, what comes next and what that waits for."""
+
+    status: PlanStatus
+    reason: str  # why it was made, or why there is none
+    steps: list[PlanStepView]
+    ticks: int
+    minimal_ticks: bool
+    minimal_starts: bool
+    replanned: int
+    milliseconds: float | None  # how long the planner took
+
+
+class TaskView(View):
+    """A task that waits for a person. An acknowledgement must carry its id and revision."""
+
+    revision: int
+    ability: str
+    title: str
+    text: str
+    created: float
+    next_moves: list[str]  # titles of what moves once it is acknowledged
+
+
+class TopicView(View):
+    """A ROS 2 topic of the station."""
+
+    type: str
+    direction: str  # "in" or "out"
+    resource: str
+    last: float | None
+    messages: int
+    fresh: bool
+    peers: int  # matched publishers or subscribers
+    trouble: str | None
+
+
+class AlarmView(View):
+    """Something that wants a person's attention, for as long as it lasts."""
+
+    priority: Priority
+    text: str
+    action: str
+    since: float
+
+
+class StationView(View):
+    """The whole document."""
+
+    station: StationIdentity
+    tick: int
+    time: float
+    mode: Mode
+    production: Production
+    resources: dict[str, ResourceView]
+    variables: dict[str, VariableView]
+    abilities: dict[str, AbilityView]
+    operations: dict[str, OperationView]
+    plan: PlanView
+    tasks: dict[str, TaskView]
+    topics: dict[str, TopicView]
+    alarms: dict[str, AlarmView]

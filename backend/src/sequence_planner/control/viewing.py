@@ -1,0 +1,245 @@
+"""The document a running station shows, built from all that is known of it at one moment."""
+
+from __future__ import annotations
+
+from sequence_planner.control.commander import Commander
+from sequence_planner.control.execution import Execution, TickOutcome
+from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.start_order import Step
+from sequence_planner.control.tasks import TaskDesk
+from sequence_planner.control.view import (
+    AbilityView,
+    AlarmView,
+    Mode,
+    OperationView,
+    PlanStatus,
+    PlanStepView,
+    PlanView,
+    Production,
+    ResourceView,
+    StationIdentity,
+    StationView,
+    StepStatus,
+    TaskView,
+    TopicView,
+    VariableKind,
+    VariableView,
+)
+from sequence_planner.control.waiting import waits_for
+from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.types import Value
+
+# How many coming steps a task names as what moves next.
+_NEXT_MOVES = 2
+
+
+class Viewing:
+    """Builds views; remembers since when values and operations have been what they are."""
+
+    def __init__(self, identity: StationIdentity, execution: Execution, feeds: Feeds, network: NetworkWatch) -> None:
+        self._identity = identity
+        self._execution = execution
+        self._feeds = feeds
+        self._network = network
+        self._feeding = {v: name for name, feed in feeds.topics.items() for v in feed.pipeline.variables}
+        self._since: dict[str, tuple[Value | None, float]] = {}
+        self._active_since: dict[str, float] = {}
+        self.completed: dict[str, int] = dict.fromkeys(execution.automaton.operations, 0)
+
+    def note(self, outcome: TickOutcome, now: float) -> None:
+        """After a tick: remember what has changed."""
+        for operation in outcome.completed:
+            self.completed[operation] += 1
+        for name in self._execution.automaton.variables:
+            value = self._execution.state[name]
+            if name not in self._since or self._since[name][0] != value:
+                self._since[name] = (value, now)
+        self._active_since = {name: self._active_since.get(name, now) for name in self._execution.active}
+
+    def view(self, desk: TaskDesk, commander: Commander, alarms: dict[str, AlarmView], moment: Moment) -> StationView:
+        """The whole document."""
+        execution = self._execution
+        return StationView(
+            station=self._identity,
+            tick=execution.ticks,
+            time=moment.epoch,
+            mode=execution.mode,
+            production=execution.production,
+            resources=self._resources(moment),
+            variables=self._variables(),
+            abilities=self._abilities(),
+            operations=self._operations(),
+            plan=self._plan(),
+            tasks=self._tasks(desk),
+            topics=self._topics(commander, moment),
+            alarms=alarms,
+        )
+
+    def _resources(self, moment: Moment) -> dict[str, ResourceView]:
+        awaited: dict[str, list[str]] = {name: [] for name in self._execution.automaton.resources}
+        for topic in self._feeds.awaited(moment.monotonic):
+            awaited[self._feeds.topics[topic].pipeline.topic.resource].append(topic)
+        return {
+            name: ResourceView(title=title, online=not awaited[name], awaited_topics=awaited[name])
+            for name, title in self._execution.automaton.resources.items()
+        }
+
+    def _variables(self) -> dict[str, VariableView]:
+        views = {}
+        for name, variable in self._execution.automaton.variables.items():
+            value = self._execution.state[name]
+            since = self._since.get(name)
+            views[name] = VariableView(
+                resource=variable.resource,
+                kind=VariableKind(variable.kind),
+                value=value,
+                domain=list(variable.type.domain),
+                since=since[1] if since else None,
+                awaits=self._feeding.get(name) if value is None else None,
+            )
+        return views
+
+    def _abilities(self) -> dict[str, AbilityView]:
+        running = {step.ability: _epoch(step.started) for step in self._execution.order.running}
+        state = self._execution.state
+        return {
+            ability.name: AbilityView(
+                resource=ability.resource,
+                title=ability.title,
+                human=ability.human is not None,
+                restart=ability.restart,
+                enabled=_truth(state[ability.flag("enabled")]),
+                executing=_truth(state[ability.flag("executing")]),
+                finished=_truth(state[ability.flag("finished")]),
+                running_since=running.get(ability.name),
+            )
+            for ability in self._execution.automaton.abilities.values()
+        }
+
+    def _operations(self) -> dict[str, OperationView]:
+        execution = self._execution
+        left_out = set(execution.answer.left_out) if execution.answer else set()
+        return {
+            operation.name: OperationView(
+                title=operation.title,
+                active=operation.name in execution.active,
+                active_since=self._active_since.get(operation.name),
+                completed=self.completed[operation.name],
+                goal=print_expression(operation.goal),
+                precondition=print_expression(operation.precondition),
+                left_out=operation.name in left_out & execution.active,
+            )
+            for operation in execution.automaton.operations.values()
+        }
+
+    def _plan(self) -> PlanView:
+        execution = self._execution
+        order, plan, answer = execution.order, execution.order.plan, execution.answer
+        steps = [self._step(step, StepStatus.DONE if step.ended else StepStatus.RUNNING) for step in order.past]
+        for index, step in enumerate(order.ahead):
+            steps.append(self._step(step, StepStatus.PLANNED if index else StepStatus.NEXT))
+        return PlanView(
+            status=execution.plan_status,
+            reason=execution.plan_reason,
+            steps=steps,
+            ticks=len(plan.ticks) if plan else 0,
+            minimal_ticks=plan is not None and plan.minimal_ticks,
+            minimal_starts=plan is not None and plan.minimal_starts,
+            replanned=execution.replanned,
+            milliseconds=answer.seconds * 1000 if answer else None,
+        )
+
+    def _step(self, step: Step, status: StepStatus) -> PlanStepView:
+        ability = self._execution.automaton.abilities[step.ability]
+        waiting = waits_for(self._execution, step.ability, self._feeding) if status is StepStatus.NEXT else []
+        return PlanStepView(
+            id=str(step.number),
+            ability=step.ability,
+            title=ability.title,
+            resource=ability.resource,
+            status=status,
+            tick=step.tick,
+            started=_epoch(step.started),
+            ended=_epoch(step.ended),
+            waits_for=waiting,
+        )
+
+    def _tasks(self, desk: TaskDesk) -> dict[str, TaskView]:
+        abilities = self._execution.automaton.abilities
+        moves = [abilities[name].title for name in self._execution.order.names if abilities[name].human is None]
+        return {
+            id_: TaskView(
+                revision=task.revision,
+                ability=task.ability,
+                title=task.title,
+                text=task.text,
+                created=task.created,
+                next_moves=moves[:_NEXT_MOVES],
+            )
+            for id_, task in desk.open.items()
+        }
+
+    def _topics(self, commander: Commander, moment: Moment) -> dict[str, TopicView]:
+        views = {}
+        for name, feed in self._feeds.topics.items():
+            views[name] = TopicView(
+                type=feed.pipeline.topic.type_name,
+                direction="in",
+                resource=feed.pipeline.topic.resource,
+                last=moment.epoch_of(feed.last),
+                messages=feed.messages,
+                fresh=feed.fresh(moment.monotonic),
+                peers=self._network.peers[name],
+                trouble=self._network.troubles.get(name) or feed.trouble,
+            )
+        for name, command in commander.topics.items():
+            views[name] = TopicView(
+                type=command.pipeline.topic.type_name,
+                direction="out",
+                resource=command.pipeline.topic.resource,
+                last=moment.epoch_of(command.last),
+                messages=command.messages,
+                fresh=command.last is not None,
+                peers=self._network.peers[name],
+                trouble=self._network.rivals.get(name) or self._network.troubles.get(name) or command.owed,
+            )
+        return views
+
+
+def preparing_view(identity: StationIdentity, now: float) -> StationView:
+    """What is shown while the safe set is being computed."""
+    plan = PlanView(
+        status=PlanStatus.IDLE,
+        reason="the safe states are being computed",
+        steps=[],
+        ticks=0,
+        minimal_ticks=False,
+        minimal_starts=False,
+        replanned=0,
+        milliseconds=None,
+    )
+    return StationView(
+        station=identity,
+        tick=0,
+        time=now,
+        mode=Mode.AUTOMATIC,
+        production=Production.PREPARING,
+        resources={},
+        variables={},
+        abilities={},
+        operations={},
+        plan=plan,
+        tasks={},
+        topics={},
+        alarms={},
+    )
+
+
+def _epoch(moment: Moment | None) -> float | None:
+    return None if moment is None else moment.epoch
+
+
+def _truth(value: Value | None) -> bool | None:
+    return value if isinstance(value, bool) else None

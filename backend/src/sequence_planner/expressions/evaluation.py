@@ -1,0 +1,95 @@
+"""Values of expressions over three truth values (Kleene): `None` is *unknown*, and what it decides stays unknown."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any
+
+from sequence_planner.expressions.syntax import (
+    And,
+    Arithmetic,
+    Comparison,
+    Constant,
+    Expression,
+    Implies,
+    Membership,
+    Name,
+    Not,
+    Or,
+    Variable,
+)
+from sequence_planner.expressions.types import Value
+
+Valuation = Mapping[str, Value | None]
+
+# What each comparison asks of two known values; which values it is asked of, resolution has checked.
+RELATIONS: Mapping[str, Callable[[Any, Any], bool]] = {
+    "==": operator.eq,
+    "!=": operator.ne,
+    "<": operator.lt,
+    "<=": operator.le,
+    ">": operator.gt,
+    ">=": operator.ge,
+}
+
+
+def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
+    """The value of a resolved expression, or None where unknown variables leave it open.
+
+    Raises KeyError for a variable that `valuation` does not have, TypeError for an unresolved name.
+    """
+    match expression:
+        case Constant(value):
+            return value
+        case Variable(name):
+            return valuation[name]
+        case Not(operand):
+            truth = evaluate(operand, valuation)
+            return None if truth is None else not truth
+        case And(operands):
+            return _least(evaluate(part, valuation) for part in operands)
+        case Or(operands):
+            return _greatest(evaluate(part, valuation) for part in operands)
+        case Implies(left, right):
+            premise = evaluate(left, valuation)
+            return _greatest((None if premise is None else not premise, evaluate(right, valuation)))
+        case Comparison(relation, left, right):
+            a, b = evaluate(left, valuation), evaluate(right, valuation)
+            return None if a is None or b is None else RELATIONS[relation](a, b)
+        case Membership(left, options):
+            a = evaluate(left, valuation)
+            if a is None:
+                return None
+            found = (evaluate(option, valuation) for option in options)
+            return _greatest(None if b is None else a == b for b in found)
+        case Arithmetic(sign, left, right):
+            a, b = evaluate(left, valuation), evaluate(right, valuation)
+            if a is None or b is None:
+                return None
+            return int(a) + int(b) if sign == "+" else int(a) - int(b)
+        case Name():
+            raise TypeError(f"unresolved name {expression}")
+
+
+def holds(expression: Expression, valuation: Valuation) -> bool:
+    """Whether a predicate is true for certain: what is undetermined does not hold."""
+    return evaluate(expression, valuation) is True
+
+
+def _least(truths: Iterable[Value | None]) -> bool | None:
+    unknown = False
+    for truth in truths:
+        if truth is False:
+            return False
+        unknown = unknown or truth is None
+    return None if unknown else True
+
+
+def _greatest(truths: Iterable[Value | None]) -> bool | None:
+    unknown = False
+    for truth in truths:
+        if truth is True:
+            return True
+        unknown = unknown or truth is None
+    return None if unknown else False

@@ -1,0 +1,242 @@
+"""From names to variables and values, with types checked.
+
+A name is looked up in this order: a parameter of the construct, then relative to its ability and its resource, then in
+the whole station. A name beside a value of an enumeration may also be one of that enumeration's values.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+
+from sequence_planner.expressions.syntax import (
+    And,
+    Arithmetic,
+    Assignment,
+    Comparison,
+    Component,
+    Constant,
+    Expression,
+    ExpressionError,
+    Implies,
+    Membership,
+    Name,
+    Not,
+    Or,
+    Span,
+    Variable,
+)
+from sequence_planner.expressions.types import (
+    BOOLEAN,
+    BooleanType,
+    EnumerationType,
+    IntegerRange,
+    Type,
+    contains,
+)
+
+
+@dataclass(frozen=True)
+class Scope:
+    """What names mean at one place of a model.
+
+    `variables` maps full names to types; `prefixes` are tried in order before the bare name (such as
+    `nutrunner.run_nut.` and `nutrunner.`); `parameters` maps a parameter to its value and the enumeration it is of.
+    """
+
+    variables: Mapping[str, Type]
+    prefixes: tuple[str, ...] = ()
+    parameters: Mapping[str, tuple[str, EnumerationType]] = field(default_factory=dict)
+
+    def substitute(self, name: Name) -> Name:
+        """`name` with the parameters among its arguments replaced by their values."""
+        parts = tuple(
+            Component(part.name, tuple(self._argument(word) for word in part.arguments), part.indexed)
+            for part in name.path
+        )
+        return Name(parts, name.span)
+
+    def find(self, name: Name) -> Variable | None:
+        """The variable of that name, or None."""
+        text = str(self.substitute(name))
+        for prefix in (*self.prefixes, ""):
+            if (found := self.variables.get(prefix + text)) is not None:
+                return Variable(prefix + text, found, name.span)
+        return None
+
+    def _argument(self, word: str) -> str:
+        return self.parameters[word][0] if word in self.parameters else word
+
+    def visible(self) -> Iterable[str]:
+        """All names that could have been meant here, shortest form first."""
+        for prefix in self.prefixes:
+            yield from (name.removeprefix(prefix) for name in self.variables if name.startswith(prefix))
+        yield from self.variables
+        yield from self.parameters
+
+
+def resolve_predicate(expression: Expression, scope: Scope) -> Expression:
+    """`expression` with all names resolved, checked to be a truth value. Raises `ExpressionError`."""
+    return _resolve(expression, scope, BOOLEAN)
+
+
+def resolve_assignment(action: Assignment, scope: Scope) -> Assignment:
+    """An action with all names resolved; its value must fit the target's domain for certain."""
+    if not isinstance(action.target, Name):
+        raise TypeError("the action is resolved already")
+    if str(action.target) in scope.parameters:
+        raise ExpressionError(f"`{action.target}` is a parameter: only variables are written", action.target.span)
+    target = scope.find(action.target)
+    if target is None:
+        raise _unknown(action.target, scope, ())
+    value = _resolve(action.value, scope, target.type)
+    condition = None if action.condition is None else resolve_predicate(action.condition, scope)
+    return Assignment(target, value, condition, action.span)
+
+
+def suggestion(word: str, candidates: Iterable[str]) -> str:
+    """`; did you mean ...?` with the nearest of `candidates`, or nothing."""
+    near = difflib.get_close_matches(word, list(dict.fromkeys(candidates)), n=1, cutoff=0.5)
+    return f"; did you mean `{near[0]}`?" if near else ""
+
+
+def _resolve(expression: Expression, scope: Scope, expected: Type) -> Expression:
+    resolved, found = _typed(expression, scope, expected)
+    fits = contains(expected, resolved.value) if isinstance(resolved, Constant) else _fits(found, expected)
+    if not fits:
+        raise ExpressionError(f"expected {_describe(expected)}, found {_describe(found)}", expression.span)
+    return resolved
+
+
+def _fits(found: Type, expected: Type) -> bool:
+    if isinstance(found, IntegerRange) and isinstance(expected, IntegerRange):
+        return expected.minimum <= found.minimum and found.maximum <= expected.maximum
+    if isinstance(found, EnumerationType) and isinstance(expected, EnumerationType):
+        return set(found.values) <= set(expected.values)
+    return type(found) is type(expected)
+
+
+def _describe(type_: Type) -> str:
+    match type_:
+        case BooleanType():
+            return "a truth value"
+        case IntegerRange(minimum, maximum):
+            return f"the integer {minimum}" if minimum == maximum else f"an integer in {type_}"
+        case EnumerationType((single,)):
+            return f"the value `{single}`"
+        case EnumerationType():
+            return f"one of {type_}"
+
+
+def _typed(expression: Expression, scope: Scope, expected: Type | None) -> tuple[Expression, Type]:
+    span = expression.span
+    match expression:
+        case Constant(value):
+            if isinstance(value, bool):
+                return expression, BOOLEAN
+            if isinstance(value, int):
+                return expression, IntegerRange(value, value)
+            return expression, EnumerationType((value,))
+        case Name():
+            return _named(expression, scope, expected)
+        case Variable(_, type_):
+            return expression, type_
+        case Not(operand):
+            return Not(_resolve(operand, scope, BOOLEAN), span), BOOLEAN
+        case And(operands):
+            return And(tuple(_resolve(o, scope, BOOLEAN) for o in operands), span), BOOLEAN
+        case Or(operands):
+            return Or(tuple(_resolve(o, scope, BOOLEAN) for o in operands), span), BOOLEAN
+        case Implies(left, right):
+            return Implies(_resolve(left, scope, BOOLEAN), _resolve(right, scope, BOOLEAN), span), BOOLEAN
+        case Comparison(operator, left, right):
+            return _comparison(operator, left, right, span, scope), BOOLEAN
+        case Membership(left, options):
+            subject, type_ = _typed(left, scope, None)
+            members = tuple(_comparable(option, type_, scope) for option in options)
+            return Membership(subject, members, span), BOOLEAN
+        case Arithmetic(operator, left, right):
+            return _arithmetic(operator, left, right, span, scope)
+
+
+def _named(name: Name, scope: Scope, expected: Type | None) -> tuple[Expression, Type]:
+    word = str(name)
+    if word in scope.parameters:
+        value, type_ = scope.parameters[word]
+        return Constant(value, name.span), type_
+    variable = scope.find(name)
+    values = expected.values if isinstance(expected, EnumerationType) else ()
+    if word in values:
+        if variable is not None and isinstance(variable.type, EnumerationType):
+            raise ExpressionError(f"`{word}` is both a value and a variable here: rename one of them", name.span)
+        return Constant(word, name.span), EnumerationType((word,))
+    if variable is None:
+        raise _unknown(name, scope, values)
+    return variable, variable.type
+
+
+def _unknown(name: Name, scope: Scope, values: Iterable[str]) -> ExpressionError:
+    candidates = [*values, *scope.visible()]
+    what = "variable or value" if values else "variable"
+    return ExpressionError(f"unknown {what} `{name}`{suggestion(str(name), candidates)}", name.span)
+
+
+def _comparison(operator: str, left: Expression, right: Expression, span: Span, scope: Scope) -> Expression:
+    # A bare word may be a value whose enumeration only the other side tells, so the side that stands alone goes first.
+    swapped = _needs_enumeration(left, scope, right)
+    first, second = (right, left) if swapped else (left, right)
+    subject, type_ = _typed(first, scope, None)
+    other = _comparable(second, type_, scope)
+    if operator not in ("==", "!=") and not isinstance(type_, IntegerRange):
+        raise ExpressionError(f"`{operator}` compares integers, not {_describe(type_)}", span)
+    return Comparison(operator, *((other, subject) if swapped else (subject, other)), span)
+
+
+def _needs_enumeration(word: Expression, scope: Scope, other: Expression) -> bool:
+    """Whether `word`, left of a comparison, is to be read as a value of what stands on the `other` side."""
+    if not isinstance(word, Name) or str(word) in scope.parameters:
+        return False
+    unknown = isinstance(other, Name) and str(other) not in scope.parameters and scope.find(other) is None
+    if scope.find(word) is None:
+        # With two unknown words, the one to complain about is the one that is nobody's value.
+        return not unknown or (_is_a_value(word, scope) and not _is_a_value(other, scope))
+    variable = scope.find(other) if isinstance(other, Name) else None
+    return variable is not None and isinstance(variable.type, EnumerationType) and str(word) in variable.type.values
+
+
+def _is_a_value(word: Expression, scope: Scope) -> bool:
+    types = scope.variables.values()
+    return any(isinstance(type_, EnumerationType) and str(word) in type_.values for type_ in types)
+
+
+def _comparable(expression: Expression, type_: Type, scope: Scope) -> Expression:
+    """`expression` resolved beside something of `type_`, with which it must have a value in common."""
+    resolved, found = _typed(expression, scope, type_)
+    if isinstance(found, EnumerationType) and isinstance(type_, EnumerationType):
+        # A parameter counts with all its values, so that an ability means the same for each of them.
+        fits = bool(set(found.values) & set(type_.values))
+    elif isinstance(found, IntegerRange) and isinstance(type_, IntegerRange):
+        fits = found.minimum <= type_.maximum and type_.minimum <= found.maximum
+    else:
+        fits = type(found) is type(type_)
+    if not fits:
+        raise ExpressionError(f"cannot compare {_describe(type_)} with {_describe(found)}", expression.span)
+    return resolved
+
+
+def _arithmetic(
+    operator: str, left: Expression, right: Expression, span: Span, scope: Scope
+) -> tuple[Expression, Type]:
+    parts = [_typed(side, scope, None) for side in (left, right)]
+    for side, (_, type_) in zip((left, right), parts, strict=True):
+        if not isinstance(type_, IntegerRange):
+            raise ExpressionError(f"`{operator}` needs integers, found {_describe(type_)}", side.span)
+    (a, range_a), (b, range_b) = parts
+    assert isinstance(range_a, IntegerRange)
+    assert isinstance(range_b, IntegerRange)
+    if operator == "+":
+        result = IntegerRange(range_a.minimum + range_b.minimum, range_a.maximum + range_b.maximum)
+    else:
+        result = IntegerRange(range_a.minimum - range_b.maximum, range_a.maximum - range_b.minimum)
+    return Arithmetic(operator, a, b, span), result

@@ -1,0 +1,197 @@
+"""The syntax tree of expressions and actions.
+
+Parsing yields `Name` nodes; resolution replaces each by a `Variable` or a `Constant`. Spans are offsets into the
+source text and take no part in comparison, so that equal expressions written at different places are equal.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from sequence_planner.expressions.types import Type, Value
+
+
+@dataclass(frozen=True)
+class Span:
+    """Half-open range of characters in the source text."""
+
+    start: int
+    end: int
+
+
+NOWHERE = Span(0, 0)
+
+
+class ExpressionError(Exception):
+    """A text that is no expression, or one that means nothing here; `span` is the place within the text."""
+
+    def __init__(self, message: str, span: Span) -> None:
+        super().__init__(message)
+        self.message = message
+        self.span = span
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A truth value, an integer, or the name of an enumeration's value."""
+
+    value: Value
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Component:
+    """One part of a dotted name: `run_nut`, `move_to_position(above)`, `bolts[bolt_pair_1]`."""
+
+    name: str
+    arguments: tuple[str, ...] = ()
+    indexed: bool = False
+
+    def __str__(self) -> str:
+        if not self.arguments:
+            return self.name
+        opening, closing = "[]" if self.indexed else "()"
+        return f"{self.name}{opening}{', '.join(self.arguments)}{closing}"
+
+
+@dataclass(frozen=True)
+class Name:
+    """A name not yet resolved: a variable, a flag, a parameter or a value."""
+
+    path: tuple[Component, ...]
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+    def __str__(self) -> str:
+        return ".".join(str(part) for part in self.path)
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable by its full name, with its type."""
+
+    name: str
+    type: Type
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Not:
+    """Negation."""
+
+    operand: Expression
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class And:
+    """Conjunction of two or more."""
+
+    operands: tuple[Expression, ...]
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Or:
+    """Disjunction of two or more."""
+
+    operands: tuple[Expression, ...]
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Implies:
+    """`left implies right`."""
+
+    left: Expression
+    right: Expression
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """`==`, `!=`, and on integers `<`, `<=`, `>`, `>=`."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Membership:
+    """`left in {a, b}`."""
+
+    left: Expression
+    options: tuple[Expression, ...]
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """`+` and `-` on integers."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+Expression = Constant | Name | Variable | Not | And | Or | Implies | Comparison | Membership | Arithmetic
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """An action `target := value`, taken only where `condition` holds."""
+
+    target: Name | Variable
+    value: Expression
+    condition: Expression | None = None
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+TRUE = Constant(True)
+FALSE = Constant(False)
+
+
+def children(expression: Expression) -> tuple[Expression, ...]:
+    """The direct parts of an expression, left to right."""
+    match expression:
+        case Not(operand):
+            return (operand,)
+        case And(operands) | Or(operands):
+            return operands
+        case Implies(left, right) | Comparison(_, left, right) | Arithmetic(_, left, right):
+            return (left, right)
+        case Membership(left, options):
+            return (left, *options)
+        case Constant() | Name() | Variable():
+            return ()
+
+
+def occurrences(expression: Expression) -> Iterator[Variable]:
+    """Each place where a resolved expression reads a variable, left to right."""
+    if isinstance(expression, Variable):
+        yield expression
+    for child in children(expression):
+        yield from occurrences(child)
+
+
+def variables(expression: Expression) -> Iterator[str]:
+    """Full names of the variables a resolved expression reads, with repetitions."""
+    return (variable.name for variable in occurrences(expression))
+
+
+def conjuncts(expression: Expression) -> tuple[Expression, ...]:
+    """The parts that must all hold."""
+    if isinstance(expression, And):
+        return tuple(part for operand in expression.operands for part in conjuncts(operand))
+    return (expression,)
+
+
+def conjunction(*parts: Expression) -> Expression:
+    """All of `parts`; true when there is none."""
+    needed = tuple(part for part in parts if part != TRUE)
+    if not needed:
+        return TRUE
+    return needed[0] if len(needed) == 1 else And(needed)

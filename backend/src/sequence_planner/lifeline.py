@@ -1,0 +1,62 @@
+"""Processes that end when the one that started them does, however that came about.
+
+A station's processes must not outlive the launcher: nobody would watch over them, and they would go on commanding
+devices. Signals cannot tell (nobody sends one on behalf of a process that was killed), but a pipe can: when its other
+end has gone it can be read to its end.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+STANDARD_INPUT = 0
+LAST_WORDS = 5.0  # seconds in which a process may end in good order
+
+
+def end_with_launcher(folder: Path | None = None) -> None:
+    """End this process like SIGTERM does as soon as its standard input, a pipe from the launcher, is closed.
+
+    `folder` is the launcher's; it is removed then, if it is empty.
+    """
+
+    def remove() -> None:
+        if folder is not None:
+            with contextlib.suppress(OSError):
+                folder.rmdir()
+
+    def end() -> None:
+        remove()
+        atexit.register(remove)  # once this process has taken out what is its own
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(LAST_WORDS)
+        os._exit(1)
+
+    _when(_closed, end)
+
+
+def end_without_parent() -> None:
+    """End this process, which `multiprocessing` has started, as soon as its parent has ended."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        _when(parent.join, lambda: os._exit(1))
+
+
+def _when(wait: Callable[[], None], act: Callable[[], None]) -> None:
+    def watch() -> None:
+        wait()
+        act()
+
+    threading.Thread(target=watch, daemon=True, name="lifeline").start()
+
+
+def _closed() -> None:
+    while os.read(STANDARD_INPUT, 64):  # not `sys.stdin`: whoever waits in it holds up the interpreter's end
+        pass

@@ -1,0 +1,74 @@
+"""Logs: one line an event, on standard error.
+
+Whoever reads the log may stand still: a terminal that was stopped with Ctrl-S, a pipe that nobody empties, a disk that
+is full. No tick waits for that. Lines go to a queue and a thread writes them; of those for which there is no room the
+number is said later.
+"""
+
+from __future__ import annotations
+
+import atexit
+import contextlib
+import os
+import sys
+import threading
+from queue import Full, Queue
+from typing import TextIO, cast
+
+import structlog
+
+STANDARD_ERROR = 2
+MOST_WAITING = 10_000  # lines
+LAST_LINES = 1.0  # seconds in which the lines that wait at the end are still written
+
+
+class LineQueue:
+    """What a logger needs of a file, and its calls never block; a thread writes to the file descriptor `out`."""
+
+    def __init__(self, out: int, most: int = MOST_WAITING) -> None:
+        self._out = out
+        self._waiting: Queue[str] = Queue(most)
+        self._lost = 0
+        threading.Thread(target=self._write_all, daemon=True, name="log").start()
+
+    def write(self, line: str) -> int:
+        """Have `line` written some time."""
+        try:
+            self._waiting.put_nowait(line)
+        except Full:
+            self._lost += 1
+        return len(line)
+
+    def flush(self) -> None:
+        """Nothing: nobody waits for the log."""
+
+    def drain(self, seconds: float = LAST_LINES) -> None:
+        """Wait until all is written, but no longer than `seconds`."""
+        with self._waiting.all_tasks_done:
+            self._waiting.all_tasks_done.wait_for(lambda: not self._waiting.unfinished_tasks, seconds)
+
+    def _write_all(self) -> None:
+        while True:
+            text = self._waiting.get()
+            lost, self._lost = self._lost, 0
+            if lost:
+                text += f"{lost} lines of the log were lost here\n"
+            with contextlib.suppress(OSError):  # the reader is gone, or the disk is full
+                rest = text.encode(errors="replace")
+                while rest:  # not through `sys.stderr`: whoever waits in it holds up the interpreter's end
+                    rest = rest[os.write(self._out, rest) :]
+            self._waiting.task_done()
+
+
+def configure_logs() -> None:
+    """Write events as time, level, text and its values."""
+    lines = LineQueue(STANDARD_ERROR)
+    atexit.register(lines.drain)
+    structlog.configure(
+        processors=[
+            structlog.processors.TimeStamper(fmt="%H:%M:%S", utc=False),
+            structlog.processors.add_log_level,
+            structlog.dev.ConsoleRenderer(colors=sys.stderr.isatty()),
+        ],
+        logger_factory=structlog.WriteLoggerFactory(cast(TextIO, lines)),
+    )

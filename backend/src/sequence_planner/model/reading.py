@@ -1,0 +1,201 @@
+"""Reading YAML with places: dicts, lists, numbers and texts, of which each is known by its line and column."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from ruamel.yaml import YAML
+from ruamel.yaml.error import MarkedYAMLError
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+from ruamel.yaml.reader import ReaderError
+
+from sequence_planner.model.source import Finding, ModelError, Place, SourceText
+
+EntryPath = tuple[str | int, ...]
+
+# Aliases of aliases can make a short file mean a gigantic one.
+MOST_ENTRIES = 100_000
+
+# An anchor or a tag before a text: no part of it.
+_PROPERTIES = re.compile(r"(?:[&!]\S*\s+)+")
+
+
+@dataclass(frozen=True)
+class Document:
+    """The content of one file, and the place of each entry by its path of keys and indices.
+
+    The place of a named entry is that of its name; `values` has where what stands behind the name begins.
+    """
+
+    file: str
+    content: object
+    places: dict[EntryPath, Place]
+    values: dict[EntryPath, Place]
+
+    def place(self, path: EntryPath) -> Place:
+        """The place of the entry at `path`, or of the innermost entry around it."""
+        while path not in self.places and path:
+            path = path[:-1]
+        return self.places.get(path, Place(self.file, 1, 1))
+
+    def place_of_value(self, path: EntryPath) -> Place:
+        """Like `place`, but behind the name where the value stands in the same line."""
+        while path not in self.places and path:
+            path = path[:-1]
+        return self.values.get(path, self.place(path))
+
+
+def read_yaml(path: Path, name: str) -> Document:
+    """Read one YAML file; `name` is how it is called in messages. Raises `ModelError`."""
+    try:
+        text = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
+        raise ModelError([Finding(Place(name, 1, 1), f"cannot be read: {reason}")]) from error
+    reader = _Reader(name, text)
+    try:
+        yaml = YAML(typ="safe", pure=True)
+        yaml.composer.warn_double_anchors = False  # an anchor may be used again, and means the last one
+        root = yaml.compose(text)
+        content = {} if root is None else reader.read(root, ())
+    except MarkedYAMLError as error:
+        raise ModelError([_not_yaml(name, error)]) from error
+    except ReaderError as error:
+        what = f"this is not YAML: the character {ord(text[error.position]):#06x} is not allowed"
+        raise ModelError([Finding(reader.place_at(error.position), what)]) from error
+    except RecursionError as error:
+        raise ModelError([Finding(Place(name, 1, 1), "cannot be read: it is nested too deeply")]) from error
+    if reader.findings:
+        raise ModelError(reader.findings)
+    return Document(name, content, reader.places, reader.values)
+
+
+def _not_yaml(name: str, error: MarkedYAMLError) -> Finding:
+    """The parser's complaint, in plain words where it has none, and at the opening of what is never closed."""
+    problem, mark = str(error.problem), error.problem_mark
+    if "end of stream" in problem:
+        problem, mark = "a quote is opened here and never closed", error.context_mark or mark
+    elif "'\\t'" in problem:
+        problem = "a tab stands where only spaces may"
+    elif "another document" in problem:
+        problem = "a second document begins here, and a file has one"
+    elif "expected ',' or" in problem:
+        problem += "; in a list written in one line, put quotes around a text with brackets or commas"
+    elif "'<document start>'" in problem or "<block end>" in problem:
+        problem = "this does not belong to what is above it: look at the indentation and the quotes"
+    place = Place(name, mark.line + 1, mark.column + 1) if mark else Place(name, 1, 1)
+    return Finding(place, f"this is not YAML: {problem}")
+
+
+class _Reader:
+    """Turns YAML nodes into dicts, lists, numbers and placed texts."""
+
+    def __init__(self, file: str, text: str) -> None:
+        self._file = file
+        self._text = text
+        self._entries = 0
+        self._around: list[Node] = []
+        self.places: dict[EntryPath, Place] = {}
+        self.values: dict[EntryPath, Place] = {}
+        self.findings: list[Finding] = []
+
+    def read(self, node: Node, path: EntryPath) -> object:
+        """The content of `node`, which stands at `path`."""
+        self.places.setdefault(path, self._place(node))
+        if isinstance(node, ScalarNode):
+            return self._scalar(node)
+        if any(node is one for one in self._around):
+            self._found(self._place(node), "this contains itself, by an alias of its own anchor")
+            return None
+        self._around.append(node)
+        content = self._mapping(node, path) if isinstance(node, MappingNode) else self._sequence(node, path)
+        self._around.pop()
+        return content
+
+    def place_at(self, index: int) -> Place:
+        """The place of a character of the file."""
+        line = self._text.count("\n", 0, index)
+        return Place(self._file, line + 1, index - self._text.rfind("\n", 0, index))
+
+    def _sequence(self, node: Node, path: EntryPath) -> list[object]:
+        assert isinstance(node, SequenceNode)
+        return [self.read(item, (*path, index)) for index, item in enumerate(node.value) if self._has_room(item)]
+
+    def _mapping(self, node: MappingNode, path: EntryPath) -> dict[SourceText, object]:
+        content: dict[SourceText, object] = {}
+        for key_node, value_node in node.value:
+            if not isinstance(key_node, ScalarNode):
+                self._found(self._place(key_node), "a list or mapping cannot be a name")
+                continue
+            key = self._text_of(key_node)
+            if str(key_node.tag).endswith(":merge"):
+                self._found(key.place, "`<<` is not known here: write the entries out")
+                continue
+            if key in content:
+                first = self.places[(*path, str(key))]
+                message = f"duplicate name `{key}`, first used in line {first.line}: rename one of them"
+                self._found(key.place, message)
+                continue
+            if not self._has_room(key_node):
+                break
+            self.places[(*path, str(key))] = key.place
+            if value_node.start_mark.line == key_node.start_mark.line and value_node.value != "":
+                self.values[(*path, str(key))] = self._place(value_node)
+            content[key] = self.read(value_node, (*path, str(key)))
+        return content
+
+    def _has_room(self, node: Node) -> bool:
+        self._entries += 1
+        if self._entries == MOST_ENTRIES:
+            self._found(self._place(node), f"too large: with its aliases it has more than {MOST_ENTRIES} entries")
+        return self._entries < MOST_ENTRIES
+
+    def _found(self, place: Place, message: str) -> None:
+        self.findings.append(Finding(place, message))
+
+    def _scalar(self, node: ScalarNode) -> object:
+        kind = str(node.tag).rsplit(":", 1)[-1]
+        if kind == "null":
+            return None
+        if kind == "bool":
+            return node.value.lower() in (
+                "true",
+                "yes",
+                "on",
+                "y",
+            )  # all but `true` only where a file asks for YAML 1.1
+        if kind in ("int", "float"):
+            try:
+                return _integer(node.value) if kind == "int" else _float(node.value)
+            except ValueError:
+                shown = node.value if len(node.value) <= 30 else f"{node.value[:27]}..."
+                self._found(self._place(node), f"`{shown}` is no number that can be used")
+                return 0
+        return self._text_of(node)
+
+    def _text_of(self, node: Node) -> SourceText:
+        raw = self._text[node.start_mark.index : node.end_mark.index]
+        place = self._place(node)
+        if properties := _PROPERTIES.match(raw):
+            raw = raw[properties.end() :]
+            place = self.place_at(node.start_mark.index + properties.end())
+        return SourceText(str(node.value), place, raw)
+
+    def _place(self, node: Node) -> Place:
+        return Place(self._file, node.start_mark.line + 1, node.start_mark.column + 1)
+
+
+def _integer(text: str) -> int:
+    digits = text.replace("_", "")
+    try:
+        return int(digits, 0)
+    except ValueError:
+        return int(digits)  # leading zeros
+
+
+def _float(text: str) -> float:
+    """A number as YAML writes it; `.inf` and `.nan` too, which no document part accepts."""
+    digits = text.replace("_", "").lower()
+    return float(digits.replace(".inf", "inf").replace(".nan", "nan"))

@@ -1,0 +1,102 @@
+"""Places in documents: a text knows the file, line and column it was written at, and so does what is wrong with it."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from pydantic import GetCoreSchemaHandler
+from pydantic_core import CoreSchema, core_schema
+
+from sequence_planner.expressions.syntax import Span
+
+
+@dataclass(frozen=True, order=True)
+class Place:
+    """Where something stands; line and column count from 1."""
+
+    file: str
+    line: int
+    column: int
+
+    def __str__(self) -> str:
+        return f"{self.file}:{self.line}:{self.column}"
+
+
+@dataclass(frozen=True, order=True)
+class Finding:
+    """One thing wrong with a model: where, what, and what would be right."""
+
+    place: Place
+    message: str
+
+    def __str__(self) -> str:
+        return f"{self.place}: {self.message}"
+
+
+class ModelError(Exception):
+    """A model that cannot be used, with all that was found wrong in it."""
+
+    def __init__(self, findings: list[Finding]) -> None:
+        self.findings = sorted(set(findings))
+        super().__init__("\n".join(map(str, self.findings)))
+
+
+class SourceText(str):
+    """A text from a document, which knows its place and how it was quoted."""
+
+    __slots__ = ("place", "raw")
+    place: Place
+    raw: str
+
+    def __new__(cls, text: str, place: Place, raw: str) -> SourceText:
+        """`raw` is the text as written, quotes and line breaks included; it begins at `place`."""
+        self = super().__new__(cls, text)
+        self.place = place
+        self.raw = raw
+        return self
+
+    def __reduce__(self) -> tuple[type[SourceText], tuple[str, Place, str]]:
+        return SourceText, (str(self), self.place, self.raw)
+
+    def at(self, span: Span) -> Place:
+        """The place of a span of this text; the end of the text is just behind its last character.
+
+        Quoting and folding only add quotes, escapes and white space, so counting the other characters finds the
+        place again.
+        """
+        before = sum(not character.isspace() for character in self[: span.start])
+        at_end = not self[span.start :].strip()
+        written = _written(self.raw)
+        if at_end:
+            index = written[before - 1][1] if 0 < before <= len(written) else 0
+        else:
+            index = written[before][0] if before < len(written) else 0
+        above = self.raw[:index]
+        breaks = above.count("\n")
+        column = index - above.rfind("\n") if breaks else self.place.column + index
+        return Place(self.place.file, self.place.line + breaks, column)
+
+    @classmethod
+    def __get_pydantic_core_schema__(cls, source: type[Any], handler: GetCoreSchemaHandler) -> CoreSchema:
+        """Pass unchanged through pydantic; anything else is no text."""
+        return core_schema.is_instance_schema(cls, cls_repr="text")
+
+
+# How one character of a text is written, by the style of the text.
+_CHARACTER = {
+    '"': re.compile(r"\\(?:x..|u....|U........|.)|.", re.DOTALL),
+    "'": re.compile(r"''|.", re.DOTALL),
+    "": re.compile(r".", re.DOTALL),
+}
+_ESCAPED_SPACE = frozenset({"\\" + character for character in "\n \tnrtvfNLP_"})
+
+
+def _written(raw: str) -> list[tuple[int, int]]:
+    """Where each character of a text but white space begins and ends in `raw`. A closing quote comes last."""
+    quote = raw[:1] if raw[:1] in ("'", '"') else ""
+    is_block = raw[:1] in ("|", ">")
+    start = (raw.find("\n") + 1 or len(raw)) if is_block else len(quote)
+    found = _CHARACTER[quote].finditer(raw, start)
+    return [match.span() for match in found if not match[0].isspace() and match[0] not in _ESCAPED_SPACE]

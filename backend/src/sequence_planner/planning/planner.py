@@ -1,0 +1,86 @@
+"""The planner: all goals together, or as many as can be planned together, and no answer that does not replay."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.planning.plan import Plan, PlanAnswer, PlanRequest, Verdict
+from sequence_planner.planning.relaxation import unreachable_goals
+from sequence_planner.planning.replay import Replay
+from sequence_planner.planning.search import Search, SearchTimeoutError
+from sequence_planner.planning.sweep import sweep_order
+
+# A solver for each set of unknown variables; topics come and go in few combinations.
+_KEPT_SEARCHES = 4
+
+
+class PlannerError(Exception):
+    """A plan did not replay on the reference tick: the planner and the tick disagree, and nothing may be started."""
+
+
+class Planner:
+    """Plans for one automaton under one supervisor, warm from question to question."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self._automaton = automaton
+        self._supervisor = supervisor
+        self._replay = Replay(automaton, supervisor)
+        self._order = sweep_order(automaton, supervisor)
+        self._searches: OrderedDict[frozenset[str], Search] = OrderedDict()
+
+    def answer(self, request: PlanRequest) -> PlanAnswer:
+        """The plan for as many of the goals as can be planned together, the lowest priority given up first.
+
+        Raises `PlannerError` when a plan does not replay.
+        """
+        began = time.monotonic()
+        deadline = began + request.deadline
+        impossible = unreachable_goals(self._automaton, request.state, request.goals)
+        goals = sorted(
+            (goal for goal in request.goals if goal not in impossible),
+            key=lambda goal: (-self._automaton.operations[goal].priority, goal),
+        )
+        verdict = Verdict.NONE_AT_ALL
+        searched = 0
+        plan: Plan | None = None
+        while goals and plan is None:
+            missing = [goal for goal in goals if not holds(self._automaton.operations[goal].goal, request.state)]
+            if not missing:
+                plan = Plan((), minimal_ticks=True, minimal_starts=True)
+                break
+            # Each attempt gets half of what is left, so that fewer goals still have their turn.
+            now = time.monotonic()
+            try:
+                plan = self._search(request.state).plan(
+                    request.state, missing, request.longest, now + max((deadline - now) / 2, 0.05)
+                )
+                searched = request.longest
+            except SearchTimeoutError as late:
+                searched = late.searched
+            if plan is None:
+                verdict = Verdict.NONE_UP_TO
+                goals = goals[:-1] if time.monotonic() < deadline else []
+        seconds = time.monotonic() - began
+        left_out = tuple(goal for goal in request.goals if goal not in goals)
+        if plan is None:
+            return PlanAnswer(verdict, None, (), left_out, searched, seconds)
+        tightened = self._replay.tightened(request.state, goals, plan)
+        for each in (plan, tightened):
+            if not self._replay.exactly(request.state, request.state, goals, (), each.ticks):
+                raise PlannerError(f"the plan {each} for {goals} does not replay from {dict(request.state)}")
+        plan = tightened
+        seconds = time.monotonic() - began
+        return PlanAnswer(Verdict.FOUND, plan, tuple(goals), left_out, len(plan.ticks), seconds)
+
+    def _search(self, state: State) -> Search:
+        unknown = frozenset(name for name in self._automaton.variables if state[name] is None)
+        if unknown not in self._searches:
+            self._searches[unknown] = Search(self._automaton, self._supervisor, self._order, unknown)
+            if len(self._searches) > _KEPT_SEARCHES:
+                self._searches.popitem(last=False)[1].close()
+        self._searches.move_to_end(unknown)
+        return self._searches[unknown]

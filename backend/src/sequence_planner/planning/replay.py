@@ -1,0 +1,186 @@
+"""Plans held against the reference tick: none is used that does not replay, none followed that no longer does.
+
+A plan counts on the environment's help, and two kinds of help are told apart. *Exactly*, each effect happens in the
+tick in which the plan has it, however long it must tarry for that. *Eagerly*, all that can happen happens at once, as
+with devices that carry on without asking; a start that reaches its goals only if some device is slow is a gamble.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, Effect, State
+from sequence_planner.automaton.tick import (
+    apply_effects,
+    effect_writes,
+    finish,
+    supervised_start,
+    synchronise,
+)
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.plan import Plan, PlanTick
+
+# Nodes an eager search may visit: what is followed is looked at in every tick, and a tick must not be held up.
+LOOKAHEAD = 400
+
+
+@dataclass(frozen=True)
+class _Node:
+    """A moment after step 3 or a start. `ticks` is the schedule so far; starts go into its last one."""
+
+    state: State
+    published: State
+    goals: frozenset[str]
+    order: tuple[str, ...]
+    ticks: tuple[PlanTick, ...]
+
+
+@dataclass(frozen=True)
+class Replay:
+    """Replays plans of one automaton under one supervisor. Goals are names of operations."""
+
+    automaton: Automaton
+    supervisor: Supervisor
+
+    def exactly(
+        self, state: State, published: State, goals: Iterable[str], now: Sequence[str], ticks: Sequence[PlanTick]
+    ) -> bool:
+        """Whether the starts `now` in the tick under way, then `ticks` as they are written, reach `goals`.
+
+        `state` is one after step 3 or a start; `published` has the outputs as last published.
+        """
+        effects = {effect.name: effect for effect in self.automaton.effects}
+        missing = self._missing(frozenset(goals), state)
+        current = self._started(published, state, now)
+        for tick in ticks:
+            sensed = None if current is None else apply_effects(current, [effects[name] for name in tick.effects])
+            if current is None or sensed is None:
+                return False
+            after = self._settled(sensed)
+            missing = self._missing(missing, after)
+            current = self._started(current, after, tick.starts)
+        return current is not None and not missing
+
+    def eagerly(self, state: State, published: State, goals: Iterable[str], order: Sequence[str]) -> bool:
+        """Whether `order`, each start taken now or later, reaches `goals` when all that can happen happens at once.
+
+        `state` is one after step 3 or a start; `published` has the outputs as last published.
+        """
+        root = _Node(state, published, self._missing(frozenset(goals), state), tuple(order), (PlanTick((), ()),))
+        return self._search(root, in_order=True, longest=None) is not None
+
+    def still_reaches(
+        self, state: State, published: State, goals: Iterable[str], order: Sequence[str], ticks: Sequence[PlanTick]
+    ) -> bool:
+        """Whether there is still a timing, of ours or of the environment, in which `order` reaches `goals`.
+
+        `ticks` is the rest of the plan as it was made, which holds the last of `order`.
+        """
+        return self.eagerly(state, published, goals, order) or self.exactly(
+            state, published, goals, _now(order, ticks), ticks
+        )
+
+    def may_go_on(
+        self,
+        before: State,
+        after: State,
+        published: State,
+        goals: Iterable[str],
+        order: Sequence[str],
+        ticks: Sequence[PlanTick],
+    ) -> bool:
+        """Whether a start that leads from `before` to `after` leaves `order` able to reach `goals`.
+
+        As long as something can still happen by itself, a start that needs a device to be slow is not taken.
+        """
+        if self.eagerly(after, published, goals, order):
+            return True
+        return not self._everything(before) and self.exactly(after, published, goals, _now(order, ticks), ticks)
+
+    def tightened(self, state: State, goals: Iterable[str], plan: Plan) -> Plan:
+        """`plan` with every start as early as it can be in an eager environment, or as it is if that takes longer."""
+        order = tuple(name for _, name in plan.starts)
+        root = _Node(state, state, self._missing(frozenset(goals), state), order, ())
+        ticks = self._search(root, in_order=False, longest=len(plan.ticks))
+        return plan if ticks is None else replace(plan, ticks=ticks)
+
+    def _search(self, root: _Node, in_order: bool, longest: int | None) -> tuple[PlanTick, ...] | None:
+        """Depth-first over starting now, the earliest of the order first, or waiting a tick."""
+        reached: dict[object, int] = {}
+        pending = [root]
+        outputs = sorted(self.automaton.outputs)
+        for _ in range(LOOKAHEAD):
+            if not pending:
+                return None
+            node = pending.pop()
+            if not node.goals and (in_order or not node.order):
+                return node.ticks  # in order, what is left of it has become needless
+            published = tuple(node.published[name] for name in outputs)
+            key = (bool(node.ticks), tuple(node.state.values()), published, node.order, node.goals)
+            if reached.get(key, len(node.ticks) + 1) <= len(node.ticks):
+                continue
+            reached[key] = len(node.ticks)
+            if longest is None or len(node.ticks) < longest:
+                pending.append(self._waited(node))
+            if node.ticks:
+                pending.extend(reversed(self._starts(node, in_order)))
+        return None
+
+    def _waited(self, node: _Node) -> _Node:
+        effects = self._everything(node.state)
+        later = self._settled(apply_effects(node.state, effects) or node.state)
+        tick = PlanTick(tuple(effect.name for effect in effects), ())
+        return _Node(later, node.state, self._missing(node.goals, later), node.order, (*node.ticks, tick))
+
+    def _starts(self, node: _Node, in_order: bool) -> list[_Node]:
+        nodes: list[_Node] = []
+        for name in node.order[:1] if in_order else dict.fromkeys(node.order):
+            if name in node.ticks[-1].starts:
+                continue  # an ability starts once in a tick
+            after = self._started(node.published, node.state, (name,))
+            if after is not None:
+                index = node.order.index(name)
+                last = node.ticks[-1]
+                ticks = (*node.ticks[:-1], PlanTick(last.effects, (*last.starts, name)))
+                order = node.order[:index] + node.order[index + 1 :]
+                nodes.append(_Node(after, node.published, node.goals, order, ticks))
+        return nodes
+
+    def _started(self, published: State, state: State, names: Iterable[str]) -> State | None:
+        for name in names:
+            ability = self.automaton.abilities[name]
+            after = supervised_start(self.automaton, self.supervisor, published, state, ability)
+            if after is None:
+                return None
+            state = after
+        return state
+
+    def _settled(self, sensed: State) -> State:
+        """Steps 2 and 3."""
+        return synchronise(self.automaton, finish(self.automaton, sensed).state)
+
+    def _everything(self, state: State) -> list[Effect]:
+        """A largest set of compatible effects enabled in `state`, earlier ones first; faults are not counted on."""
+        chosen: list[Effect] = []
+        together: dict[str, Value] = {}
+        for effect in self.automaton.effects:
+            written = None if effect.fault else effect_writes(effect, state)
+            if not written or all(state[name] == value for name, value in written.items()):
+                continue
+            if all(together.get(name, value) == value for name, value in written.items()):
+                chosen.append(effect)
+                together |= written
+        return chosen
+
+    def _missing(self, goals: frozenset[str], state: State) -> frozenset[str]:
+        """The operations of `goals` whose goal does not hold in `state`, one after step 3."""
+        operations = self.automaton.operations
+        return frozenset(name for name in goals if not holds(operations[name].goal, state))
+
+
+def _now(order: Sequence[str], ticks: Sequence[PlanTick]) -> Sequence[str]:
+    """The starts of `order` that belong into the tick under way: all but those of `ticks`."""
+    return order[: len(order) - sum(len(tick.starts) for tick in ticks)]

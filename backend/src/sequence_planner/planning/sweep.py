@@ -1,0 +1,91 @@
+"""The order in which a planned tick tries its starts.
+
+Several abilities can start in one tick, in any order. One fixed order suffices as long as each pair whose order matters
+stands in it the right way round: adjacent starts that commute can be exchanged until the fixed order is reached. Which
+pairs do not commute is asked of the solver, over all safe states. Where they demand a circle, its members are repeated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Set
+from graphlib import TopologicalSorter
+from itertools import permutations
+
+from pysat.solvers import Solver
+
+from sequence_planner.automaton.cone import read_variables
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Ability, Automaton, target
+from sequence_planner.planning.circuit import Circuit
+from sequence_planner.planning.encoding import Encoding
+
+
+def sweep_order(automaton: Automaton, supervisor: Supervisor) -> tuple[Ability, ...]:
+    """An order of the abilities, with repetitions if need be, of which every possible order of starts is a part."""
+    abilities = [ability for ability in automaton.abilities.values() if not ability.restart]
+    before: dict[str, set[str]] = {ability.name: set() for ability in abilities}
+    for first, second in permutations(abilities, 2):
+        touching = _touches(automaton, supervisor, first, second) or _touches(automaton, supervisor, second, first)
+        if touching and _order_matters(automaton, supervisor, first, second):
+            before[second.name].add(first.name)
+    return tuple(automaton.abilities[name] for name in _linear(before))
+
+
+def _linear(before: Mapping[str, Set[str]]) -> Iterator[str]:
+    """Every name after those that must stand before it; the n members of a circle are repeated n times.
+
+    Any order of n different starts is a part of n repetitions of them all.
+    """
+    above = {name: _above(name, before) for name in before}
+    circles = {
+        name: tuple(other for other in before if other == name or (other in above[name] and name in above[other]))
+        for name in before
+    }
+    order = TopologicalSorter[tuple[str, ...]]()
+    for name in before:
+        earlier = (circles[other] for other in before if other in above[name] and name not in above[other])
+        order.add(circles[name], *earlier)
+    for circle in order.static_order():
+        yield from circle * len(circle)
+
+
+def _above(name: str, before: Mapping[str, Set[str]]) -> Set[str]:
+    """All that must stand before `name`, directly or not."""
+    found: set[str] = set()
+    pending = [name]
+    while pending:
+        new = before[pending.pop()] - found
+        found |= new
+        pending.extend(new)
+    return found
+
+
+def _touches(automaton: Automaton, supervisor: Supervisor, one: Ability, other: Ability) -> bool:
+    """Whether `one` writes something that `other` reads or writes."""
+    written = {target(action) for action in one.start_actions}
+    used = set(read_variables(automaton, (other.enabled, other.start_guard)))
+    for action in other.start_actions:
+        condition = () if action.condition is None else (action.condition,)
+        used |= {target(action), *read_variables(automaton, (action.value, *condition))}
+    if (guard := supervisor.guards.get(other.name)) is not None:
+        used |= set(guard.names)
+    return bool(written & used)
+
+
+def _order_matters(automaton: Automaton, supervisor: Supervisor, first: Ability, second: Ability) -> bool:
+    """Whether in some safe state `first` then `second` can start, and the other way round not, or differently."""
+    with Solver("minisat22") as solver:
+        circuit = Circuit(solver)
+        encoding = Encoding(automaton, supervisor, circuit, frozenset())
+        state = encoding.initial(frozenset(), synchronised=True)
+        published = encoding.initial(frozenset(), synchronised=True)
+        first_now, between = encoding.start(first, state, published, circuit.TRUE)
+        second_then, end = encoding.start(second, between, published, circuit.TRUE)
+        second_now, between_other = encoding.start(second, state, published, circuit.TRUE)
+        first_then, end_other = encoding.start(first, between_other, published, circuit.TRUE)
+        same = [encoding.reading.same(end[name], end_other[name]) for name in automaton.variables]
+        exchangeable = circuit.conjunction((second_now, first_then, *same))
+        circuit.require(encoding.safe(state))
+        for demanded in (first_now, second_then, -exchangeable):
+            circuit.require(demanded)
+        return bool(solver.solve())

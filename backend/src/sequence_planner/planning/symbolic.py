@@ -1,0 +1,169 @@
+"""States whose values are literals, and expressions over them with three truth values.
+
+A variable is a literal for each of its values; none of them is true while it is unknown. A predicate is two literals:
+that it is true for certain, and that it is false for certain. Where nothing is unknown, one is the other's negation,
+and the circuit makes them one gate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+
+from sequence_planner.automaton.state_set import StateSet, Table
+from sequence_planner.expressions.evaluation import RELATIONS
+from sequence_planner.expressions.syntax import (
+    And,
+    Arithmetic,
+    Comparison,
+    Constant,
+    Expression,
+    Implies,
+    Membership,
+    Name,
+    Not,
+    Or,
+    Variable,
+)
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.circuit import Circuit
+
+
+@dataclass(frozen=True)
+class Symbol:
+    """A value that a solver decides: a literal for each possible value, and one that says it is known."""
+
+    literals: Mapping[Value, int]
+    known: int = Circuit.TRUE
+
+    def literal(self, value: Value) -> int:
+        """The literal that is true when the value is `value`."""
+        return self.literals.get(value, Circuit.FALSE)
+
+
+@dataclass(frozen=True)
+class Truth:
+    """Literals for *true for certain* and *false for certain*."""
+
+    yes: int
+    no: int
+
+
+SymbolicState = Mapping[str, Symbol]
+
+
+class Reading:
+    """Reads expressions over symbolic states into a circuit."""
+
+    def __init__(self, circuit: Circuit) -> None:
+        self._circuit = circuit
+
+    def truth(self, expression: Expression, state: SymbolicState) -> Truth:
+        """A resolved predicate over `state`."""
+        circuit = self._circuit
+        match expression:
+            case Constant(value):
+                return Truth(circuit.TRUE, circuit.FALSE) if value else Truth(circuit.FALSE, circuit.TRUE)
+            case Variable(name):
+                return Truth(state[name].literal(True), state[name].literal(False))
+            case Not(operand):
+                inner = self.truth(operand, state)
+                return Truth(inner.no, inner.yes)
+            case And(operands):
+                return self._all([self.truth(part, state) for part in operands])
+            case Or(operands):
+                return self._any([self.truth(part, state) for part in operands])
+            case Implies(left, right):
+                premise = self.truth(left, state)
+                return self._any([Truth(premise.no, premise.yes), self.truth(right, state)])
+            case Comparison(relation, left, right):
+                return self._comparison(relation, self.symbol(left, state), self.symbol(right, state))
+            case Membership(left, options):
+                subject = self.symbol(left, state)
+                return self._any([self._comparison("==", subject, self.symbol(o, state)) for o in options])
+            case Arithmetic() | Name():
+                raise TypeError(f"{expression} is no predicate")
+
+    def symbol(self, expression: Expression, state: SymbolicState) -> Symbol:
+        """The value of a resolved expression over `state`."""
+        match expression:
+            case Constant(value):
+                return Symbol({value: Circuit.TRUE})
+            case Variable(name):
+                return state[name]
+            case Arithmetic(sign, left, right):
+                return self._arithmetic(sign, self.symbol(left, state), self.symbol(right, state))
+            case _:
+                truth = self.truth(expression, state)
+                return Symbol({True: truth.yes, False: truth.no}, self._circuit.disjunction((truth.yes, truth.no)))
+
+    def chosen(self, condition: int, then: Symbol, otherwise: Symbol) -> Symbol:
+        """The value `then` where `condition` is true, else `otherwise`."""
+        circuit = self._circuit
+        values = dict.fromkeys((*otherwise.literals, *then.literals))
+        if set(values) == {True, False} and then.known == otherwise.known == circuit.TRUE:
+            literal = circuit.choice(condition, then.literal(True), otherwise.literal(True))
+            return Symbol({True: literal, False: -literal})
+        return Symbol(
+            {v: circuit.choice(condition, then.literal(v), otherwise.literal(v)) for v in values},
+            circuit.choice(condition, then.known, otherwise.known),
+        )
+
+    def same(self, one: Symbol, other: Symbol) -> int:
+        """The literal that is true when both are known and equal."""
+        if one == other and one.known == Circuit.TRUE:
+            return Circuit.TRUE
+        return self._comparison("==", one, other).yes
+
+    def member(self, states: StateSet, state: SymbolicState) -> int:
+        """The literal that is true when `state` is in `states`, none of whose variables is unknown."""
+        memo: dict[tuple[int, bytes], int] = {}
+
+        def gate(axis: int, table: Table) -> int:
+            if table.all():
+                return Circuit.TRUE
+            if not table.any():
+                return Circuit.FALSE
+            key = (axis, table.tobytes())
+            if key not in memo:
+                symbol = state[states.names[axis]]
+                branches = [gate(axis + 1, table[i]) for i in range(len(states.domains[axis]))]
+                if len(set(branches)) == 1:
+                    memo[key] = branches[0]
+                else:
+                    pairs = zip(states.domains[axis], branches, strict=True)
+                    memo[key] = self._circuit.disjunction(
+                        self._circuit.conjunction((symbol.literal(value), branch)) for value, branch in pairs
+                    )
+            return memo[key]
+
+        return gate(0, states.table)
+
+    def _all(self, truths: list[Truth]) -> Truth:
+        yes = self._circuit.conjunction(truth.yes for truth in truths)
+        return Truth(yes, self._circuit.disjunction(truth.no for truth in truths))
+
+    def _any(self, truths: list[Truth]) -> Truth:
+        yes = self._circuit.disjunction(truth.yes for truth in truths)
+        return Truth(yes, self._circuit.conjunction(truth.no for truth in truths))
+
+    def _comparison(self, relation: str, left: Symbol, right: Symbol) -> Truth:
+        if relation == "!=":
+            equal = self._comparison("==", left, right)
+            return Truth(equal.no, equal.yes)
+        holds = RELATIONS[relation]
+        yes = self._circuit.disjunction(
+            self._circuit.conjunction((a, b))
+            for (value, a), (other, b) in product(left.literals.items(), right.literals.items())
+            if holds(value, other)
+        )
+        return Truth(yes, self._circuit.conjunction((left.known, right.known, -yes)))
+
+    def _arithmetic(self, sign: str, left: Symbol, right: Symbol) -> Symbol:
+        sums: dict[Value, list[int]] = {}
+        for (value, a), (other, b) in product(left.literals.items(), right.literals.items()):
+            total = int(value) + int(other) if sign == "+" else int(value) - int(other)
+            sums.setdefault(total, []).append(self._circuit.conjunction((a, b)))
+        known = self._circuit.conjunction((left.known, right.known))
+        return Symbol({total: self._circuit.disjunction(parts) for total, parts in sums.items()}, known)

@@ -1,0 +1,49 @@
+"""The planner in a process of its own: requests in, answers out, over a pipe. It can be killed at any time."""
+
+from __future__ import annotations
+
+import signal
+import traceback
+from enum import Enum, auto
+from multiprocessing.connection import Connection
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.lifeline import end_without_parent
+from sequence_planner.planning.plan import PlanAnswer, PlanRequest
+from sequence_planner.planning.planner import Planner, PlannerError
+
+
+class Ready(Enum):
+    """The first word of a planner's process: from now on it answers."""
+
+    READY = auto()
+
+
+# What comes from the process; a text says why there is no answer.
+Word = Ready | PlanAnswer | str
+
+
+def work(connection: Connection, automaton: Automaton, supervisor: Supervisor) -> None:
+    """Answer each `PlanRequest` with a `PlanAnswer`, or with the text of an error, until the other end is closed.
+
+    After an error that nobody thought of, the process ends: what it has learnt could be wrong.
+    """
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
+    end_without_parent()
+    planner = Planner(automaton, supervisor)
+    try:
+        connection.send(Ready.READY)
+        while True:
+            request: PlanRequest = connection.recv()
+            try:
+                word: Word = planner.answer(request)
+            except PlannerError as error:
+                word = str(error)
+            except Exception as error:
+                traceback.print_exc()
+                connection.send(f"the planner failed ({type(error).__name__}: {error})")
+                return
+            connection.send(word)
+    except (EOFError, ConnectionError):
+        return  # whoever asked is gone

@@ -1,0 +1,158 @@
+"""ROS 2 without a ROS installation: the transport over cyclonedds from PyPI.
+
+To its peers it is an ordinary ROS 2 node. It uses ROS 2's names, policies and user data, so topics work both ways with
+rmw_cyclonedds, rmw_fastrtps and anything else that speaks DDS; the bytes are made and read above, by the registry.
+"""
+
+from __future__ import annotations
+
+import asyncio
+from dataclasses import dataclass
+
+from cyclonedds.core import DDSException
+from cyclonedds.pub import DataWriter
+from cyclonedds.qos import Qos
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+
+from sequence_planner.ros import discovery_info, environment, names
+from sequence_planner.ros.cyclone_graph import Discovery
+from sequence_planner.ros.cyclone_network import join, release
+from sequence_planner.ros.cyclone_qos import endpoint_qos
+from sequence_planner.ros.cyclone_receiver import Receiver
+from sequence_planner.ros.cyclone_types import RawSample, raw_types
+from sequence_planner.ros.delivery import Delivery
+from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.transport import Endpoint, OnBatch, QualityOfService, TransportError
+
+
+@dataclass(frozen=True)
+class _Publisher:
+    writer: DataWriter[RawSample]
+    raw: type[RawSample]
+    type_name: str
+    qos: QualityOfService
+
+
+class CycloneTransport:
+    """One DDS participant that is one ROS 2 node."""
+
+    name = "cyclonedds"
+
+    def __init__(
+        self,
+        registry: MessageRegistry,
+        node_name: str,
+        loop: asyncio.AbstractEventLoop,
+        domain_id: int | None = None,
+    ) -> None:
+        """Join the domain; raises TransportError when that cannot be done and ValueError for a bad node name."""
+        names.check_node_name(node_name)
+        self._registry = registry
+        self._loop = loop
+        self._raw = raw_types(registry)
+        self._topics: dict[tuple[str, str], Topic[RawSample]] = {}
+        self._publishers: dict[str, _Publisher] = {}
+        self._readers: list[tuple[DataReader[RawSample], Delivery]] = []
+        self._closed = False
+        domain = environment.domain_id(domain_id)
+        self._domain, self._participant = join(domain, environment.discovery_range())
+        raw = self._raw(discovery_info.TYPE_NAME)
+        try:
+            self._discovery = Discovery(self._participant, registry, raw, node_name)
+            self._receiver = Receiver(self._participant, f"dds-{node_name}")
+        except DDSException as error:
+            release(self._participant)
+            raise TransportError(f"DDS cannot start on domain {domain}: {error}") from error
+        self._announce()
+
+    def advertise(self, topic: str, type_name: str, qos: QualityOfService) -> None:
+        """Announce a publisher; see `Transport.advertise`."""
+        known = self._publishers.get(topic)
+        if known is not None:
+            if (known.type_name, known.qos) != (type_name, qos):
+                raise TransportError(f"{topic} is already advertised as {known.type_name}, {known.qos}")
+            return
+        dds_topic = self._topic(topic, type_name)
+        try:
+            writer = DataWriter(self._participant, dds_topic, self._qos(type_name, qos))
+        except DDSException as error:
+            raise TransportError(f"DDS cannot advertise {topic}: {error}") from error
+        self._publishers[topic] = _Publisher(writer, self._raw(type_name), type_name, qos)
+        self._announce()
+
+    def publish(self, topic: str, type_name: str, data: bytes) -> None:
+        """Send bytes; see `Transport.publish`."""
+        publisher = self._publishers.get(topic)
+        if publisher is None or publisher.type_name != type_name:
+            raise TransportError(f"{topic} has not been advertised as {type_name}")
+        try:
+            publisher.writer.write(publisher.raw(data))
+        except DDSException as error:
+            raise TransportError(f"DDS cannot publish on {topic}: {error}") from error
+
+    def subscribe(self, topic: str, type_name: str, qos: QualityOfService, on_batch: OnBatch) -> None:
+        """Receive batches; see `Transport.subscribe`."""
+        dds_topic = self._topic(topic, type_name)
+        try:
+            reader = DataReader(self._participant, dds_topic, self._qos(type_name, qos))
+        except DDSException as error:
+            raise TransportError(f"DDS cannot subscribe to {topic}: {error}") from error
+        delivery = Delivery(self._loop, topic, on_batch)
+        self._readers.append((reader, delivery))
+        self._receiver.add(topic, reader, delivery)
+        self._announce()
+
+    def graph(self) -> list[Endpoint]:
+        """Return all endpoints; see `Transport.graph`."""
+        self._check_open()
+        return self._discovery.endpoints()
+
+    def close(self) -> None:
+        """Leave the domain; see `Transport.close`."""
+        if self._closed:
+            return
+        self._closed = True
+        for _, delivery in self._readers:
+            delivery.close()
+        self._receiver.close()
+        self._discovery.close()
+        for entity in (
+            *(reader for reader, _ in self._readers),
+            *(publisher.writer for publisher in self._publishers.values()),
+            *self._topics.values(),
+            self._participant,
+        ):
+            release(entity)
+        self._readers.clear()
+        self._publishers.clear()
+        self._topics.clear()
+        self._domain = None
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise TransportError("the transport is closed")
+
+    def _topic(self, topic: str, type_name: str) -> Topic[RawSample]:
+        """Return the DDS topic, made on first use: one participant may have it once."""
+        self._check_open()
+        key = (names.dds_topic(topic), type_name)
+        if key not in self._topics:
+            raw = self._raw(type_name)
+            try:
+                self._topics[key] = Topic(self._participant, key[0], raw)
+            except DDSException as error:
+                raise TransportError(f"DDS refuses {topic} as {type_name}: {error}") from error
+        return self._topics[key]
+
+    def _qos(self, type_name: str, qos: QualityOfService) -> Qos:
+        return endpoint_qos(qos, names.type_hash_user_data(self._registry.type_hash(type_name)))
+
+    def _announce(self) -> None:
+        try:
+            self._discovery.announce(
+                [reader.guid for reader, _ in self._readers],
+                [publisher.writer.guid for publisher in self._publishers.values()],
+            )
+        except DDSException as error:
+            raise TransportError(f"DDS cannot announce this node: {error}") from error

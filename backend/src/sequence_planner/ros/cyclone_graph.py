@@ -1,0 +1,114 @@
+"""Who is on the DDS network.
+
+DDS announces every endpoint with its topic, type and policies on built-in topics, and `discovery_info` says to which
+node it belongs. We publish that too, which makes this process a node that `ros2 node list` shows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from uuid import UUID
+
+import structlog
+from cyclonedds.builtin import (
+    BuiltinDataReader,
+    BuiltinTopicDcpsPublication,
+    BuiltinTopicDcpsSubscription,
+    DcpsEndpoint,
+)
+from cyclonedds.core import InstanceState
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.pub import DataWriter
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
+
+from sequence_planner.ros import discovery_info, names
+from sequence_planner.ros.cyclone_network import release
+from sequence_planner.ros.cyclone_qos import discovery_qos, is_reliable, is_transient_local, user_data
+from sequence_planner.ros.cyclone_receiver import take_all
+from sequence_planner.ros.cyclone_types import RawSample
+from sequence_planner.ros.messages import MalformedMessageError, MessageRegistry
+from sequence_planner.ros.transport import Direction, Endpoint
+
+_log = structlog.get_logger(__name__)
+
+_CHUNK = 256
+
+
+class Discovery:
+    """The endpoints and nodes of one domain, as seen by one participant, and this participant as others see it."""
+
+    def __init__(
+        self, participant: DomainParticipant, registry: MessageRegistry, raw: type[RawSample], node_name: str
+    ) -> None:
+        self._registry = registry
+        self._raw = raw
+        self._node_name = node_name
+        self._own = participant.guid
+        self._builtin: dict[Direction, BuiltinDataReader] = {
+            "publisher": BuiltinDataReader(participant, BuiltinTopicDcpsPublication),
+            "subscriber": BuiltinDataReader(participant, BuiltinTopicDcpsSubscription),
+        }
+        self._known: dict[Direction, dict[UUID, DcpsEndpoint]] = {"publisher": {}, "subscriber": {}}
+        self._nodes: dict[UUID, dict[UUID, str]] = {}  # participant -> endpoint -> node
+        self._topic = Topic(participant, discovery_info.TOPIC, raw)
+        self._reader = DataReader(participant, self._topic, discovery_qos(reader=True))
+        self._writer = DataWriter(participant, self._topic, discovery_qos(reader=False))
+
+    def announce(self, readers: Iterable[UUID], writers: Iterable[UUID]) -> None:
+        """Tell the network that these endpoints belong to this participant's node."""
+        note = discovery_info.encode(self._registry, self._own, self._node_name, readers, writers)
+        self._writer.write(self._raw(note))
+
+    def endpoints(self) -> list[Endpoint]:
+        """Return the endpoints of ROS 2 topics that are on the network now."""
+        for direction in self._known:
+            self._refresh(direction)
+        self._refresh_nodes()
+        return [
+            self._endpoint(topic, direction, seen)
+            for direction, known in self._known.items()
+            for seen in known.values()
+            if (topic := names.ros_topic(seen.topic_name)) is not None
+        ]
+
+    def close(self) -> None:
+        """Delete the entities of discovery."""
+        for entity in (*self._builtin.values(), self._reader, self._writer, self._topic):
+            release(entity)
+
+    def _endpoint(self, topic: str, direction: Direction, seen: DcpsEndpoint) -> Endpoint:
+        return Endpoint(
+            topic=topic,
+            type_name=names.ros_type(seen.type_name),
+            direction=direction,
+            own=seen.participant_key == self._own,
+            type_hash=names.type_hash_of(user_data(seen.qos)),
+            node=self._nodes.get(seen.participant_key, {}).get(seen.key),
+            reliable=is_reliable(seen.qos),
+            transient_local=is_transient_local(seen.qos),
+        )
+
+    def _refresh(self, direction: Direction) -> None:
+        """Take the announcements that have come since the last time."""
+        known, reader = self._known[direction], self._builtin[direction]
+        while True:
+            taken = reader.take(_CHUNK)
+            for seen in taken:
+                if seen.sample_info.valid_data and seen.sample_info.instance_state == InstanceState.Alive:
+                    known[seen.key] = seen
+                else:
+                    known.pop(seen.key, None)
+            if len(taken) < _CHUNK:
+                return
+
+    def _refresh_nodes(self) -> None:
+        for sample in take_all(self._reader):
+            try:
+                participant, nodes = discovery_info.decode(self._registry, sample.data)
+            except MalformedMessageError as error:
+                _log.debug("a participant announces its nodes in a form unknown here", reason=str(error))
+                continue
+            self._nodes[participant] = nodes
+        present = {seen.participant_key for known in self._known.values() for seen in known.values()}
+        self._nodes = {participant: nodes for participant, nodes in self._nodes.items() if participant in present}

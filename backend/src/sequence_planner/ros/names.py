@@ -1,0 +1,70 @@
+"""How ROS 2 writes its names into DDS.
+
+DDS knows topics and types by strings. ROS 2 prefixes a topic with `rt`, puts a type into the C++ namespace its
+generated code has there, and hangs what DDS has no place for (type hashes, enclaves) on an entity's user data.
+
+>>> dds_topic("/robot/state"), dds_type("std_msgs/msg/String")
+('rt/robot/state', 'std_msgs::msg::dds_::String_')
+"""
+
+from __future__ import annotations
+
+import re
+
+_TOPIC = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
+_NODE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_DDS_TYPE = re.compile(r"(?P<package>\w+)::(?P<kind>msg|srv|action)::dds_::(?P<name>\w+)_")
+_TYPE_HASH = re.compile(rb"(?:^|;)typehash=(RIHS01_[0-9a-f]{64});")
+
+#: Marks a topic of ROS 2 (services have `rq` and `rr`).
+TOPIC_PREFIX = "rt"
+
+
+def check_topic(topic: str) -> str:
+    """Return `topic`; raises ValueError unless it is an absolute ROS 2 topic name such as `/robot/state`."""
+    if not _TOPIC.fullmatch(topic) or "__" in topic:
+        raise ValueError(
+            f"{topic!r} is not a topic name: write it absolute, as in /robot/state, "
+            "of letters, digits and single underscores, no part beginning with a digit"
+        )
+    return topic
+
+
+def check_node_name(name: str) -> str:
+    """Return `name`; raises ValueError unless ROS 2 accepts it as a node's name."""
+    if not _NODE.fullmatch(name):
+        raise ValueError(f"{name!r} is not a node name: use letters, digits and underscores, as in truck_station")
+    return name
+
+
+def dds_topic(topic: str) -> str:
+    """Return the DDS topic of the ROS 2 topic `topic`; raises ValueError for a bad name."""
+    return TOPIC_PREFIX + check_topic(topic)
+
+
+def ros_topic(dds_name: str) -> str | None:
+    """Return the ROS 2 topic of the DDS topic `dds_name`, or None when it is not one (a service, plain DDS)."""
+    return dds_name.removeprefix(TOPIC_PREFIX) if dds_name.startswith(f"{TOPIC_PREFIX}/") else None
+
+
+def dds_type(type_name: str) -> str:
+    """Return the DDS name of the ROS 2 type `type_name`, which is written `package/msg/Name`."""
+    package, kind, name = type_name.split("/")
+    return f"{package}::{kind}::dds_::{name}_"
+
+
+def ros_type(dds_name: str) -> str:
+    """Return the ROS 2 name of the DDS type `dds_name`, or `dds_name` itself when ROS 2 did not make it."""
+    match = _DDS_TYPE.fullmatch(dds_name)
+    return "/".join(match.group("package", "kind", "name")) if match else dds_name
+
+
+def type_hash_user_data(type_hash: str) -> bytes:
+    """Return the user data by which an endpoint tells its peers the hash of its type."""
+    return f"typehash={type_hash};".encode()
+
+
+def type_hash_of(user_data: bytes) -> str | None:
+    """Return the type hash found in the user data of an endpoint, or None when it does not say."""
+    match = _TYPE_HASH.search(user_data)
+    return match.group(1).decode() if match else None

@@ -1,0 +1,151 @@
+"""The server's end of the local socket to the controller.
+
+The server holds no state of the station: it knows the last view it was sent, and when. As soon as the controller has
+been silent for two seconds that view is old, and nobody is shown it any more. The client connects for ever, so either
+process may be started, killed and started again in any order.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import itertools
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import structlog
+from pydantic import ValidationError
+
+from sequence_planner.control.commands import Command, CommandRefused
+from sequence_planner.control.lines import read_lines
+from sequence_planner.control.link_messages import (
+    FROM_CONTROLLER,
+    LONGEST_VIEW,
+    CommandMessage,
+    Refusal,
+    Reply,
+    ViewMessage,
+    encode,
+)
+from sequence_planner.control.view import StationView
+
+LOG = structlog.get_logger(__name__)
+SILENCE = 2.0  # seconds without a view after which the controller counts as lost
+FIRST_WAIT, LONGEST_WAIT = 0.05, 1.0  # seconds between attempts to connect
+REPLY_DEADLINE = 5.0  # seconds
+
+
+class ControllerClient:
+    """What is known of the controller, and the way to command it; `run` keeps it connected."""
+
+    def __init__(
+        self,
+        path: Path,
+        *,
+        clock: Callable[[], float] = time.monotonic,
+        reply_deadline: float = REPLY_DEADLINE,
+    ) -> None:
+        self.path = path
+        self.view: StationView | None = None
+        self.last_heard: float | None = None  # seconds, on `clock`
+        self._clock = clock
+        self._reply_deadline = reply_deadline
+        self._listeners: list[Callable[[StationView], None]] = []
+        self._writer: asyncio.StreamWriter | None = None
+        self._numbers = itertools.count(1)
+        self._awaited: dict[int, asyncio.Future[Refusal | None]] = {}
+
+    @property
+    def connected(self) -> bool:
+        """Whether there is a connection; a controller that hangs keeps its own."""
+        return self._writer is not None
+
+    @property
+    def heard(self) -> bool:
+        """Whether a view came within the last two seconds."""
+        return self.last_heard is not None and self._clock() - self.last_heard <= SILENCE
+
+    def listen(self, listener: Callable[[StationView], None]) -> None:
+        """Call `listener` with each view as it arrives; it must not block."""
+        self._listeners.append(listener)
+
+    async def run(self) -> None:
+        """Stay connected until cancelled."""
+        wait = FIRST_WAIT
+        while True:
+            try:
+                reader, self._writer = await asyncio.open_unix_connection(str(self.path))
+                await self._receive(reader)
+                wait = FIRST_WAIT
+            except OSError:
+                pass  # not there yet, or gone: nothing to do but to try again
+            except Exception:  # else nobody would ever hear the controller again
+                LOG.exception("a message of the controller cannot be dealt with")
+            finally:
+                self._forget_connection()
+            await asyncio.sleep(wait)
+            wait = min(2 * wait, LONGEST_WAIT)
+
+    async def send(self, command: Command) -> None:
+        """Have `command` carried out; returns when it was.
+
+        Raises `CommandRefused`: with the controller's own words, `controller-unavailable` (503) when it was never
+        sent, `controller-no-answer` (504) when it is not known what became of it.
+        """
+        writer = self._writer
+        if writer is None:
+            raise CommandRefused(
+                "controller-unavailable",
+                "The controller is not there",
+                "The command was not sent. Start the controller, then try again.",
+                503,
+            )
+        number = next(self._numbers)
+        answer: asyncio.Future[Refusal | None] = asyncio.get_running_loop().create_future()
+        self._awaited[number] = answer
+        expires = time.monotonic() + self._reply_deadline
+        try:
+            async with asyncio.timeout(self._reply_deadline):
+                writer.write(encode(CommandMessage(id=number, command=command, expires=expires)))
+                await writer.drain()
+                refusal = await answer
+        except (TimeoutError, ConnectionError) as error:
+            raise CommandRefused(
+                "controller-no-answer",
+                "The controller did not answer",
+                "It is not known whether the command was carried out: look at the station before trying again.",
+                504,
+            ) from error
+        finally:
+            self._awaited.pop(number, None)
+        if refusal is not None:
+            raise refusal.error()
+
+    async def _receive(self, reader: asyncio.StreamReader) -> None:
+        async for line in read_lines(reader, LONGEST_VIEW):
+            try:
+                message = FROM_CONTROLLER.validate_json(line or b"")
+            except ValidationError as error:
+                LOG.warning("a line of the controller cannot be read", errors=error.error_count())
+                continue
+            if isinstance(message, ViewMessage):
+                self.view, self.last_heard = message.view, self._clock()
+                for listener in self._listeners:
+                    listener(message.view)
+            else:
+                self._answered(message)
+
+    def _answered(self, reply: Reply) -> None:
+        answer = None if reply.id is None else self._awaited.get(reply.id)
+        if answer is not None and not answer.done():
+            answer.set_result(None if reply.ok else reply.problem)
+
+    def _forget_connection(self) -> None:
+        if self._writer is not None:
+            with contextlib.suppress(OSError):
+                self._writer.close()
+        self._writer = None
+        for answer in self._awaited.values():
+            if not answer.done():
+                answer.set_exception(ConnectionResetError("the controller went away"))

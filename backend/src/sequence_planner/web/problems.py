@@ -1,0 +1,141 @@
+"""Every refusal is a problem document (RFC 9457): the same members, a stable `type`, and words for a person.
+
+`type` is a reference below `/problems/` and never changes once it is published; a client decides by it. `detail` is
+for reading. A document never shows a stack trace: what went wrong inside is written in the server's log.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+
+import structlog
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from pydantic import BaseModel
+from starlette.exceptions import HTTPException
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from sequence_planner.control.commands import CommandRefused
+
+LOG = structlog.get_logger(__name__)
+MEDIA_TYPE = "application/problem+json"
+
+SLUGS = {
+    400: "bad-request",
+    404: "not-found",
+    405: "method-not-allowed",
+    413: "body-too-large",
+    500: "internal-error",
+}
+DETAILS = {
+    404: "There is nothing at this address.",
+    405: "This address does not know the method; the header Allow names those it knows.",
+}
+
+
+class FieldError(BaseModel):
+    """One place in a request that is not as it must be, e.g. `body.mode`, and what was expected there."""
+
+    field: str
+    expected: str
+
+
+class Problem(BaseModel):
+    """Why a request was refused. `errors` is empty unless `type` is `/problems/invalid-request`."""
+
+    type: str
+    title: str
+    status: int
+    detail: str
+    errors: list[FieldError]
+
+
+class ProblemFound(HTTPException):
+    """Raised anywhere in a request to answer it with a problem."""
+
+    def __init__(self, status: int, slug: str, title: str, detail: str) -> None:
+        super().__init__(status, detail)
+        self.slug = slug
+        self.title = title
+
+
+def problem_response(
+    status: int,
+    slug: str,
+    title: str,
+    detail: str,
+    *,
+    errors: Sequence[FieldError] = (),
+    headers: Mapping[str, str] | None = None,
+) -> Response:
+    """The answer that carries a problem."""
+    problem = Problem(type=f"/problems/{slug}", title=title, status=status, detail=detail, errors=list(errors))
+    # In ASCII: a name that came with the request may hold what UTF-8 cannot write, such as half a surrogate pair.
+    body = json.dumps(problem.model_dump(), ensure_ascii=True)
+    kept = {"Cache-Control": "no-store", **(headers or {})}
+    return Response(body, status_code=status, media_type=MEDIA_TYPE, headers=kept)
+
+
+def install(app: FastAPI) -> None:
+    """Let `app` answer every refusal and every failure with a problem."""
+    app.add_exception_handler(HTTPException, _http)
+    app.add_exception_handler(RequestValidationError, _invalid)
+    app.add_exception_handler(CommandRefused, _refused)
+
+
+async def _http(request: Request, error: Exception) -> Response:
+    assert isinstance(error, HTTPException)
+    if isinstance(error, ProblemFound):
+        return problem_response(error.status_code, error.slug, error.title, error.detail)
+    status = error.status_code
+    title = HTTPStatus(status).phrase
+    detail = DETAILS.get(status, str(error.detail))
+    return problem_response(status, SLUGS.get(status, "refused"), title, detail, headers=error.headers)
+
+
+async def _invalid(request: Request, error: Exception) -> Response:
+    assert isinstance(error, RequestValidationError)
+    found = error.errors()
+    if any(each["type"] == "json_invalid" for each in found):
+        position = found[0]["loc"][-1]
+        detail = f"The body is not JSON: {found[0]['ctx']['error']} at character {position}."
+        return problem_response(400, "malformed-json", "The body is not JSON", detail)
+    errors = [FieldError(field=".".join(map(str, each["loc"])), expected=each["msg"]) for each in found]
+    detail = "; ".join(f"{each.field}: {each.expected}" for each in errors[:5])
+    return problem_response(422, "invalid-request", "The request is not as expected", detail, errors=errors)
+
+
+async def _refused(request: Request, error: Exception) -> Response:
+    assert isinstance(error, CommandRefused)
+    return problem_response(error.status, error.slug, error.title, error.detail)
+
+
+class LastResort:
+    """Answers with a problem when something inside failed, and writes the error to the log."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request."""
+        if scope["type"] != "http":
+            await self.app(scope, receive, send)
+            return
+        started = False
+
+        async def watch(message: Message) -> None:
+            nonlocal started
+            started = started or message["type"] == "http.response.start"
+            await send(message)
+
+        try:
+            await self.app(scope, receive, watch)
+        except Exception:
+            LOG.exception("a request failed", path=scope["path"])
+            if started:
+                raise  # too late for another answer: the connection is cut
+            detail = "The server met an error of its own; it is written in the server's log."
+            response = problem_response(500, SLUGS[500], "Internal error", detail)
+            await response(scope, receive, send)

@@ -1,0 +1,146 @@
+"""Reading the station: each part of the view at an address of its own.
+
+Every answer carries the tick and the time of the view it was cut from, and none is ever older than two seconds: when
+the controller is silent the answer is 503.
+"""
+
+from __future__ import annotations
+
+from fastapi import APIRouter
+from pydantic import BaseModel
+
+from sequence_planner.control.view import (
+    AbilityView,
+    AlarmView,
+    Mode,
+    OperationView,
+    PlanView,
+    Production,
+    ResourceView,
+    StationIdentity,
+    TaskView,
+    TopicView,
+    VariableView,
+)
+from sequence_planner.web.request_parts import LiveView
+
+router = APIRouter(tags=["station"])
+
+
+class Answer(BaseModel):
+    """The tick and the time (seconds since the epoch, the controller's clock) at which this was so."""
+
+    tick: int
+    time: float
+
+
+class StationAnswer(Answer):
+    """What is running, and how."""
+
+    station: StationIdentity
+    mode: Mode
+    production: Production
+
+
+class StateAnswer(Answer):
+    """Every variable."""
+
+    variables: dict[str, VariableView]
+
+
+class ResourcesAnswer(Answer):
+    """Every resource."""
+
+    resources: dict[str, ResourceView]
+
+
+class OperationsAnswer(Answer):
+    """Every operation."""
+
+    operations: dict[str, OperationView]
+
+
+class AbilitiesAnswer(Answer):
+    """Every ability."""
+
+    abilities: dict[str, AbilityView]
+
+
+class PlanAnswer(Answer):
+    """The live plan."""
+
+    plan: PlanView
+
+
+class TasksAnswer(Answer):
+    """The tasks that wait for a person."""
+
+    tasks: dict[str, TaskView]
+
+
+class TopicsAnswer(Answer):
+    """Every topic of the station."""
+
+    topics: dict[str, TopicView]
+
+
+class AlarmsAnswer(Answer):
+    """The alarms that last."""
+
+    alarms: dict[str, AlarmView]
+
+
+@router.get("/station")
+async def station(view: LiveView) -> StationAnswer:
+    """What is running, its mode, and whether production has been started."""
+    return StationAnswer(
+        tick=view.tick, time=view.time, station=view.station, mode=view.mode, production=view.production
+    )
+
+
+@router.get("/state")
+async def state(view: LiveView) -> StateAnswer:
+    """Every variable; a null value is unknown, and `awaits` names the topic that would tell it."""
+    return StateAnswer(tick=view.tick, time=view.time, variables=view.variables)
+
+
+@router.get("/resources")
+async def resources(view: LiveView) -> ResourcesAnswer:
+    """Every resource, whether it is online, and which topics are awaited."""
+    return ResourcesAnswer(tick=view.tick, time=view.time, resources=view.resources)
+
+
+@router.get("/operations")
+async def operations(view: LiveView) -> OperationsAnswer:
+    """Every operation, whether it is active, and how often it was completed."""
+    return OperationsAnswer(tick=view.tick, time=view.time, operations=view.operations)
+
+
+@router.get("/abilities")
+async def abilities(view: LiveView) -> AbilitiesAnswer:
+    """Every ability: enabled, executing, finished."""
+    return AbilitiesAnswer(tick=view.tick, time=view.time, abilities=view.abilities)
+
+
+@router.get("/plan")
+async def plan(view: LiveView) -> PlanAnswer:
+    """The live plan: what is done, what runs, what comes next and what that waits for."""
+    return PlanAnswer(tick=view.tick, time=view.time, plan=view.plan)
+
+
+@router.get("/tasks")
+async def tasks(view: LiveView) -> TasksAnswer:
+    """The tasks that wait for a person, by id."""
+    return TasksAnswer(tick=view.tick, time=view.time, tasks=view.tasks)
+
+
+@router.get("/topics")
+async def topics(view: LiveView) -> TopicsAnswer:
+    """Every ROS 2 topic of the station, and whether it speaks."""
+    return TopicsAnswer(tick=view.tick, time=view.time, topics=view.topics)
+
+
+@router.get("/alarms")
+async def alarms(view: LiveView) -> AlarmsAnswer:
+    """What wants a person's attention now."""
+    return AlarmsAnswer(tick=view.tick, time=view.time, alarms=view.alarms)

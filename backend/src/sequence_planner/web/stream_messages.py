@@ -1,0 +1,118 @@
+"""What is said on the WebSocket `/api/v1/stream`. The page's TypeScript types are generated from these models.
+
+The server sends one snapshot, then deltas. `sequence` counts what is told to everybody; a client that misses a number
+asks for a new snapshot with `resync`. A snapshot carries the number of the last message that it includes, so the
+delta after it carries the next one.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Annotated, Literal
+
+from pydantic import BaseModel, ConfigDict, Field, RootModel
+from typing_extensions import TypedDict
+
+from sequence_planner.control.view import (
+    AbilityView,
+    AlarmView,
+    Mode,
+    OperationView,
+    PlanView,
+    Production,
+    ResourceView,
+    StationIdentity,
+    StationView,
+    TaskView,
+    TopicView,
+    VariableView,
+)
+
+
+class StationChange(TypedDict, total=False):
+    """Members of `StationView` that changed. Of a map, only the entries that are new or changed."""
+
+    station: StationIdentity
+    tick: int
+    time: float
+    mode: Mode
+    production: Production
+    resources: dict[str, ResourceView]
+    variables: dict[str, VariableView]
+    abilities: dict[str, AbilityView]
+    operations: dict[str, OperationView]
+    plan: PlanView
+    tasks: dict[str, TaskView]
+    topics: dict[str, TopicView]
+    alarms: dict[str, AlarmView]
+
+
+class StationRemoval(TypedDict, total=False):
+    """Keys that are no longer in the maps of `StationView`."""
+
+    resources: list[str]
+    variables: list[str]
+    abilities: list[str]
+    operations: list[str]
+    tasks: list[str]
+    topics: list[str]
+    alarms: list[str]
+
+
+class ControllerState(StrEnum):
+    """Whether the server hears the controller. While it is lost, what was shown before is old."""
+
+    HEARD = "heard"
+    LOST = "lost"
+
+
+class StreamPart(BaseModel):
+    """Base of all messages: immutable, and nothing beside what is declared."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Snapshot(StreamPart):
+    """The whole view."""
+
+    kind: Literal["snapshot"]
+    sequence: int
+    view: StationView
+
+
+class Delta(StreamPart):
+    """What changed since the message before; at least one each second, with at least a fresh `time`."""
+
+    kind: Literal["delta"]
+    sequence: int
+    changed: StationChange
+    removed: StationRemoval
+
+
+class Link(StreamPart):
+    """The controller fell silent, or is back; then a snapshot follows."""
+
+    kind: Literal["link"]
+    sequence: int
+    controller: ControllerState
+
+
+class StreamError(StreamPart):
+    """Something the client sent cannot be understood. The connection goes on."""
+
+    kind: Literal["error"]
+    detail: str
+
+
+class StreamMessage(RootModel[Annotated[Snapshot | Delta | Link | StreamError, Field(discriminator="kind")]]):
+    """Any message from the server."""
+
+
+class Resync(StreamPart):
+    """The client wants a new snapshot."""
+
+    kind: Literal["resync"]
+
+
+class ClientMessage(RootModel[Resync]):
+    """Any message from a client."""

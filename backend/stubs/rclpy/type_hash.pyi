@@ -1,0 +1,3 @@
+class TypeHash:
+    version: int
+    value: bytes

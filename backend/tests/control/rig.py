@@ -1,0 +1,139 @@
+"""A station in simulated time: the real execution, planner, pipelines and emulated devices, without a network.
+
+Messages are handed over as records. Nothing here decides anything that the product decides.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.control.commands import CommandRefused
+from sequence_planner.control.execution import Execution, TickOutcome
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.tasks import Task, TaskDesk
+from sequence_planner.emulation.devices import EmulatedDevices
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.plan import PlanRequest
+from sequence_planner.planning.planner import Planner
+from sequence_planner.station import ReadyStation, prepare_station
+from sequence_planner.synthesis.enumeration import synthesise
+
+TRUCK_ENGINE = Path(__file__).parents[3] / "models" / "truck_engine_station"
+PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")
+
+
+@cache
+def truck_engine() -> tuple[ReadyStation, Supervisor, Planner]:
+    """The truck engine station with its supervisor and a warm planner."""
+    station = prepare_station(TRUCK_ENGINE)
+    supervisor = synthesise(station.automaton)
+    return station, supervisor, Planner(station.automaton, supervisor)
+
+
+Acknowledging = Callable[[Task, float], bool]
+
+
+def at_once(task: Task, now: float) -> bool:
+    """An operator who needs a second for everything."""
+    return now - task.created > 1.0
+
+
+def never(task: Task, now: float) -> bool:
+    """An operator who is not there."""
+    return False
+
+
+@dataclass
+class Rig:
+    """The station, its devices and an operator; `now` is in seconds."""
+
+    acknowledges: Acknowledging = at_once
+    seed: int = 0
+    step: float = 0.1
+    now: float = 1000.0
+    thinking: int = 0  # ticks that pass until the planner answers
+    silent: set[str] = field(default_factory=set)  # topics from which nothing comes
+    started: list[str] = field(default_factory=list)
+    completed: list[str] = field(default_factory=list)
+    ticks: list[TickOutcome] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self._asked: tuple[PlanRequest, int] | None = None
+        self.station, supervisor, self.planner = truck_engine()
+        self.execution = Execution(self.station.automaton, supervisor)
+        self.desk = TaskDesk(self.station.automaton)
+        self.devices = EmulatedDevices(self.station.automaton, self.station.pipelines, seed=self.seed)
+        self._memory: dict[str, dict[str, Value | None]] = {name: {} for name in self.station.pipelines.incoming}
+
+    def start_production(self) -> None:
+        self.execution.start_production()
+        self._publish(self.station.automaton.outputs)
+
+    def run(self, seconds: float, until: Callable[[], bool] = lambda: False) -> bool:
+        """Let time pass; whether `until` came true."""
+        end = self.now + seconds
+        while self.now < end:
+            self.now += self.step
+            self.devices.advance(self.now)
+            self.tick()
+            while self.ticks[-1].changed:
+                self.tick()
+            if until():
+                return True
+        return False
+
+    def tick(self) -> None:
+        for id_, task in list(self.desk.open.items()):
+            if self.acknowledges(task, self.now):
+                try:
+                    self.desk.acknowledge(id_, task.revision)
+                except CommandRefused:
+                    continue
+        outcome = self.execution.tick(self.measured() | self.desk.measured(), Moment(self.now, self.now))
+        self.ticks.append(outcome)
+        self.started += outcome.started
+        self.completed += sorted(outcome.completed)
+        if outcome.outputs:
+            self._publish(outcome.outputs)
+        self.desk.update(self.execution.state, outcome.finished, outcome.ended, self.now)
+        self.check_law(outcome)
+        self.plan()
+
+    def plan(self) -> None:
+        """Ask for a plan, and adopt the answer `thinking` ticks later."""
+        if self._asked is None and (request := self.execution.request(deadline=20)) is not None:
+            self._asked = (request, len(self.ticks) + self.thinking)
+        if self._asked is not None and len(self.ticks) >= self._asked[1]:
+            request, self._asked = self._asked[0], None
+            self.execution.adopt(request, self.planner.answer(request))
+
+    def check_law(self, outcome: TickOutcome) -> None:
+        """What must hold after every tick: no start leads out of the safe set, so nothing forbidden comes of one."""
+        if outcome.started:
+            assert self.execution.safe, outcome
+            for specification in self.station.automaton.specifications.values():
+                assert not holds(specification.forbidden, self.execution.state), (specification.name, outcome)
+
+    def measured(self) -> dict[str, Value | None]:
+        values: dict[str, Value | None] = {}
+        for name, pipeline in self.station.pipelines.incoming.items():
+            if name in self.silent:
+                values |= dict.fromkeys(pipeline.variables)
+            else:
+                values |= pipeline.read(self.devices.report(name), self._memory[name]).values
+        return values
+
+    def value(self, name: str) -> Value | None:
+        return self.execution.state[name]
+
+    def _publish(self, outputs: frozenset[str]) -> None:
+        if self.execution.production != "started":
+            return
+        for name, pipeline in self.station.pipelines.outgoing.items():
+            if outputs & set(pipeline.variables):
+                assert not self.devices.command(name, pipeline.write(self.execution.state))

@@ -1,0 +1,88 @@
+"""What topics have said, and for how long it counts."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from control.bench import POSES, STATE, STATE_TYPE, cell
+from sequence_planner.control.feeds import Feeds, one_per_topic
+from sequence_planner.ros.transport import Sample
+
+UNKNOWN = {"arm.pose": None, "arm.moving": None, "arm.last": None}
+
+
+def feeds(deadline: float | None = 1.0) -> Feeds:
+    station = cell()[0]
+    incoming = {name: replace(p, deadline=deadline) for name, p in station.pipelines.incoming.items()}
+    return Feeds(incoming, station.registry)
+
+
+def says(pose: str, received: float) -> Sample:
+    record = {"joints": POSES[pose], "moving": False}
+    return Sample(STATE, cell()[0].registry.encode(STATE_TYPE, record), received)
+
+
+def test_nothing_is_known_before_the_first_message_nor_after_the_deadline() -> None:
+    topics = feeds()
+    assert topics.measured(0.0) == UNKNOWN
+    topics.take([says("home", 10.0)])
+    assert topics.measured(11.0) == {"arm.pose": "home", "arm.moving": False, "arm.last": "home"}
+    assert topics.measured(11.1) == UNKNOWN
+    assert topics.awaited(11.1) == [STATE]
+
+
+def test_what_a_topic_remembers_is_forgotten_when_it_falls_silent() -> None:
+    topics = feeds()
+    topics.take([says("home", 10.0)])
+    topics.take([says("unknown", 10.9)])
+    assert topics.measured(11.0)["arm.last"] == "home"
+    # Nobody looked between the messages, as when the event loop was held up.
+    topics.take([says("unknown", 15.0)])
+    assert topics.measured(15.0)["arm.last"] is None
+
+
+def test_a_topic_without_a_deadline_counts_until_its_publisher_goes() -> None:
+    topics = feeds(deadline=None)
+    topics.take([says("home", 10.0)])
+    assert topics.measured(9999.0)["arm.pose"] == "home"
+    topics.abandon(STATE)
+    assert topics.measured(9999.0) == UNKNOWN
+    topics.take([says("out", 10000.0)])
+    assert topics.measured(10000.0)["arm.pose"] == "out"
+
+
+def test_a_message_that_cannot_be_read_makes_its_variables_unknown_until_the_next() -> None:
+    topics = feeds()
+    topics.take([says("home", 10.0)])
+    topics.take([Sample(STATE, b"\x00\x01\x00\x00", 10.1)])
+    assert topics.measured(10.1) == UNKNOWN
+    assert topics.topics[STATE].trouble
+    assert topics.awaited(10.1) == [], "it speaks"
+    topics.take([says("out", 10.2)])
+    assert topics.measured(10.2)["arm.pose"] == "out"
+    assert topics.topics[STATE].trouble is None
+
+
+SAMPLES = st.lists(st.tuples(st.sampled_from("abc"), st.integers(0, 5)), max_size=20).map(
+    lambda drawn: [Sample(topic, bytes([number]), float(at)) for number, (topic, at) in enumerate(drawn)]
+)
+
+
+@given(SAMPLES)
+def test_a_batch_is_cut_without_loss_in_the_order_of_reception(samples: list[Sample]) -> None:
+    parts = list(one_per_topic(samples))
+    for part in parts:
+        assert part
+        assert len({sample.topic for sample in part}) == len(part), "each topic at most once"
+    together = [sample for part in parts for sample in part]
+    assert together == sorted(samples, key=lambda sample: sample.received)
+
+
+def test_topics_delivered_one_after_the_other_are_not_shown_out_of_step() -> None:
+    """The tool stops, then the arm moves: no tick may see the arm moving with the tool still turning."""
+    turning, stopped = Sample("tool", b"turning", 1.0), Sample("tool", b"stopped", 2.0)
+    still, moving = Sample("arm", b"still", 1.1), Sample("arm", b"moving", 2.1)
+    assert list(one_per_topic([still, moving, turning, stopped])) == [[turning, still], [stopped, moving]]

@@ -1,0 +1,166 @@
+"""The launcher: what dies is started again, what cannot run says so, and nothing outlives it."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from running.stations import MODEL, REPOSITORY, command, environment, finished, foreign_node, free_port, station
+from sequence_planner import launcher
+from sequence_planner.launcher import UNUSABLE, Part
+from sequence_planner.ros.transport import QualityOfService
+
+
+def part(program: str) -> Part:
+    return Part("part", [sys.executable, "-c", program])
+
+
+def eventually(what: Callable[[], bool], seconds: float = 20) -> None:
+    end = time.monotonic() + seconds
+    while not what():
+        assert time.monotonic() < end, "it did not come true in time"
+        time.sleep(0.02)
+
+
+def children(pid: int) -> list[int]:
+    listed = subprocess.run(["ps", "--ppid", str(pid), "-o", "pid="], capture_output=True, text=True, check=False)
+    return [int(line) for line in listed.stdout.split()]
+
+
+def are_gone(pids: list[int]) -> bool:
+    listed = subprocess.run(
+        ["ps", "-o", "pid=", "-p", ",".join(map(str, pids))], capture_output=True, text=True, check=False
+    )
+    return not listed.stdout.split()
+
+
+def starts(watched: Part, count: int) -> list[float]:
+    """Look after the part until it has been started so many times; when that was."""
+    seen: dict[int, float] = {}
+    while len(seen) < count:
+        assert watched.look_after() == 0
+        if watched.process is not None:
+            seen.setdefault(watched.process.pid, time.monotonic())
+        time.sleep(0.01)
+    return list(seen.values())
+
+
+def test_what_dies_is_started_again_ever_later() -> None:
+    dying = part("raise SystemExit(3)")
+    dying.spawn()
+    first, second, third = starts(dying, 3)
+    assert 0.5 < second - first < third - second
+    dying.end()
+
+
+def test_what_had_recovered_is_started_again_soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(launcher, "STEADY", 0.0)
+    dying = part("raise SystemExit(3)")
+    dying.spawn()
+    began = time.monotonic()
+    starts(dying, 4)
+    assert time.monotonic() - began < 3 * 0.5 + 2
+    dying.end()
+
+
+def test_what_cannot_run_as_asked_is_given_up_at_first_but_not_once_it_ran() -> None:
+    """A port that somebody took while the server was down must not stop the production of the others."""
+    program = f"import time; time.sleep(0.1); raise SystemExit({UNUSABLE})"
+    refusing = part(program)
+    refusing.spawn()
+    eventually(lambda: refusing.look_after() == UNUSABLE)
+    refusing.end()
+    running = part(program)
+    running.spawn()
+    assert running.process is not None
+    running.process.kill()
+    starts(running, 3)
+    running.end()
+
+
+def test_what_does_not_end_in_good_order_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(launcher, "PATIENCE", 0.2)
+    stubborn = part(
+        "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print(1, flush=True); time.sleep(60)"
+    )
+    stubborn.spawn()
+    process = stubborn.process
+    assert process is not None
+    time.sleep(0.5)
+    process.terminate()
+    stubborn.end()
+    assert process.returncode == -signal.SIGKILL
+
+
+@pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
+@pytest.mark.parametrize("after", [0.0, 1.0])
+def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, tmp_path: Path) -> None:
+    """However it ends, and however early."""
+    log = (tmp_path / "log").open("wb")
+    running = subprocess.Popen(
+        command("run", str(MODEL), "--port", str(free_port()), "--emulator"),
+        cwd=REPOSITORY,
+        env={**environment(), "TMPDIR": str(tmp_path)},
+        stdout=log,
+        stderr=log,
+    )
+    eventually(lambda: len(children(running.pid)) == 3)
+    parts = children(running.pid)
+    time.sleep(after)
+    grandchildren = [each for pid in parts for each in children(pid)]
+    running.send_signal(how)
+    running.wait(20)
+    eventually(lambda: are_gone([*parts, *grandchildren]))
+    log.close()
+    assert running.returncode == (-how if how is signal.SIGKILL else 0)
+    assert [each.name for each in tmp_path.iterdir()] == ["log"]
+
+
+def test_beside_real_devices_nothing_is_emulated_and_nothing_starts_by_itself(tmp_path: Path) -> None:
+    """The emulator refuses, and with it the demonstration: the real devices must not be set going."""
+    heard: list[str] = []
+
+    async def beside() -> subprocess.CompletedProcess[str]:
+        async with foreign_node() as (transport, registry):
+            state, type_name = "/ur10/state", "truck_engine_msgs/msg/RobotState"
+            transport.advertise(state, type_name, QualityOfService.RELIABLE)
+            transport.subscribe(
+                "/ur10/command",
+                "truck_engine_msgs/msg/RobotCommand",
+                QualityOfService.RELIABLE,
+                lambda batch: heard.extend(sample.topic for sample in batch),
+            )
+
+            async def report() -> None:
+                while True:
+                    transport.publish(state, type_name, registry.encode(type_name, {}))
+                    await asyncio.sleep(0.05)
+
+            reporting = asyncio.create_task(report())
+            arguments = ("run", str(MODEL), "--port", str(free_port()), "--emulator", "--start")
+            ended = await asyncio.to_thread(finished, *arguments)
+            reporting.cancel()
+            return ended
+
+    ended = asyncio.run(beside())
+    assert ended.returncode == UNUSABLE
+    assert "the emulated devices would fight with it" in ended.stderr
+    assert heard == []
+
+
+def test_the_server_is_started_again_while_production_goes_on(tmp_path: Path) -> None:
+    with station(tmp_path, "--emulator", "--start", "--emulator-speed", "5") as running:
+        running.work_on(1)
+        os.kill(running.child("server"), signal.SIGKILL)
+        eventually(lambda: not running.up())
+        eventually(running.up)
+        assert running.get("production", "station") == "started"
+        running.work_on(1)

@@ -1,0 +1,129 @@
+"""Tasks for people: whoever acknowledges one says that this very task is done, and no other, ever."""
+
+from __future__ import annotations
+
+import pytest
+
+from control.rig import PAIRS, Rig, never, truck_engine
+from sequence_planner.automaton.structure import State
+from sequence_planner.control.commands import CommandRefused
+from sequence_planner.control.tasks import Task, TaskDesk
+from sequence_planner.control.view import Mode
+
+PLACE_1, PLACE_2 = (f"operator.place_bolt_pair({pair})" for pair in PAIRS[:2])
+ACKNOWLEDGED = "operator.acknowledged"
+
+
+def desk() -> TaskDesk:
+    return TaskDesk(truck_engine()[0].automaton)
+
+
+def executing(*names: str) -> State:
+    abilities = truck_engine()[0].automaton.abilities
+    return {a.flag("executing"): a.name in names for a in abilities.values()}
+
+
+def only(tasks: TaskDesk) -> Task:
+    (task,) = tasks.open.values()
+    return task
+
+
+def waiting() -> tuple[Rig, Task]:
+    """A station with a task that nobody acknowledges."""
+    rig = Rig(acknowledges=never)
+    rig.start_production()
+    assert rig.run(10, until=lambda: bool(rig.desk.open))
+    return rig, only(rig.desk)
+
+
+def test_an_acknowledgement_lasts_until_its_ability_has_finished() -> None:
+    tasks = desk()
+    tasks.update(executing(PLACE_1), (), (), 5.0)
+    assert tasks.measured() == {ACKNOWLEDGED: False}
+    assert tasks.acknowledge(only(tasks).id, 1).ability == PLACE_1
+    tasks.update(executing(), (), (), 6.0)
+    assert tasks.measured() == {ACKNOWLEDGED: True}
+    tasks.update(executing(), (PLACE_2,), (), 7.0)
+    assert tasks.measured() == {ACKNOWLEDGED: True}
+    tasks.update(executing(), (PLACE_1,), (PLACE_1,), 8.0)
+    assert tasks.measured() == {ACKNOWLEDGED: False}
+
+
+def test_an_acknowledgement_is_let_go_also_when_nobody_remembers_the_start() -> None:
+    """As after a controller was started again amid a task: the ability takes its finish actions all the same."""
+    tasks = desk()
+    tasks.update(executing(PLACE_1), (), (), 5.0)
+    tasks.acknowledge(only(tasks).id, 1)
+    tasks.update(executing(), (PLACE_1,), (), 6.0)
+    assert tasks.measured() == {ACKNOWLEDGED: False}
+
+
+def test_an_acknowledgement_of_an_earlier_controller_is_for_a_task_that_is_gone() -> None:
+    before, after = desk(), desk()
+    before.update(executing(PLACE_1), (), (), 5.0)
+    after.update(executing(PLACE_2), (), (), 6.0)
+    with pytest.raises(CommandRefused) as refused:
+        after.acknowledge(only(before).id, only(before).revision)
+    assert refused.value.slug == "task-gone"
+
+
+def test_the_same_ability_started_again_in_the_tick_of_its_end_is_another_task() -> None:
+    tasks = desk()
+    tasks.update(executing(PLACE_1), (), (), 5.0)
+    first = only(tasks)
+    tasks.acknowledge(first.id, first.revision)
+    tasks.update(executing(PLACE_1), (PLACE_1,), (PLACE_1,), 6.0)
+    assert only(tasks).created == 6.0
+    with pytest.raises(CommandRefused):
+        tasks.acknowledge(first.id, first.revision)
+    assert tasks.measured() == {ACKNOWLEDGED: False}
+
+
+def test_another_revision_is_refused() -> None:
+    tasks = desk()
+    tasks.update(executing(PLACE_1), (), (), 5.0)
+    with pytest.raises(CommandRefused) as refused:
+        tasks.acknowledge(only(tasks).id, 2)
+    assert refused.value.slug == "task-changed"
+    assert tasks.measured() == {ACKNOWLEDGED: False}
+
+
+def test_a_watch_that_speaks_on_a_topic_is_heard_beside_the_page() -> None:
+    tasks = TaskDesk(truck_engine()[0].automaton, {ACKNOWLEDGED})
+    tasks.update(executing(PLACE_1), (), (), 5.0)
+    assert tasks.measured() == {}
+    tasks.acknowledge(only(tasks).id, 1)
+    assert tasks.measured() == {ACKNOWLEDGED: True}
+
+
+def test_a_task_acknowledged_twice_completes_one() -> None:
+    rig, task = waiting()
+    rig.desk.acknowledge(task.id, task.revision)
+    rig.desk.acknowledge(task.id, task.revision)
+    rig.run(2)
+    assert [name for name in rig.completed if name.startswith("place")] == [f"place_bolt_pair({task.ability[-12:-1]})"]
+    with pytest.raises(CommandRefused):
+        rig.desk.acknowledge(task.id, task.revision)
+
+
+def test_a_task_is_finished_while_the_station_is_paused() -> None:
+    rig, task = waiting()
+    rig.execution.mode = Mode.PAUSED
+    before = len(rig.started)
+    rig.desk.acknowledge(task.id, task.revision)
+    rig.run(1)
+    assert len([name for name in rig.completed if name.startswith("place")]) == 1
+    assert rig.value(ACKNOWLEDGED) is False
+    assert len(rig.started) == before
+
+
+def test_an_acknowledgement_waits_for_what_its_finish_must_know() -> None:
+    """It is neither lost nor given twice while the station is blind on every topic."""
+    rig, task = waiting()
+    rig.silent = set(rig.station.pipelines.incoming)
+    rig.desk.acknowledge(task.id, task.revision)
+    rig.run(2)
+    rig.silent = set()
+    rig.run(2)
+    assert len([name for name in rig.completed if name.startswith("place")]) == 1
+    assert rig.value(ACKNOWLEDGED) is False

@@ -1,0 +1,84 @@
+"""Random planning problems: a station with its supervisor, a state, and goals that random runs have reached."""
+
+from __future__ import annotations
+
+import contextlib
+from dataclasses import dataclass, replace
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, Operation, State
+from sequence_planner.automaton.tick import supervised_start
+from sequence_planner.expressions.syntax import TRUE, And, Comparison, Constant, Expression, Variable
+from sequence_planner.expressions.types import Value
+from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
+
+from .choices import Choices
+from .explicit import outcomes
+from .random_devices import device_station
+from .random_expressions import rare
+from .random_stations import automaton, state_of
+
+_LONGEST_RUN = 6
+
+
+@dataclass(frozen=True)
+class Problem:
+    """The operations of `automaton` are the goals to be reached from `state`."""
+
+    automaton: Automaton
+    supervisor: Supervisor
+    state: State
+
+
+def problem(choices: Choices, unknown: bool = False) -> Problem:
+    """A problem, with `unknown` from a state with unknown values."""
+    station, supervisor = _supervised(device_station(choices) if choices.chance(2) else automaton(choices))
+    state = state_of(choices, station, unknown)
+    for _ in range(5):
+        if not supervisor.safe.includes(state):
+            state = state_of(choices, station, unknown)
+    operations: dict[str, Operation] = {}
+    for number in range(choices.number(1, 3)):
+        name = f"g{number}"
+        goal = _goal(choices, station, state, _run(choices, station, supervisor, state))
+        operations[name] = Operation(name, name, TRUE, goal, choices.number(0, 2))
+    return Problem(replace(station, operations=operations), supervisor, state)
+
+
+def _supervised(station: Automaton) -> tuple[Automaton, Supervisor]:
+    """The station with its supervisor; what cannot be met is left out."""
+    for each in (station, replace(station, rest=None), replace(station, specifications={})):
+        with contextlib.suppress(SynthesisError):
+            return each, synthesise(each)
+    free = replace(station, rest=None, specifications={})
+    return free, synthesise(free)
+
+
+def _run(choices: Choices, station: Automaton, supervisor: Supervisor, state: State) -> State:
+    """The state after step 3 in which a random run from `state` ends."""
+    helpful = [effect for effect in station.effects if not effect.fault]
+    settled = after = state
+    for _ in range(choices.number(2, _LONGEST_RUN)):
+        before = after
+        settled = after = choices.pick(outcomes(station, before, helpful)[::-1])
+        for ability in choices.different(list(station.abilities.values()), 1, 4):
+            started = supervised_start(station, supervisor, before, after, ability)
+            if started is not None and not ability.restart:
+                after = started
+    return settled
+
+
+def _goal(choices: Choices, station: Automaton, start: State, end: State) -> Expression:
+    """What holds in `end`, and not in `start` if they differ; or now and then anything."""
+    scope = [Variable(name, type_) for name, type_ in station.types.items()]
+    if choices.chance(5):
+        return rare(choices, scope)
+    changed = [variable for variable in scope if end[variable.name] not in (None, start[variable.name])]
+    known = [variable for variable in scope if end[variable.name] is not None]
+    chosen = [*choices.different(changed, 1, 2), *choices.different(known, 0, 2)]
+    return And((TRUE, TRUE, *(_equals(variable, end[variable.name]) for variable in chosen)))
+
+
+def _equals(variable: Variable, value: Value | None) -> Expression:
+    assert value is not None
+    return Comparison("==", variable, Constant(value))

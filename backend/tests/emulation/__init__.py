@@ -1,0 +1,1 @@
+"""Tests of the emulated devices, without clock or network."""

@@ -1,0 +1,284 @@
+"""The transport over cyclonedds: other processes, other codecs, and networks that are not there."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import subprocess
+import sys
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import pytest
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.idl import make_idl_struct, types
+from cyclonedds.pub import DataWriter
+from cyclonedds.topic import Topic
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from ros_networks import DOMAIN, Network, eventually, play, settle, standard
+
+from sequence_planner.ros import cyclone_network
+from sequence_planner.ros.choice import open_transport
+from sequence_planner.ros.cyclone_network import loopback_configuration
+from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.transport import QualityOfService, Sample, TransportError
+
+TEXT = "std_msgs/msg/String"
+RELIABLE = QualityOfService.RELIABLE
+
+
+class Expected(NamedTuple):
+    """What a station sees of a peer."""
+
+    node: str | None
+    has_hash: bool
+
+
+@asynccontextmanager
+async def peer(kind: str) -> AsyncIterator[None]:
+    """Run `ros_peer.py` beside this process, on the loopback interface, and see it end well."""
+    # SUBNET takes the configuration from CYCLONEDDS_URI, which keeps the peer on the loopback interface all the same.
+    environ = os.environ | {
+        "CYCLONEDDS_URI": loopback_configuration(),
+        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
+    }
+    command = [sys.executable, "-W", "error", str(Path(__file__).with_name("ros_peer.py")), kind, str(DOMAIN)]
+    process = await asyncio.create_subprocess_exec(*command, stdin=subprocess.PIPE, env=environ)
+    try:
+        yield
+        assert process.stdin is not None
+        process.stdin.close()
+        assert await asyncio.wait_for(process.wait(), 10) == 0
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.wait()
+
+
+@pytest.mark.parametrize(
+    ("kind", "expected"), [("ours", Expected("/peer", True)), ("plain", Expected(None, False))], ids=["ours", "plain"]
+)
+def test_another_process_answers_and_is_seen_to_leave(kind: str, expected: Expected) -> None:
+    async def scenario(network: Network) -> None:
+        station = network.join("station")
+        heard: list[object] = []
+
+        def listen(batch: Sequence[Sample]) -> None:
+            heard.extend(standard().decode(TEXT, sample.data)["data"] for sample in batch)
+
+        def say(text: str) -> None:
+            station.publish("/ping", TEXT, standard().encode(TEXT, {"data": text}))
+
+        def greeted() -> bool:
+            say("hello")  # The peer may have seen the ping before it knows who listens to its pong.
+            return bool(heard)
+
+        def foreign() -> dict[str, Expected]:
+            return {
+                f"{endpoint.direction} {endpoint.topic} {endpoint.type_name}": Expected(
+                    endpoint.node, endpoint.type_hash == standard().type_hash(TEXT)
+                )
+                for endpoint in station.graph()
+                if not endpoint.own
+            }
+
+        station.advertise("/ping", TEXT, RELIABLE)
+        station.subscribe("/pong", TEXT, RELIABLE, listen)
+        both = {f"publisher /pong {TEXT}": expected, f"subscriber /ping {TEXT}": expected}
+        async with peer(kind):
+            await eventually(lambda: foreign() == both, f"the {kind} peer is seen")
+            await eventually(greeted, "the peer answers")
+            for text in ("a", "ab", "abc", "abcd", "åäö"):
+                say(text)
+            await eventually(lambda: heard[-1] == "ÅÄÖ", "the last answer comes")
+            assert [text for text in heard if text != "HELLO"] == ["A", "AB", "ABC", "ABCD", "ÅÄÖ"]
+        await eventually(lambda: not foreign(), "the peer is gone")
+
+    play("cyclonedds", scenario)
+
+
+def test_a_publisher_that_is_not_of_ros_is_shown_as_it_is() -> None:
+    async def scenario(network: Network) -> None:
+        station = network.join("station")
+        struct = make_idl_struct("Raw", "plant.Raw", {"value": types.int32})
+        participant = DomainParticipant(DOMAIN)
+        writers = [
+            DataWriter(participant, Topic(participant, name, struct)) for name in ("rt/tool/state", "tool/state")
+        ]
+        await eventually(station.graph, "the publisher is seen")
+        await settle()
+        [endpoint] = station.graph()
+        assert (endpoint.topic, endpoint.type_name) == ("/tool/state", "plant::Raw")
+        assert (endpoint.own, endpoint.type_hash, endpoint.node) == (False, None, None)
+        del writers
+
+    play("cyclonedds", scenario)
+
+
+def test_a_peer_with_a_stale_definition_delivers_nothing(tmp_path: Path) -> None:
+    """Cyclone compares the definitions, so what would be garbled is not delivered."""
+
+    def registry(folder: str, definition: str) -> MessageRegistry:
+        path = tmp_path / folder / "cell_msgs" / "msg" / "State.msg"
+        path.parent.mkdir(parents=True)
+        path.write_text(definition)
+        return MessageRegistry.from_folder(tmp_path / folder)
+
+    async def scenario(network: Network) -> None:
+        old, new = registry("old", "int32 pose\n"), registry("new", "float32 pose\n")
+        device, station = network.join("device", old), network.join("station", new)
+        heard: list[Sample] = []
+        station.subscribe("/robot/state", "cell_msgs/msg/State", RELIABLE, heard.extend)
+        device.advertise("/robot/state", "cell_msgs/msg/State", RELIABLE)
+        await eventually(lambda: len(station.graph()) == len(device.graph()) == 2, "both see each other")
+        device.publish("/robot/state", "cell_msgs/msg/State", old.encode("cell_msgs/msg/State", {"pose": 1}))
+        await settle()
+        assert heard == []
+
+    play("cyclonedds", scenario)
+
+
+def test_messages_of_every_shape_pass(tmp_path: Path) -> None:
+    folder = tmp_path / "cell_msgs" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Part.msg").write_text("string<=6 name\nbyte[] code\nfloat32[3] size\n")
+    (folder / "Cell.msg").write_text("Part[<=2] parts\nPart[1] spare\nbool from\ngeometry_msgs/Pose pose\nstring[] l\n")
+    (folder / "Ping.msg").write_text("# nothing\n")
+    registry = MessageRegistry.from_folder(tmp_path)
+    part: dict[str, object] = {"name": "nut", "code": [1, 200], "size": [1.0, 2.0, 0.5]}
+    pose: dict[str, object] = {
+        "position": {"x": 1.0, "y": 2.0, "z": 3.0},
+        "orientation": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
+    }
+    cell: dict[str, object] = {"parts": [part], "spare": [part], "from": True, "pose": pose, "l": ["", "b"]}
+
+    async def scenario(network: Network) -> None:
+        device, station = network.join("device", registry), network.join("station", registry)
+        heard: list[Sample] = []
+        kinds: list[tuple[str, dict[str, object]]] = [("Cell", cell), ("Ping", {})]
+        for name, _ in kinds:
+            station.subscribe(f"/{name}", f"cell_msgs/msg/{name}", RELIABLE, heard.extend)
+            device.advertise(f"/{name}", f"cell_msgs/msg/{name}", RELIABLE)
+        await eventually(lambda: len(station.graph()) == len(device.graph()) == 4, "both see each other")
+        for name, values in kinds:
+            device.publish(f"/{name}", f"cell_msgs/msg/{name}", registry.encode(f"cell_msgs/msg/{name}", values))
+        await eventually(lambda: len(heard) == 2, "both arrive")
+        decoded = {sample.topic: registry.decode(f"cell_msgs/msg/{sample.topic[1:]}", sample.data) for sample in heard}
+        assert decoded == {"/Cell": cell, "/Ping": {}}
+
+    play("cyclonedds", scenario)
+
+
+# Written out with cyclonedds' IDL types: a second codec, by other people.
+POINT = make_idl_struct("Point", "geometry_msgs.msg.dds_.Point_", dict.fromkeys("xyz", types.float64))
+PATH = make_idl_struct(
+    "Path",
+    "cell_msgs.msg.dds_.Path_",
+    {
+        "closed": bool,
+        "name": str,
+        "points": types.sequence[POINT],
+        "codes": types.sequence[types.uint16],
+        "labels": types.sequence[str],
+        "size": types.array[types.float32, 3],
+        "count": types.int64,
+        "level": types.int8,
+    },
+)
+PATH_MSG = (
+    "bool closed\nstring name\ngeometry_msgs/Point[] points\nuint16[] codes\nstring[] labels\nfloat32[3] size\n"
+    "int64 count\nint8 level\n"
+)
+
+TEXTS = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\0"), max_size=5)
+FLOATS = st.floats(allow_nan=False)
+
+
+@pytest.fixture(scope="module")
+def path_registry(tmp_path_factory: pytest.TempPathFactory) -> MessageRegistry:
+    folder = tmp_path_factory.mktemp("messages")
+    (folder / "cell_msgs" / "msg").mkdir(parents=True)
+    (folder / "cell_msgs" / "msg" / "Path.msg").write_text(PATH_MSG)
+    return MessageRegistry.from_folder(folder)
+
+
+PATHS = st.fixed_dictionaries(
+    {
+        "closed": st.booleans(),
+        "name": TEXTS,
+        "points": st.lists(st.fixed_dictionaries(dict.fromkeys("xyz", FLOATS)), max_size=3),
+        "codes": st.lists(st.integers(0, 2**16 - 1), max_size=3),
+        "labels": st.lists(TEXTS, max_size=3),
+        "size": st.lists(st.floats(width=32, allow_nan=False), min_size=3, max_size=3),
+        "count": st.integers(-(2**63), 2**63 - 1),
+        "level": st.integers(-128, 127),
+    }
+)
+
+
+@settings(deadline=None)
+@given(PATHS)
+def test_the_bytes_are_those_of_cyclonedds_own_codec(path_registry: MessageRegistry, values: dict[str, Any]) -> None:
+    points = [POINT(**point) for point in values["points"]]
+    theirs = PATH(**(values | {"points": points})).serialize(use_version_2=False)
+    assert path_registry.encode("cell_msgs/msg/Path", values) == theirs
+
+
+def test_a_computer_without_the_interface_is_told_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    interface = loopback_configuration().replace('name="lo"', 'name="none0"')
+    domain = 200  # Never joined, so nobody can be met there.
+
+    async def scenario() -> None:
+        loop = asyncio.get_running_loop()
+        with (
+            monkeypatch.context() as patch,
+            pytest.raises(TransportError, match="Check that a loopback interface is up"),
+        ):
+            patch.setattr(cyclone_network, "loopback_configuration", lambda: interface)
+            open_transport("cyclonedds", standard(), "station", loop, domain)
+        # Once there is one, the same process can join.
+        open_transport("cyclonedds", standard(), "station", loop, DOMAIN).close()
+
+    asyncio.run(scenario())
+
+
+@pytest.mark.parametrize(
+    ("name", "value", "text"),
+    [
+        ("ROS_SECURITY_ENABLE", "true", "use ROS 2 with rclpy"),
+        ("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF", "use LOCALHOST"),
+        ("ROS_AUTOMATIC_DISCOVERY_RANGE", "everywhere", "give one of LOCALHOST, SUBNET"),
+        ("ROS_DOMAIN_ID", "300", "give a number from 0 to 232"),
+        ("ROS_DOMAIN_ID", "one", "'one'"),
+    ],
+)
+def test_an_environment_that_cannot_be_honoured_is_refused(
+    monkeypatch: pytest.MonkeyPatch, name: str, value: str, text: str
+) -> None:
+    async def scenario() -> None:
+        monkeypatch.setenv(name, value)
+        with pytest.raises(TransportError, match=text):
+            open_transport("cyclonedds", standard(), "station", asyncio.get_running_loop())
+
+    asyncio.run(scenario())
+
+
+def test_the_domain_is_that_of_the_environment(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario(network: Network) -> None:
+        device = network.join("device")
+        device.advertise("/tool/state", TEXT, RELIABLE)
+        monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN))
+        loop = asyncio.get_running_loop()
+        here = open_transport("cyclonedds", standard(), "station", loop)
+        elsewhere = open_transport("cyclonedds", standard(), "station", loop, DOMAIN + 1)
+        try:
+            await eventually(here.graph, "the device is seen")
+            assert elsewhere.graph() == []
+        finally:
+            here.close()
+            elsewhere.close()
+
+    play("cyclonedds", scenario)

@@ -1,0 +1,161 @@
+"""The truck engine station as its users run it: real processes, real DDS on the loopback, real HTTP."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import asynccontextmanager, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import httpx
+
+from sequence_planner.ros.choice import open_transport
+from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.transport import Transport
+
+REPOSITORY = Path(__file__).parents[3]
+MODEL = Path("models") / "truck_engine_station"
+DOMAIN = 20 + os.getpid() % 180  # of DDS: stations of other runs on this machine are elsewhere
+PATIENCE = 60.0
+
+
+def command(*arguments: str) -> list[str]:
+    return [sys.executable, "-m", "sequence_planner.cli", *arguments]
+
+
+def environment() -> dict[str, str]:
+    return {**os.environ, "ROS_DOMAIN_ID": str(DOMAIN)}
+
+
+def finished(*arguments: str, seconds: float = 60) -> subprocess.CompletedProcess[str]:
+    """Run a command to its end."""
+    return subprocess.run(
+        command(*arguments),
+        cwd=REPOSITORY,
+        env=environment(),
+        text=True,
+        capture_output=True,
+        timeout=seconds,
+        check=False,
+    )
+
+
+def eventually(what: Callable[[], bool], seconds: float = PATIENCE) -> None:
+    """Wait until `what` is true."""
+    end = time.monotonic() + seconds
+    while not what():
+        assert time.monotonic() < end, "it did not come true in time"
+        time.sleep(0.1)
+
+
+@dataclass
+class RunningStation:
+    """A station that runs, seen through its REST interface."""
+
+    process: subprocess.Popen[bytes]
+    port: int
+    log: Path
+
+    def get(self, part: str, path: str = "") -> Any:  # noqa: ANN401 - JSON
+        """The `part` of the answer at `path`, which mostly bears its name."""
+        answer = httpx.get(f"http://127.0.0.1:{self.port}/api/v1/{path or part}")
+        answer.raise_for_status()
+        return answer.json()[part]
+
+    def post(self, path: str, body: object) -> httpx.Response:
+        return httpx.post(f"http://127.0.0.1:{self.port}/api/v1/{path}", json=body)
+
+    def up(self) -> bool:
+        assert self.process.poll() is None, "the station has ended"
+        try:
+            station = httpx.get(f"http://127.0.0.1:{self.port}/api/v1/station").json()
+        except httpx.HTTPError:
+            return False
+        return station.get("production") in ("waiting", "started")
+
+    def value(self, name: str) -> object:
+        return self.get("variables", "state")[name]["value"]
+
+    def acknowledge(self) -> None:
+        """Acknowledge whatever waits for a person."""
+        for id_, task in self.get("tasks").items():
+            self.post(f"tasks/{id_}/acknowledgement", {"revision": task["revision"]})
+
+    def work_on(self, tightened: int) -> None:
+        """Acknowledge every task until so many more bolt pairs are tightened."""
+        names = [f"tighten_bolt_pair(bolt_pair_{number})" for number in (1, 2, 3)]
+        wanted = sum(map(self.completed, names)) + tightened
+
+        def done() -> bool:
+            self.acknowledge()
+            return sum(map(self.completed, names)) >= wanted
+
+        eventually(done)
+
+    def completed(self, operation: str) -> int:
+        return int(self.get("operations")[operation]["completed"])
+
+    def child(self, name: str) -> int:
+        """The process id of the part that runs the command `name`."""
+        listed = subprocess.run(
+            ["ps", "-ww", "--ppid", str(self.process.pid), "-o", "pid=,args="],  # -ww: whole lines, whatever COLUMNS says
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        (line,) = [line for line in listed.stdout.splitlines() if f"sequence_planner.cli {name} " in line]
+        return int(line.split()[0])
+
+
+def free_port() -> int:
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        return int(listener.getsockname()[1])
+
+
+@contextmanager
+def process(log: Path, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
+    """A process of ours, ended by its id."""
+    with log.open("ab") as out:
+        running = subprocess.Popen(command(*arguments), cwd=REPOSITORY, env=environment(), stdout=out, stderr=out)
+    try:
+        yield running
+    finally:
+        running.send_signal(signal.SIGTERM)
+        running.wait(timeout=20)
+
+
+@contextmanager
+def station(folder: Path, *options: str) -> Iterator[RunningStation]:
+    """A station that is up, with `options` for `run`."""
+    port = free_port()
+    log = folder / "station.log"
+    with process(log, "run", str(MODEL), "--port", str(port), *options) as running:
+        seen = RunningStation(running, port, log)
+        try:
+            eventually(seen.up)
+        except AssertionError as error:
+            raise AssertionError(log.read_text()) from error
+        yield seen
+    assert running.returncode == 0, log.read_text()
+
+
+@asynccontextmanager
+async def foreign_node(
+    messages: Path = REPOSITORY / MODEL / "messages",
+) -> AsyncIterator[tuple[Transport, MessageRegistry]]:
+    """Another ROS 2 node on the station's network, built with the definitions in the folder `messages`."""
+    registry = MessageRegistry.from_folder(messages)
+    transport = open_transport("cyclonedds", registry, "stranger", asyncio.get_running_loop(), DOMAIN)
+    try:
+        yield transport, registry
+    finally:
+        transport.close()

@@ -1,0 +1,66 @@
+"""How a station starts: nothing moves without a person, and what cannot start says why."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import signal
+from pathlib import Path
+
+import pytest
+
+from running.stations import MODEL, eventually, finished, foreign_node, station
+from sequence_planner.ros.transport import QualityOfService
+
+
+def test_nothing_is_published_until_a_person_starts_production(tmp_path: Path) -> None:
+    heard: list[str] = []
+
+    async def listen() -> None:
+        async with foreign_node() as (transport, _):
+            commands = {
+                "/ur10/command": "truck_engine_msgs/msg/RobotCommand",
+                "/operator/task": "truck_engine_msgs/msg/OperatorTask",
+            }
+            for topic, type_name in commands.items():
+                transport.subscribe(
+                    topic, type_name, QualityOfService.RELIABLE, lambda batch: heard.extend(s.topic for s in batch)
+                )
+            await asyncio.to_thread(eventually, lambda: running.get("topics")["/ur10/command"]["peers"] >= 2)
+            await asyncio.sleep(3)
+            assert heard == []
+            assert running.get("tasks") == {}
+            assert running.post("production/start", {}).status_code == 204
+            await asyncio.to_thread(eventually, lambda: set(heard) == set(commands))
+
+    with station(tmp_path, "--emulator", "--emulator-speed", "5") as running:
+        assert running.get("production", "station") == "waiting"
+        asyncio.run(asyncio.wait_for(listen(), 60))
+        again = running.post("production/start", {})
+        assert again.status_code == 409
+        assert again.json()["detail"] == "Production has been started already."
+        running.work_on(1)
+
+        # A controller that had to be started again knows nothing of what it did: a person starts production.
+        os.kill(running.child("controller"), signal.SIGKILL)
+        eventually(lambda: not running.up())
+        eventually(running.up)
+        assert running.get("production", "station") == "waiting"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (("run", str(MODEL), "--start"), "--start is for emulated devices"),
+        (("run", str(MODEL), "--host", "0.0.0.0"), "cannot serve on 0.0.0.0"),
+        (("run", str(MODEL), "--port", "70000"), "70000 is not a port"),
+        (("run", "models"), "a station is a folder with a station.yaml"),
+        (("run", str(MODEL), "--transport", "rclpy"), "source the setup file of a ROS 2 installation"),
+        (("by-hand", "robot.pose := home"), "no emulated devices are running"),
+    ],
+)
+def test_what_cannot_be_run_says_what_to_do(arguments: tuple[str, ...], said: str) -> None:
+    refused = finished(*arguments)
+    assert refused.returncode == 2
+    assert said in refused.stderr
+    assert "Traceback" not in refused.stderr

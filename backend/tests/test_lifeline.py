@@ -1,0 +1,69 @@
+"""Processes end with the one that started them, even if that is killed."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+
+# A process that starts another and waits; its child says its id and waits too.
+LAUNCHED = """
+import os, time
+from sequence_planner.lifeline import end_with_launcher
+end_with_launcher()
+print(os.getpid(), flush=True)
+time.sleep(60)
+"""
+LAUNCHER = (
+    f"import subprocess, sys\nsubprocess.Popen([sys.executable, '-c', {LAUNCHED!r}], stdin=subprocess.PIPE).wait()"
+)
+
+PARENT = """
+import multiprocessing, os, time
+from sequence_planner.lifeline import end_without_parent
+
+def child():
+    end_without_parent()
+    print(os.getpid(), flush=True)
+    time.sleep(60)
+
+if __name__ == "__main__":
+    process = multiprocessing.get_context("fork").Process(target=child)
+    process.start()
+    process.join()
+"""
+
+
+def is_there(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def ends(pid: int) -> bool:
+    end = time.monotonic() + 5
+    while is_there(pid) and time.monotonic() < end:
+        time.sleep(0.05)
+    return not is_there(pid)
+
+
+def killed(program: str) -> int:
+    """The child of a process that runs `program` and was killed."""
+    with subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        child = int(process.stdout.readline())
+        assert is_there(child)
+        process.send_signal(signal.SIGKILL)
+    return child
+
+
+def test_what_was_launched_ends_with_a_launcher_that_is_killed() -> None:
+    assert ends(killed(LAUNCHER))
+
+
+def test_what_multiprocessing_started_ends_with_a_parent_that_is_killed() -> None:
+    assert ends(killed(PARENT))

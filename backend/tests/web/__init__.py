@@ -1,0 +1,1 @@
+"""The server as its users meet it: over real sockets, with a real link to a controller."""

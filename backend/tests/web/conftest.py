@@ -1,0 +1,56 @@
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import httpx
+import pytest
+
+from sequence_planner.web.settings import Settings, StreamLimits
+
+from .running import Controller, Loop, Server, free_port, until
+
+
+@pytest.fixture
+def loop() -> Iterator[Loop]:
+    loop = Loop()
+    yield loop
+    loop.close()
+
+
+@pytest.fixture
+def settings(tmp_path: Path) -> Settings:
+    page = tmp_path / "page"
+    page.mkdir()
+    limits = StreamLimits(queue=8, send_seconds=1.5, clients=10)
+    return Settings(controller_socket=tmp_path / "controller.sock", page=page, port=free_port(), stream=limits)
+
+
+@pytest.fixture
+def controller(loop: Loop, settings: Settings) -> Iterator[Controller]:
+    controller = Controller(loop, settings.controller_socket)
+    controller.start()
+    yield controller
+    controller.stop()
+
+
+@pytest.fixture
+def lonely_server(loop: Loop, settings: Settings) -> Iterator[Server]:
+    """A server whose controller has not been started."""
+    server = Server(loop, settings)
+    server.start()
+    yield server
+    server.stop()
+
+
+@pytest.fixture
+def server(controller: Controller, lonely_server: Server) -> Server:
+    """A server that hears its controller."""
+    until(lambda: httpx.get(f"{lonely_server.address}/healthz").json()["controller"] == "heard")
+    return lonely_server
+
+
+@pytest.fixture
+def client(server: Server) -> Iterator[httpx.Client]:
+    with httpx.Client(base_url=server.address) as client:
+        yield client

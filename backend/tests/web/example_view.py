@@ -1,0 +1,141 @@
+"""A small station to show: two resources, a task, a plan of two starts, one alarm."""
+
+from __future__ import annotations
+
+from sequence_planner.control.view import (
+    AbilityView,
+    AlarmView,
+    Mode,
+    OperationView,
+    PlanStatus,
+    PlanStepView,
+    PlanView,
+    Priority,
+    Production,
+    ResourceView,
+    StationIdentity,
+    StationView,
+    StepStatus,
+    TaskView,
+    TopicView,
+    VariableKind,
+    VariableView,
+)
+
+
+def ability(resource: str, title: str) -> AbilityView:
+    return AbilityView(
+        resource=resource,
+        title=title,
+        human=resource == "operator",
+        restart=False,
+        enabled=True,
+        executing=False,
+        finished=False,
+        running_since=None,
+    )
+
+
+def step(name: str, resource: str, status: StepStatus, tick: int) -> PlanStepView:
+    return PlanStepView(
+        id=f"{name}@{tick}",
+        ability=f"{resource}.{name}",
+        title=name,
+        resource=resource,
+        status=status,
+        tick=tick,
+        started=None,
+        ended=None,
+        waits_for=[],
+    )
+
+
+def example_view(**changes: object) -> StationView:
+    """The station at tick 1, with `changes` to its members."""
+    view = StationView(
+        station=StationIdentity(
+            name="bolting",
+            title="Bolting",
+            description="Tightens a bolt pair.",
+            transport="cyclonedds",
+            emulated=True,
+        ),
+        tick=1,
+        time=1000.0,
+        mode=Mode.AUTOMATIC,
+        production=Production.STARTED,
+        resources={
+            "robot": ResourceView(title="Robot", online=True, awaited_topics=[]),
+            "operator": ResourceView(title="Operator", online=True, awaited_topics=[]),
+        },
+        variables={
+            "robot.pose": VariableView(
+                resource="robot",
+                kind=VariableKind.MEASURED,
+                value="home",
+                domain=["home", "above_engine", "unknown"],
+                since=999.0,
+                awaits=None,
+            ),
+            "bolts[bolt_pair_1]": VariableView(
+                resource=None,
+                kind=VariableKind.ESTIMATED,
+                value="empty",
+                domain=["empty", "placed", "tightened"],
+                since=None,
+                awaits=None,
+            ),
+        },
+        abilities={
+            "robot.move": ability("robot", "Move"),
+            "operator.place": ability("operator", "Place bolt pair"),
+        },
+        operations={
+            "tighten": OperationView(
+                title="Tighten bolt pair 1",
+                active=True,
+                active_since=990.0,
+                completed=0,
+                goal="bolts[bolt_pair_1] = tightened",
+                precondition="true",
+                left_out=False,
+            )
+        },
+        plan=PlanView(
+            status=PlanStatus.FOLLOWED,
+            reason="tighten became active",
+            steps=[
+                step("place", "operator", StepStatus.RUNNING, 0),
+                step("move", "robot", StepStatus.NEXT, 2),
+            ],
+            ticks=4,
+            minimal_ticks=True,
+            minimal_starts=True,
+            replanned=0,
+            milliseconds=1.5,
+        ),
+        tasks={
+            "7": TaskView(
+                revision=3,
+                ability="operator.place",
+                title="Place bolt pair 1",
+                text="Place it on the cover plate",
+                created=995.0,
+                next_moves=["Robot moves above the engine"],
+            )
+        },
+        topics={
+            "/robot/state": TopicView(
+                type="bolting_msgs/msg/RobotState",
+                direction="in",
+                resource="robot",
+                last=999.9,
+                messages=12,
+                fresh=True,
+                peers=1,
+                trouble=None,
+            )
+        },
+        alarms={"slow": AlarmView(priority=Priority.LOW, text="The robot is slow", action="Look at it", since=998.0)},
+    )
+    return view.model_copy(update=changes)

@@ -1,0 +1,141 @@
+"""Real processes' parts in one thread: a controller's link that publishes, and the server under uvicorn."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import socket
+import threading
+import time
+from collections.abc import Callable, Coroutine
+from pathlib import Path
+from typing import Any, TypeVar
+
+import uvicorn
+
+from sequence_planner.control.commands import AcknowledgeTask, Command, CommandRefused
+from sequence_planner.control.link import ControllerLink
+from sequence_planner.control.view import StationView
+from sequence_planner.web.server import uvicorn_config
+from sequence_planner.web.settings import Settings, bind
+
+from .example_view import example_view
+
+T = TypeVar("T")
+PUBLISH_INTERVAL = 0.2  # seconds
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def until(condition: Callable[[], bool], seconds: float = 5.0) -> None:
+    """Wait for `condition`; fails when it does not come true in time."""
+    deadline = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < deadline, "waited in vain"
+        time.sleep(0.01)
+
+
+class Loop:
+    """An event loop in a thread of its own."""
+
+    def __init__(self) -> None:
+        self.loop = asyncio.new_event_loop()
+        self.thread = threading.Thread(target=self.loop.run_forever, daemon=True)
+        self.thread.start()
+
+    def run(self, work: Coroutine[Any, Any, T]) -> T:
+        return asyncio.run_coroutine_threadsafe(work, self.loop).result(20)
+
+    def close(self) -> None:
+        self.loop.call_soon_threadsafe(self.loop.stop)
+        self.thread.join(5)
+        self.loop.close()
+
+
+class Controller:
+    """Publishes a view with a fresh time five times a second, and carries out or refuses commands."""
+
+    def __init__(self, loop: Loop, path: Path) -> None:
+        self.loop = loop
+        self.view = example_view()
+        self.commands: list[Command] = []
+        self.publishing = True
+        self.link = ControllerLink(path, self.handle)
+        self._task: asyncio.Task[None] | None = None
+
+    async def handle(self, command: Command) -> None:
+        if isinstance(command, AcknowledgeTask):
+            task = self.view.tasks.get(command.task)
+            if task is None or task.revision != command.revision:
+                raise CommandRefused("task-gone", "The task is gone", "Look at what is asked for now.")
+            if command.task == "broken":
+                raise RuntimeError("a fault of the controller")
+        self.commands.append(command)
+
+    def start(self) -> None:
+        self.loop.run(self.link.__aenter__())
+
+        async def begin() -> None:
+            self._task = asyncio.create_task(self._publish())
+
+        self.loop.run(begin())
+
+    def stop(self) -> None:
+        async def end() -> None:
+            if self._task is not None:
+                self._task.cancel()
+            await self.link.__aexit__(None, None, None)
+
+        self.loop.run(end())
+
+    def show(self, view: StationView) -> None:
+        """Publish `view` now, and again from now on."""
+
+        async def publish() -> None:
+            self.view = view
+            self.link.publish(view)
+
+        self.loop.run(publish())
+
+    async def _publish(self) -> None:
+        while True:
+            if self.publishing:
+                self.view = self.view.model_copy(update={"time": self.view.time + PUBLISH_INTERVAL})
+                self.link.publish(self.view)
+            await asyncio.sleep(PUBLISH_INTERVAL)
+
+
+class Server:
+    """The server under uvicorn, on a free port."""
+
+    def __init__(self, loop: Loop, settings: Settings) -> None:
+        self.loop = loop
+        self.settings = settings
+        self.address = f"http://127.0.0.1:{settings.port}"
+        self.stream = f"ws://127.0.0.1:{settings.port}/api/v1/stream"
+        self._uvicorn = uvicorn.Server(uvicorn_config(settings))
+        self._task: asyncio.Task[None] | None = None
+
+    def start(self) -> None:
+        listener = bind(self.settings.host, self.settings.port)
+
+        async def begin() -> None:
+            # `_serve` is `serve` without the signal handlers, which belong to the main thread.
+            self._task = asyncio.create_task(self._uvicorn._serve([listener]))
+
+        self.loop.run(begin())
+        until(lambda: self._uvicorn.started)
+
+    def stop(self) -> None:
+        async def end() -> None:
+            self._uvicorn.should_exit = True
+            if self._task is not None:
+                with contextlib.suppress(asyncio.CancelledError):
+                    await self._task
+
+        self.loop.run(end())

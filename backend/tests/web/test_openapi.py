@@ -1,0 +1,70 @@
+"""The OpenAPI document, from which other programs and the page's types are made."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import httpx
+import pytest
+
+from sequence_planner.web.openapi import document
+
+COMMITTED = Path(__file__).parents[3] / "frontend" / "openapi.json"
+
+
+@pytest.fixture
+def described() -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(document())
+    return found
+
+
+def test_the_stream_is_described(described: dict[str, Any]) -> None:
+    schemas = described["components"]["schemas"]
+    kinds = {each["$ref"].rpartition("/")[2] for each in schemas["StreamMessage"]["oneOf"]}
+    assert kinds == {"Snapshot", "Delta", "Link", "StreamError"}
+    assert {"StationView", "StationChange", "StationRemoval", "ClientMessage", "Resync", "Problem"} <= schemas.keys()
+    assert "required" not in schemas["StationChange"]
+
+
+def test_every_reference_leads_somewhere(described: dict[str, Any]) -> None:
+    schemas = described["components"]["schemas"]
+    for part in document().split('"$ref": "')[1:]:
+        assert part.partition('"')[0].rpartition("/")[2] in schemas
+
+
+def test_every_refusal_is_described_as_a_problem(described: dict[str, Any]) -> None:
+    for path, verbs in described["paths"].items():
+        for verb, operation in verbs.items():
+            for status, answer in operation["responses"].items():
+                if not status.startswith("2"):
+                    assert answer["content"].keys() == {"application/problem+json"}, (path, verb, status)
+            assert "default" in operation["responses"]
+
+
+def test_the_printed_document_is_the_served_one_and_always_the_same(client: httpx.Client) -> None:
+    printed = [
+        subprocess.run(
+            [sys.executable, "-m", "sequence_planner.web.openapi"],
+            env={**os.environ, "PYTHONHASHSEED": seed},
+            capture_output=True,
+            text=True,
+            check=True,
+        ).stdout
+        for seed in ("1", "2")
+    ]
+    assert printed[0] == printed[1] == document()
+    assert json.loads(printed[0]) == client.get("/api/v1/openapi.json").json()
+
+
+def test_the_page_is_made_from_this_document() -> None:
+    assert COMMITTED.read_text() == document(), "run `make types`"
+
+
+def test_no_viewer_is_served_that_needs_the_network(client: httpx.Client) -> None:
+    for path in ("/docs", "/redoc", "/api/v1/docs"):
+        assert client.get(path).status_code != 200

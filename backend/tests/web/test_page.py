@@ -1,0 +1,64 @@
+"""The files of the built page, and what is shown when there is none."""
+
+from __future__ import annotations
+
+import httpx
+import pytest
+
+from .running import Server
+from .test_acting import problem
+
+
+@pytest.fixture
+def built(server: Server) -> Server:
+    """A server with a page as SvelteKit's static adapter lays it out."""
+    page = server.settings.page
+    (page / "_app" / "immutable").mkdir(parents=True)
+    (page / "index.html").write_text("<title>Operate</title>")
+    (page / "watch.html").write_text("<title>Watch</title>")
+    (page / "theme.js").write_text("1")
+    (page / "_app" / "immutable" / "start.abc.js").write_text("2")
+    (page.parent / "secret.html").write_text("not for you")
+    return server
+
+
+def test_without_a_build_the_page_says_how_to_make_one(client: httpx.Client) -> None:
+    for path in ("/", "/watch"):
+        answer = client.get(path)
+        assert answer.status_code == 503
+        assert "make run" in answer.text
+
+
+def test_each_page_has_its_address(built: Server, client: httpx.Client) -> None:
+    assert "Operate" in client.get("/").text
+    assert "Watch" in client.get("/watch").text
+    assert client.get("/watch").headers["content-type"].startswith("text/html")
+    assert client.head("/").status_code == 200
+
+
+def test_only_what_carries_a_hash_in_its_name_is_kept(built: Server, client: httpx.Client) -> None:
+    assert "immutable" in client.get("/_app/immutable/start.abc.js").headers["cache-control"]
+    for path in ("/", "/watch", "/theme.js"):
+        assert client.get(path).headers["cache-control"] == "no-cache"
+    assert client.get("/_app/immutable/old.js").headers["cache-control"] == "no-store"
+
+
+def test_a_file_that_did_not_change_is_not_sent_again(built: Server, client: httpx.Client) -> None:
+    etag = client.get("/theme.js").headers["etag"]
+    assert client.get("/theme.js", headers={"If-None-Match": etag}).status_code == 304
+
+
+@pytest.mark.parametrize("path", ["/nothing", "/secret.html", "/..%2fsecret.html", "/%2e%2e/secret", "/_app", "/a%00b"])
+def test_nothing_else_is_served(built: Server, client: httpx.Client, path: str) -> None:
+    problem(client.get(path), 404, "not-found")
+
+
+def test_a_name_that_no_file_can_have_is_not_found(built: Server, client: httpx.Client) -> None:
+    for path in ("/" + "a" * 300, "/a" * 3000):
+        problem(client.get(path), 404, "not-found")
+
+
+def test_a_page_cannot_be_written(built: Server, client: httpx.Client) -> None:
+    answer = client.post("/watch", json={})
+    problem(answer, 405, "method-not-allowed")
+    assert answer.headers["allow"] == "GET, HEAD"
