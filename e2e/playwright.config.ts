@@ -1,0 +1,41 @@
+/**
+ * End-to-end tests: a real Chromium, the real server, and emulated devices that speak real DDS.
+ *
+ * Each station has a free port and a DDS domain of its own (`station/station.ts`); tests that do not disturb one another
+ * share one (`station/bench.ts`). What a theme can change is tagged `@theme` and runs in both.
+ */
+import { defineConfig } from '@playwright/test';
+import { chromium } from './station/chromium.ts';
+
+/** Chromium keeps to this machine: it looks nothing up and reports nothing. */
+const FLAGS = [
+	'--no-sandbox',
+	'--disable-background-networking',
+	'--disable-component-update',
+	'--disable-sync',
+	'--no-first-run',
+	'--disable-default-apps',
+	'--disable-domain-reliability',
+	'--host-resolver-rules=MAP * ~NOTFOUND , EXCLUDE 127.0.0.1 , EXCLUDE localhost'
+];
+
+export default defineConfig({
+	testDir: 'specs',
+	outputDir: 'artefacts/results',
+	reporter: [['list'], ['html', { outputFolder: 'artefacts/report', open: 'never' }]],
+	// One station at a time: the machines that run this have two cores, and each station is several processes.
+	workers: 1,
+	forbidOnly: Boolean(process.env['CI']),
+	timeout: 120_000,
+	expect: { timeout: 15_000 },
+	use: {
+		viewport: { width: 1440, height: 900 },
+		launchOptions: { executablePath: chromium(), args: FLAGS },
+		screenshot: 'only-on-failure',
+		trace: 'retain-on-failure'
+	},
+	projects: [
+		{ name: 'light', use: { colorScheme: 'light' } },
+		{ name: 'dark', use: { colorScheme: 'dark' }, grep: /@theme/ }
+	]
+});

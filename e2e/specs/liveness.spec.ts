@@ -1,0 +1,83 @@
+import { findings } from '../station/barriers.ts';
+import { acknowledge, done, picture, restsOnPerson, tightenings, variable } from '../station/seen.ts';
+import { expect, test } from '../station/test.ts';
+
+test('a view that is no longer live says so within 2 s, on either page @theme', async ({ operate, watch, station }) => {
+	await restsOnPerson(operate, watch);
+	await expect(variable(operate, 'robot.pose')).not.toContainText('old');
+
+	// The whole station stands still, as when its machine hangs: connections stay open and nothing comes.
+	station.server.signalTree('SIGSTOP');
+	try {
+		await Promise.all([
+			expect(operate.getByTestId('not-live')).toBeVisible({ timeout: 2000 }),
+			expect(watch.getByTestId('not-live')).toBeVisible({ timeout: 2000 })
+		]);
+		await expect(variable(operate, 'robot.pose')).toContainText('old');
+		await expect(operate.getByTestId('live-age')).toContainText('not live');
+		await picture(operate, 'operate-old');
+		await picture(watch, 'watch-old');
+		expect(await findings(operate)).toEqual([]);
+		expect(await findings(watch)).toEqual([]);
+
+		// Nobody acknowledges what may no longer be so.
+		await expect(done(watch)).toHaveAttribute('aria-disabled', 'true');
+		const requests: string[] = [];
+		watch.on('request', (request) => requests.push(request.url()));
+		await done(watch).tap({ force: true });
+		expect(requests.filter((url) => url.includes('acknowledgement'))).toEqual([]);
+	} finally {
+		station.server.signalTree('SIGCONT');
+	}
+	await expect(operate.getByTestId('not-live')).toBeHidden();
+	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false');
+});
+
+test.describe('when a part of the station dies', () => {
+	test.use({ shared: null });
+
+	test('a controller that is killed is said to be lost, comes back, and waits for a person', async ({
+		operate,
+		watch,
+		station
+	}) => {
+		await restsOnPerson(operate, watch);
+		const pair = await acknowledge(watch);
+		await expect(variable(operate, `bolts[${pair}]`)).toHaveAttribute('data-value', 'tightened', { timeout: 60_000 });
+		await restsOnPerson(operate, watch);
+
+		// Silent first, so that what is said of it does not depend on how soon it is started again.
+		station.server.signalPart('controller', 'SIGSTOP');
+		await Promise.all([
+			expect(operate.getByTestId('not-live')).toBeVisible({ timeout: 2000 }),
+			expect(watch.getByTestId('not-live')).toBeVisible({ timeout: 2000 })
+		]);
+		await expect(operate.getByTestId('not-live')).toContainText('does not hear the controller');
+		await expect(variable(operate, `bolts[${pair}]`)).toContainText('old');
+		await expect(done(watch)).toHaveAttribute('aria-disabled', 'true');
+		station.server.killPart('controller');
+
+		// What the new one says replaces all that the old one said: no value of before is left among those of now.
+		await expect(operate.getByTestId('not-live')).toBeHidden({ timeout: 30_000 });
+		await expect(operate.getByTestId('mode')).toContainText('waits for the start of production', { timeout: 30_000 });
+		await expect(variable(operate, 'robot.pose')).not.toHaveAttribute('data-value', 'unknown');
+		await expect(operate.getByText('old', { exact: true })).toHaveCount(0);
+		const said = await station.values();
+		for (const [name, value] of said) await expect(variable(operate, name)).toHaveAttribute('data-value', value);
+		await expect(done(watch)).toHaveCount(0);
+		await expect(operate.locator('[data-step]')).toHaveCount(0);
+
+		await operate.getByRole('button', { name: 'Start production' }).click();
+		await restsOnPerson(operate, watch);
+		await acknowledge(watch);
+		await expect.poll(() => tightenings(operate), { timeout: 60_000 }).toBe(1);
+	});
+
+	test('a server that is gone is said to be gone', async ({ operate, watch, station }) => {
+		await station.server.kill();
+		await Promise.all([
+			expect(operate.getByTestId('not-live')).toContainText('connection to the server is lost', { timeout: 2000 }),
+			expect(watch.getByTestId('not-live')).toBeVisible({ timeout: 2000 })
+		]);
+	});
+});

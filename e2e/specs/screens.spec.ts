@@ -1,0 +1,69 @@
+import { overflow } from '../station/barriers.ts';
+import { picture, restsOnPerson } from '../station/seen.ts';
+import { expect, test } from '../station/test.ts';
+
+const SCREENS = [
+	[1440, 900],
+	[768, 1024],
+	[320, 640]
+] as const;
+
+test('the pages fit their screens @theme', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	for (const [width, height] of SCREENS) {
+		await operate.setViewportSize({ width, height });
+		expect(await overflow(operate), `pixels to the right of a screen of ${width}`).toBe(0);
+		await picture(operate, `operate-${width}`);
+	}
+
+	// On a round face the button and the words must lie within the circle.
+	const outside = await watch.evaluate(() => {
+		const range = document.createRange();
+		const boxes = [...document.querySelectorAll('main h1, main p')].flatMap((element) => {
+			range.selectNodeContents(element);
+			return [...range.getClientRects()].map((box) => ({ text: element.textContent, box }));
+		});
+		const corner = (x: number, y: number): boolean =>
+			Math.hypot(x - innerWidth / 2, y - innerHeight / 2) > innerWidth / 2;
+		return boxes
+			.filter(({ box }) => [box.left, box.right].some((x) => [box.top, box.bottom].some((y) => corner(x, y))))
+			.map(({ text }) => text);
+	});
+	expect(outside).toEqual([]);
+});
+
+test('mode, age, alarms and Pause stay in sight wherever the page is scrolled to', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	for (const [width, height] of [...SCREENS, [640, 320] as const]) {
+		await operate.setViewportSize({ width, height });
+		await operate.evaluate(() => window.scrollTo(0, document.documentElement.scrollHeight));
+		await expect(operate.getByTestId('mode')).toBeInViewport({ ratio: 1 });
+		await expect(operate.getByTestId('live-age')).toBeInViewport({ ratio: 1 });
+		await expect(operate.getByText('no alarms')).toBeInViewport({ ratio: 1 });
+		await expect(operate.getByRole('button', { name: 'Pause' })).toBeInViewport({ ratio: 1 });
+	}
+});
+
+test('text of twice the size is still all there', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	await operate.evaluate(() => (document.documentElement.style.fontSize = '200%'));
+	for (const [width, height] of SCREENS) {
+		if (width === 320) continue; // there the width is that of a page enlarged four times; text of twice the size comes with 768
+		await operate.setViewportSize({ width, height });
+		expect(await overflow(operate), `pixels to the right of a screen of ${width}`).toBe(0);
+	}
+});
+
+test('the theme that was chosen is kept', async ({ operate }) => {
+	const ground = (): Promise<string> =>
+		operate.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
+	const light = await ground();
+	await operate.getByRole('button', { name: 'Theme: auto' }).click();
+	await operate.getByRole('button', { name: 'Theme: light' }).click();
+	await expect(operate.getByRole('button', { name: 'Theme: dark' })).toBeVisible();
+	const dark = await ground();
+	expect(dark).not.toBe(light);
+	await operate.reload();
+	await expect(operate.getByRole('button', { name: 'Theme: dark' })).toBeVisible();
+	expect(await ground()).toBe(dark);
+});

@@ -1,0 +1,79 @@
+/** A process of the station under test: started with its output kept, stopped by its id, and nothing left behind. */
+import { spawn, type ChildProcess } from 'node:child_process';
+import { closeSync, mkdirSync, openSync } from 'node:fs';
+import { dirname } from 'node:path';
+import { setTimeout as sleep } from 'node:timers/promises';
+import { alive, argumentsOf, signal, treeOf, type Identity } from './process-tree.ts';
+
+/** Milliseconds that a process and those it started get to end by themselves. */
+const GRACE = 15_000;
+
+export class StationProcess {
+	readonly #child: ChildProcess;
+	readonly #ended: Promise<void>;
+	readonly log: string;
+
+	/** Starts `command`; what it prints goes to the file `log`. */
+	constructor(command: string, args: string[], options: { cwd: string; env: NodeJS.ProcessEnv; log: string }) {
+		mkdirSync(dirname(options.log), { recursive: true });
+		this.log = options.log;
+		const output = openSync(options.log, 'a');
+		this.#child = spawn(command, args, { cwd: options.cwd, env: options.env, stdio: ['ignore', output, output] });
+		closeSync(output);
+		this.#ended = new Promise((resolve) => {
+			this.#child.once('exit', () => resolve());
+			this.#child.once('error', () => resolve());
+		});
+	}
+
+	get running(): boolean {
+		return this.#child.pid !== undefined && this.#child.exitCode === null && this.#child.signalCode === null;
+	}
+
+	/** The process and all it has started. */
+	get #tree(): Identity[] {
+		return this.running && this.#child.pid !== undefined ? treeOf(this.#child.pid) : [];
+	}
+
+	/** Sends a signal to the process and to all it has started. */
+	signalTree(name: NodeJS.Signals): void {
+		signal(this.#tree, name);
+	}
+
+	/** Signals the one process among those it has started that was started with the argument `part`. */
+	signalPart(part: string, name: NodeJS.Signals): void {
+		const [found, ...others] = this.#tree.slice(1).filter((each) => argumentsOf(each).includes(part));
+		if (found === undefined || others.length > 0) throw new Error(`not one process is the ${part}`);
+		signal([found], name);
+	}
+
+	/** Kills one of the processes that it has started. */
+	killPart(part: string): void {
+		this.signalPart(part, 'SIGKILL');
+	}
+
+	/** Resolves when the process ends by itself, with its exit code; null when a signal ended it. */
+	async ended(): Promise<number | null> {
+		await this.#ended;
+		return this.#child.exitCode;
+	}
+
+	/** Asks the process to end. An error when it, or one that it started, has to be ended by force. */
+	async stop(): Promise<void> {
+		const tree = this.#tree;
+		if (this.running) this.#child.kill('SIGTERM');
+		const deadline = Date.now() + GRACE;
+		while (tree.some(alive) && Date.now() < deadline) await sleep(50);
+		const left = tree.filter(alive);
+		signal(left, 'SIGKILL');
+		await this.#ended;
+		if (left.length > 0)
+			throw new Error(`${left.length} of ${tree.length} processes did not end in ${GRACE / 1000} s; see ${this.log}`);
+	}
+
+	/** Ends the process and all it has started, at once and without warning. */
+	async kill(): Promise<void> {
+		this.signalTree('SIGKILL');
+		await this.#ended;
+	}
+}

@@ -1,0 +1,40 @@
+/**
+ * The names by which the page knows the station's document and the messages that carry it.
+ *
+ * All types come from `api.ts`, which is generated from the server's OpenAPI document; nothing is declared here
+ * that the server does not declare, apart from what JSON schema cannot say (which fields of a delta are maps).
+ */
+import type { components } from './api.ts';
+
+type Schemas = components['schemas'];
+
+export type StationView = Schemas['StationView'];
+export type Resource = Schemas['ResourceView'];
+export type Variable = Schemas['VariableView'];
+export type Ability = Schemas['AbilityView'];
+export type Operation = Schemas['OperationView'];
+export type Plan = Schemas['PlanView'];
+export type PlanStep = Schemas['PlanStepView'];
+export type StepStatus = Schemas['StepStatus'];
+export type Task = Schemas['TaskView'];
+export type Topic = Schemas['TopicView'];
+export type Alarm = Schemas['AlarmView'];
+export type Priority = Schemas['Priority'];
+export type Mode = Schemas['Mode'];
+export type Value = NonNullable<Variable['value']>;
+
+export type Delta = Schemas['Delta'];
+export type StreamMessage = Schemas['StreamMessage'];
+export type Resync = Schemas['Resync'];
+export type Problem = Schemas['Problem'];
+
+/** The fields of the document that are maps: a delta merges into them and `removed` names the keys that are gone. */
+export const MAPS = [
+	'resources',
+	'variables',
+	'abilities',
+	'operations',
+	'tasks',
+	'topics',
+	'alarms'
+] as const satisfies readonly (keyof Schemas['StationRemoval'])[];

@@ -1,0 +1,84 @@
+/**
+ * The WebSocket to the server: opened again for ever, with a growing wait between attempts.
+ *
+ * A connection can die without a word (a laptop that slept, a server that stopped), so one on which nothing is
+ * heard for `SILENT` is closed and opened anew.
+ */
+import type { Resync, StreamMessage } from '#lib/contract.ts';
+
+const SHORTEST = 250;
+const LONGEST = 5000;
+const SILENT = 6000;
+
+/** Milliseconds before attempt `n` (from 0). `chance` in [0, 1) spreads the clients of a server that comes back. */
+export function pause(n: number, chance: number): number {
+	const wait = Math.min(LONGEST, SHORTEST * 2 ** Math.min(n, 16));
+	return wait * (0.5 + chance / 2);
+}
+
+export interface Listener {
+	opened(): void;
+	heard(message: StreamMessage): void;
+	closed(): void;
+}
+
+export interface Connection {
+	/** Asks for a new snapshot. */
+	resync(): void;
+	close(): void;
+}
+
+/** Connects to `url` and keeps connecting until `close`. */
+export function connect(url: string, listener: Listener): Connection {
+	let socket: WebSocket | null = null;
+	let attempts = 0;
+	let retry: ReturnType<typeof setTimeout> | undefined;
+	let watch: ReturnType<typeof setTimeout> | undefined;
+	let ended = false;
+
+	function heardSomething(): void {
+		clearTimeout(watch);
+		watch = setTimeout(drop, SILENT);
+	}
+
+	function drop(): void {
+		clearTimeout(watch);
+		const dead = socket;
+		socket = null;
+		if (dead === null) return;
+		dead.close();
+		listener.closed();
+		if (!ended) retry = setTimeout(open, pause(attempts++, Math.random()));
+	}
+
+	function open(): void {
+		const opening = new WebSocket(url);
+		socket = opening;
+		heardSomething();
+		opening.onopen = () => {
+			if (socket === opening) listener.opened();
+		};
+		opening.onmessage = (event: MessageEvent<string>) => {
+			if (socket !== opening) return;
+			heardSomething();
+			attempts = 0;
+			listener.heard(JSON.parse(event.data) as StreamMessage);
+		};
+		opening.onclose = () => {
+			if (socket === opening) drop();
+		};
+	}
+
+	open();
+	return {
+		resync() {
+			const message: Resync = { kind: 'resync' };
+			if (socket?.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message));
+		},
+		close() {
+			ended = true;
+			clearTimeout(retry);
+			drop();
+		}
+	};
+}

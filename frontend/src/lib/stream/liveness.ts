@@ -1,0 +1,39 @@
+/**
+ * May what is shown be taken for the station as it is now?
+ *
+ * While all is well the controller shows itself ten times a second, and never less than twice. Anything older than
+ * `OLD_AFTER` is old, whatever the reason; the reasons that are known sooner (connection closed, controller lost, a message missing) count at
+ * once.
+ */
+import { ageOf, type Hearing } from './hearing.ts';
+import type { Stream } from './receive.ts';
+
+/** Milliseconds; with the page's own refresh, and on a busy machine, a view that died says so well within 2 s. */
+export const OLD_AFTER = 1300;
+
+export type Cause = 'connecting' | 'closed' | 'controller' | 'gap' | 'silent';
+
+export type Liveness =
+	| { readonly live: true; readonly age: number }
+	| { readonly live: false; readonly age: number | null; readonly cause: Cause };
+
+/** Judges what is known at `now` (milliseconds on the clock of `hearing`). */
+export function judge(stream: Stream, hearing: Hearing, open: boolean, now: number): Liveness {
+	const age = ageOf(hearing, now);
+	if (!open) return { live: false, age, cause: 'closed' };
+	if (stream.controller === 'lost') return { live: false, age, cause: 'controller' };
+	if (stream.view === null || age === null) return { live: false, age, cause: 'connecting' };
+	if (!hearing.proven && age <= OLD_AFTER) return { live: false, age, cause: 'connecting' };
+	if (stream.gap) return { live: false, age, cause: 'gap' };
+	if (age > OLD_AFTER) return { live: false, age, cause: 'silent' };
+	return { live: true, age };
+}
+
+/** Why a view is old, as a person says it. */
+export const CAUSES: Record<Cause, string> = {
+	connecting: 'Connecting to the station.',
+	closed: 'The connection to the server is lost. Trying again.',
+	controller: 'The server does not hear the controller.',
+	gap: 'A message was lost on the way. A new picture has been asked for.',
+	silent: 'Nothing new has come from the server.'
+};

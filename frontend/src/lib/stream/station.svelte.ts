@@ -1,0 +1,82 @@
+/**
+ * The station as this page knows it: the last document, and whether it is still true.
+ *
+ * One `Station` serves all pages; components take it with `useStation()` and derive what they show from it.
+ */
+import { createContext } from 'svelte';
+import type { StationView } from '#lib/contract.ts';
+import { connect } from './connection.ts';
+import { SILENCE, clockDifference, hear, type Hearing } from './hearing.ts';
+import { judge, type Liveness } from './liveness.ts';
+import { NOTHING, receive, type Stream } from './receive.ts';
+
+/** Milliseconds between two looks at the clock. */
+const REFRESH = 150;
+/** Milliseconds after which a snapshot that was asked for and did not come is asked for again. */
+const ASK_AGAIN = 2000;
+
+export class Station {
+	#stream = $state.raw<Stream>(NOTHING);
+	#hearing = $state.raw<Hearing>(SILENCE);
+	#open = $state(false);
+	#now = $state(0);
+
+	/** The last document, live or not; null before the first. */
+	readonly view: StationView | null = $derived(this.#stream.view);
+	readonly liveness: Liveness = $derived(judge(this.#stream, this.#hearing, this.#open, this.#now));
+	readonly live: boolean = $derived(this.liveness.live);
+	/** What the server last complained of. */
+	readonly trouble: string | null = $derived(this.#stream.trouble);
+	/** Seconds on the controller's clock. It stands still while the view is old, so that no duration goes on growing. */
+	readonly time: number = $derived.by(() => {
+		const difference = clockDifference(this.#hearing);
+		if (this.live && difference !== null) return (this.#now - difference) / 1000;
+		return this.view?.time ?? 0;
+	});
+
+	/** Connects to the server's stream; the result disconnects. */
+	attach(url: string): () => void {
+		const look = (): void => {
+			this.#now = performance.now();
+		};
+		let asked = -Infinity;
+		const connection = connect(url, {
+			opened: () => {
+				this.#open = true;
+			},
+			heard: (message) => {
+				const before = this.#stream;
+				this.#stream = receive(before, message);
+				look();
+				if (this.#stream.gap && this.#now - asked > ASK_AGAIN) {
+					asked = this.#now;
+					connection.resync();
+				}
+				const time = this.#stream.view?.time;
+				// Only the controller's own clock proves that the controller is behind a message.
+				if (time !== undefined && (time !== before.view?.time || message.kind === 'snapshot'))
+					this.#hearing = hear(this.#hearing, this.#now, time * 1000);
+			},
+			closed: () => {
+				this.#open = false;
+				look();
+			}
+		});
+		const timer = setInterval(look, REFRESH);
+		// A page that comes to the front must not show for a moment what was true when it left.
+		document.addEventListener('visibilitychange', look);
+		return () => {
+			clearInterval(timer);
+			document.removeEventListener('visibilitychange', look);
+			connection.close();
+		};
+	}
+}
+
+const [useStation, setStation] = createContext<Station>();
+export { useStation };
+
+/** Makes a station for all components below. */
+export function provideStation(): Station {
+	return setStation(new Station());
+}

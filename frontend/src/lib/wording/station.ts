@@ -1,0 +1,38 @@
+/** How the state of execution is said. */
+import type { Mode, Plan, StationView } from '#lib/contract.ts';
+
+export const MODES: Record<Mode, string> = { automatic: 'Automatic', paused: 'Paused' };
+
+export const PRODUCTION: Record<StationView['production'], string> = {
+	preparing: 'preparing: nothing moves yet',
+	waiting: 'waits for the start of production',
+	started: 'production started'
+};
+
+export const PLAN_STATUS: Record<Plan['status'], string> = {
+	idle: 'Nothing to plan: no operation is active',
+	planning: 'Planning',
+	followed: 'Followed',
+	broken: 'The station departed from the plan; a new one is being looked for',
+	none: 'No plan was found'
+};
+
+/** `3 starts`, `1 start`. */
+export function count(n: number, one: string, many = `${one}s`): string {
+	return `${n} ${n === 1 ? one : many}`;
+}
+
+/** What the plan promises: its length, how much of it is ahead, and whether less would do. */
+export function planLength(plan: Plan): string {
+	const ahead = plan.steps.filter((step) => step.started === null).length;
+	const ticks = `${count(plan.ticks, 'tick')} (${plan.minimal_ticks ? 'fewest possible' : 'maybe not the fewest'})`;
+	const fewest = plan.minimal_starts ? 'fewest possible' : 'maybe not the fewest';
+	return `Plan of ${ticks}, ${count(ahead, 'start')} ahead (${fewest})`;
+}
+
+/** Milliseconds the planner took: `0.4 ms`, `12 ms`, `1.2 s`. */
+export function plannerTime(milliseconds: number): string {
+	if (milliseconds < 10) return `${milliseconds.toFixed(1)} ms`;
+	if (milliseconds < 1000) return `${Math.round(milliseconds)} ms`;
+	return `${(milliseconds / 1000).toFixed(1)} s`;
+}

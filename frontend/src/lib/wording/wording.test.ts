@@ -1,0 +1,80 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import { PLAN, step } from '#lib/testing/view.ts';
+import { planLength, plannerTime } from './station.ts';
+import { ageText, agoText, durationText } from './time.ts';
+import { valueText, variableName } from './values.ts';
+
+describe('an age', () => {
+	test.each([
+		[0, '0 ms'],
+		[87, '80 ms'],
+		[999, '990 ms'],
+		[1000, '1.0 s'],
+		[9999, '9.9 s'],
+		[10_000, '10 s'],
+		[119_999, '119 s'],
+		[120_000, '2 min'],
+		[7_200_000, '2 h'],
+		[172_800_000, '2 days']
+	])('of %i ms is said as %s', (age, text) => {
+		expect(ageText(age)).toBe(text);
+	});
+});
+
+test('when something was is said in whole seconds, and never as now on a view that is old', () => {
+	expect([0.4, 2.9, 12.3, 130, -1].map((seconds) => agoText(seconds, true))).toEqual([
+		'just now',
+		'2 s ago',
+		'12 s ago',
+		'2 min ago',
+		'just now'
+	]);
+	expect([0.4, 12.3].map((seconds) => agoText(seconds, false))).toEqual(['0 s before', '12 s before']);
+});
+
+describe('a duration', () => {
+	test.each([
+		[-3, '0:00'],
+		[7.9, '0:07'],
+		[750, '12:30'],
+		[3723, '1:02:03']
+	])('of %f s is said as %s', (seconds, text) => {
+		expect(durationText(seconds)).toBe(text);
+	});
+
+	test('reads back as its whole seconds', () => {
+		fc.assert(
+			fc.property(fc.nat(1_000_000), (seconds) => {
+				const back = durationText(seconds)
+					.split(':')
+					.reduce((sum, part) => sum * 60 + Number(part), 0);
+				expect(back).toBe(seconds);
+			})
+		);
+	});
+});
+
+test('a variable loses the name of its resource and its underscores', () => {
+	expect(variableName('robot.target_pose', 'robot')).toBe('target pose');
+	expect(variableName('robot_arm.pose', 'robot')).toBe('robot arm.pose');
+	expect(variableName('bolts[bolt_pair_1]', null)).toBe('bolts · bolt pair 1');
+});
+
+test('values are said in words', () => {
+	expect([true, false, 3, 'above_engine'].map(valueText)).toEqual(['yes', 'no', '3', 'above engine']);
+});
+
+test('a plan says how much of it is ahead, and when less might do', () => {
+	const steps = [step('a', 'robot', 0, { status: 'done', started: 1, ended: 2 }), step('b', 'robot', 0)];
+	expect(planLength({ ...PLAN, steps, ticks: 1 })).toBe(
+		'Plan of 1 tick (fewest possible), 1 start ahead (fewest possible)'
+	);
+	expect(planLength({ ...PLAN, steps, ticks: 6, minimal_ticks: false })).toBe(
+		'Plan of 6 ticks (maybe not the fewest), 1 start ahead (fewest possible)'
+	);
+});
+
+test('the time of the planner keeps two figures or so', () => {
+	expect([0.41, 12.3, 1234].map(plannerTime)).toEqual(['0.4 ms', '12 ms', '1.2 s']);
+});

@@ -1,0 +1,36 @@
+/**
+ * How the page is built: two prerendered documents (`/` and `/watch`) and their scripts, served as plain files.
+ *
+ * Nothing comes from another host and no script is written into the page unhashed, so the Content-Security-Policy
+ * that SvelteKit puts into each document allows only what was built here.
+ */
+import adapter from '@sveltejs/adapter-static';
+import { sveltekit } from '@sveltejs/kit/vite';
+import { defineConfig } from 'vitest/config';
+import manifest from './package.json' with { type: 'json' };
+
+/** Where `npm run dev` finds a running station. */
+const server = process.env['STATION_SERVER'] ?? 'http://127.0.0.1:8000';
+
+export default defineConfig({
+	plugins: [
+		sveltekit({
+			adapter: adapter({ fallback: '404.html' }),
+			csp: {
+				mode: 'hash',
+				directives: {
+					'default-src': ['self'],
+					// SvelteKit hides what it says to screen readers with one `style` attribute; this is its hash.
+					'style-src-attr': ['unsafe-hashes', 'sha256-S8qMpvofolR8Mpjy4kQvEm7m1q8clzU4dfDH0AmvZjo='],
+					'base-uri': ['self'],
+					'object-src': ['none'],
+					'form-action': ['self']
+				}
+			},
+			// The version is only compared for equality; a clock here would make every build differ.
+			version: { name: manifest.version, pollInterval: 0 }
+		})
+	],
+	server: { proxy: { '/api': { target: server, ws: true, changeOrigin: true } } },
+	test: { include: ['src/**/*.test.ts'] }
+});
