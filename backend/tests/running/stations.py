@@ -106,7 +106,7 @@ class RunningStation:
     def child(self, name: str) -> int:
         """The process id of the part that runs the command `name`."""
         listed = subprocess.run(
-            ["ps", "-ww", "--ppid", str(self.process.pid), "-o", "pid=,args="],  # -ww: whole lines, whatever COLUMNS says
+            ["ps", "-ww", "--ppid", str(self.process.pid), "-o", "pid=,args="],  # -ww: whatever COLUMNS says
             capture_output=True,
             text=True,
             check=True,
