@@ -33,13 +33,14 @@ TYPES: tuple[Type, ...] = (
     EnumerationType(("q", "r", "s")),
     IntegerRange(-1, 1),
 )
+KINDS = (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)
 FLAGS = ("enabled", "executing", "finished")
 _MOST_STATES = 108
 
 
 def declarations(choices: Choices) -> dict[str, VariableDeclaration]:
     """Two to five variables, at least one of them measured and one an output."""
-    kinds = [Kind.MEASURED, Kind.OUTPUT, *(choices.pick(tuple(Kind)) for _ in range(choices.number(0, 3)))]
+    kinds = [Kind.MEASURED, Kind.OUTPUT, *(choices.pick(KINDS) for _ in range(choices.number(0, 3)))]
     declared: dict[str, VariableDeclaration] = {}
     states = 1
     for number, kind in enumerate(kinds):

@@ -6,10 +6,9 @@ from collections.abc import Iterable
 from itertools import combinations, product
 
 from sequence_planner.automaton.structure import Automaton, reads, target
+from sequence_planner.automaton.transitions import Phase, Transition, transitions
 from sequence_planner.expressions.syntax import Assignment, Constant, Expression, Variable, variables
 from sequence_planner.expressions.types import Value
-
-Transition = tuple[tuple[Expression, ...], tuple[Assignment, ...]]
 
 
 def read_variables(automaton: Automaton, expressions: Iterable[Expression]) -> frozenset[str]:
@@ -35,35 +34,26 @@ def cone_of_influence(automaton: Automaton, questions: Iterable[Expression]) -> 
     The automaton restricted to them answers the questions as the whole does: whatever writes one of them depends on
     them alone, and so does whether two effects, or two finishes, are compatible.
     """
-    starts, finishes, effects = _transitions(automaton)
+    counted = [transition for transition in transitions(automaton) if not transition.restart]
+    phases = {phase: [t for t in counted if t.phase is phase] for phase in Phase}
     relevant = set(read_variables(automaton, questions))
     while True:
         before = len(relevant)
-        for phase in (starts, finishes, effects):
-            inside = [t for t in phase if any(target(action) in relevant for action in t[1])]
-            for guards, actions in inside:
-                relevant |= read_variables(automaton, guards)
-                for action in actions:
+        for phase, members in phases.items():
+            inside = [transition for transition in members if not transition.writes.isdisjoint(relevant)]
+            for transition in inside:
+                relevant |= read_variables(automaton, (transition.guard,))
+                for action in transition.actions:
                     if target(action) in relevant:
                         relevant |= _read_by(automaton, action)
-            if phase is effects:
+            if phase is Phase.SENSE:
                 # Without an effect from outside the one inside can still happen, so only these can stand in its way.
                 relevant |= _disputed(automaton, combinations(inside, 2), relevant)
-            elif phase is finishes:
+            elif phase is Phase.FINISH:
                 # A finish is refused by any other that it conflicts with, also by one that writes nothing relevant.
-                relevant |= _disputed(automaton, product(inside, finishes), relevant)
+                relevant |= _disputed(automaton, product(inside, members), relevant)
         if len(relevant) == before:
             return tuple(name for name in automaton.variables if name in relevant)
-
-
-def _transitions(automaton: Automaton) -> tuple[list[Transition], list[Transition], list[Transition]]:
-    abilities = automaton.abilities.values()
-    starts: list[Transition] = [((a.enabled, a.start_guard), a.start_actions) for a in abilities if not a.restart]
-    finishes: list[Transition] = [
-        ((a.finish_guard,), a.finish_actions) for a in abilities if a.finish_guard is not None
-    ]
-    effects: list[Transition] = [((e.guard,), e.actions) for e in automaton.effects]
-    return starts, finishes, effects
 
 
 def _read_by(automaton: Automaton, action: Assignment) -> frozenset[str]:
@@ -79,9 +69,8 @@ def _disputed(
     for one, other in pairs:
         if one is other:
             continue
-        first, second = one[1], other[1]
-        writes_first = {target(action): action for action in first}
-        writes_second = {target(action): action for action in second}
+        writes_first = {target(action): action for action in one.actions}
+        writes_second = {target(action): action for action in other.actions}
         shared = [n for n in writes_first if n in writes_second]
         if any(n in relevant and _always_differ(writes_first[n], writes_second[n]) for n in shared):
             continue  # never applied together, which the relevant variables already show

@@ -16,6 +16,7 @@ from sequence_planner.automaton.structure import (
     Kind,
     Operation,
     Specification,
+    Timeouts,
     VariableDeclaration,
     target,
 )
@@ -53,6 +54,8 @@ _KINDS = {
     Kind.OUTPUT: "an output variable",
     Kind.ESTIMATED: "an estimated variable",
 }
+
+WRITTEN_KINDS = (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)
 
 Binding = Mapping[str, tuple[str, EnumerationType]]
 
@@ -171,7 +174,7 @@ class _Grounding:
         for name, document in self._station.station.estimated.items():
             self._read_variable(None, name, document, Kind.ESTIMATED)
         for resource, resource_document in self._station.resources.items():
-            for kind in Kind:
+            for kind in WRITTEN_KINDS:
                 for name, document in getattr(resource_document, kind.value).items():
                     self._read_variable(resource, name, document, kind)
 
@@ -313,7 +316,7 @@ class _Grounding:
             finish_actions=() if finishing is None else self._actions(finishing.do, scope, commands, "a finish"),
             restart=document.restart,
             human=self._human(resource, document, binding),
-            time_limit=document.time_limit,
+            timeouts=Timeouts(finish=document.time_limit),
         )
 
     def _human(self, resource: str, document: AbilityDocument, binding: Binding) -> HumanTask | None:

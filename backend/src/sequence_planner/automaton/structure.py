@@ -9,6 +9,7 @@ from functools import cached_property
 
 from sequence_planner.expressions.syntax import Assignment, Expression, Variable, variables
 from sequence_planner.expressions.types import BOOLEAN, Type, Value
+from sequence_planner.model.source import Place
 
 # A state gives every variable and every ability flag a value; None is unknown. Never changed once made.
 State = Mapping[str, Value | None]
@@ -20,6 +21,7 @@ class Kind(StrEnum):
     MEASURED = "measured"
     OUTPUT = "output"
     ESTIMATED = "estimated"
+    ACTIVITY = "activity"  # the tick: whether an operation is active; only of operations that some expression reads
 
 
 @dataclass(frozen=True)
@@ -56,8 +58,23 @@ class HumanTask:
 
 
 @dataclass(frozen=True)
+class Timeouts:
+    """Seconds after a start by which an ability must have reacted, and have finished, before an alarm is raised.
+
+    It has reacted when it has been seen executing, or has finished.
+    """
+
+    react: float | None = None
+    finish: float | None = None
+
+
+@dataclass(frozen=True)
 class Ability:
-    """A ground ability. `finish_guard` is None when it is done at its start."""
+    """A ground ability. `finish_guard` is None when it is done at its start.
+
+    `cancel_actions` are taken when a running ability is called off; `duration` is the shortest and longest time in
+    seconds that a run is estimated to take.
+    """
 
     name: str
     resource: str
@@ -71,7 +88,9 @@ class Ability:
     finish_actions: tuple[Assignment, ...]
     restart: bool = False
     human: HumanTask | None = None
-    time_limit: float | None = None
+    timeouts: Timeouts = Timeouts()
+    duration: tuple[float, float] | None = None
+    cancel_actions: tuple[Assignment, ...] = ()
 
     def flag(self, which: str) -> str:
         """The full name of its flag `enabled`, `executing` or `finished`."""
@@ -88,13 +107,22 @@ class Flag:
 
 @dataclass(frozen=True)
 class Operation:
-    """A ground operation; of several that cannot be planned together, the highest `priority` is kept."""
+    """A ground operation; of several that cannot be planned together, the highest `priority` is kept.
+
+    `local` is a formula of LTL over finite traces (`expressions.traces`) for the run from its activation to its goal.
+    """
 
     name: str
     title: str
     precondition: Expression
     goal: Expression
     priority: int = 0
+    local: Expression | None = None
+
+    @property
+    def activity(self) -> str:
+        """The full name of the truth value that says whether it is active."""
+        return f"operation.{self.name}.active"
 
 
 @dataclass(frozen=True)
@@ -107,8 +135,27 @@ class Specification:
 
 
 @dataclass(frozen=True)
+class WorkMaster:
+    """What a job consists of: its operations, each with those that must be completed before it.
+
+    `brings` are the estimated values that a new product has.
+    """
+
+    name: str
+    title: str
+    operations: Mapping[str, frozenset[str]]
+    brings: tuple[Assignment, ...] = ()
+
+
+@dataclass(frozen=True)
 class Automaton:
-    """All of it. `flags` are in an order in which none depends on a later one."""
+    """All of it. `flags` are in an order in which none depends on a later one.
+
+    A station's automaton goes by the tick. With `one_at_a_time` it is a plain automaton: it has neither flags nor
+    finishes, its abilities are its controllable transitions and its effects the others, and a step is one of them.
+    `initial` describes the initial states of one that has several; each declared initial value then is that of one of
+    them. `goals` are formulas over its runs. `places` says where a part was written, by its name.
+    """
 
     name: str
     title: str
@@ -121,6 +168,11 @@ class Automaton:
     operations: Mapping[str, Operation] = field(default_factory=dict)
     specifications: Mapping[str, Specification] = field(default_factory=dict)
     rest: Expression | None = None  # None: every state is one of rest
+    work_masters: Mapping[str, WorkMaster] = field(default_factory=dict)
+    one_at_a_time: bool = False
+    initial: Expression | None = None
+    goals: tuple[Expression, ...] = ()
+    places: Mapping[str, Place] = field(default_factory=dict, compare=False, repr=False)
 
     def names(self, kind: Kind) -> tuple[str, ...]:
         """The variables of a kind, in order of declaration."""

@@ -124,6 +124,15 @@ def update_operations(automaton: Automaton, state: State, active: frozenset[str]
     return frozenset(after)
 
 
+def record_activity(automaton: Automaton, state: State, active: frozenset[str]) -> State:
+    """The state after step 4: the operations that expressions read are active or not."""
+    after = dict(state)
+    for operation in automaton.operations.values():
+        if operation.activity in after:
+            after[operation.activity] = operation.name in active
+    return after
+
+
 def start_guard_holds(ability: Ability, state: State) -> bool:
     """Whether `enabled` and the written start guard hold. The supervisor has its say elsewhere."""
     return state[ability.flag("enabled")] is True and holds(conjunction(ability.enabled, ability.start_guard), state)

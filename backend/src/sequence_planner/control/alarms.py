@@ -152,14 +152,14 @@ def _plan(execution: Execution, planner_trouble: str | None) -> Iterator[Cause]:
 def _overdue(execution: Execution, monotonic: float) -> Iterator[Cause]:
     for step in execution.order.running:
         ability = execution.automaton.abilities[step.ability]
-        if ability.time_limit is None or step.started is None:
+        if ability.timeouts.finish is None or step.started is None:
             continue
-        if monotonic - step.started.monotonic > ability.time_limit:
+        if monotonic - step.started.monotonic > ability.timeouts.finish:
             executing = execution.state[ability.flag("executing")] is True
             what = "has not finished" if executing else "is not executing and has not finished"
             yield Cause(
                 f"overdue:{step.ability}",
                 Priority.MEDIUM,
-                f"{ability.title} {what} within {ability.time_limit:g} s",
+                f"{ability.title} {what} within {ability.timeouts.finish:g} s",
                 f"Look after {execution.automaton.resources[ability.resource]}.",
             )

@@ -1,0 +1,71 @@
+"""The ground transitions of an automaton, by the phase of the tick that takes them, with what they read and write."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cached_property
+
+from sequence_planner.automaton.structure import Automaton, reads, target
+from sequence_planner.expressions.syntax import Assignment, Expression, conjunction, variables
+
+
+class Phase(StrEnum):
+    """The step of the tick that takes a transition."""
+
+    SENSE = "sense"  # an effect; without a station, or as what a station is expected to do
+    FINISH = "finish"
+    START = "start"
+
+
+@dataclass(frozen=True)
+class Transition:
+    """A guarded update. Only a start is controllable."""
+
+    name: str
+    phase: Phase
+    guard: Expression
+    actions: tuple[Assignment, ...]
+    fault: bool = False  # an effect that nobody counts on
+    restart: bool = False  # a start for restart mode only
+
+    @property
+    def controllable(self) -> bool:
+        """Whether we decide when it is taken."""
+        return self.phase is Phase.START
+
+    @cached_property
+    def reads(self) -> frozenset[str]:
+        """The variables and flags that its guard and its actions read."""
+        return frozenset(variables(self.guard)).union(*map(reads, self.actions))
+
+    @cached_property
+    def writes(self) -> frozenset[str]:
+        """The variables that it may write."""
+        return frozenset(map(target, self.actions))
+
+
+def transitions(automaton: Automaton) -> tuple[Transition, ...]:
+    """All of them: effects, finishes and starts, each in order of declaration.
+
+    An effect bears its own name, the others those of their abilities with `.finish` and `.start`.
+    """
+    abilities = automaton.abilities.values()
+    return (
+        *(Transition(e.name, Phase.SENSE, e.guard, e.actions, fault=e.fault) for e in automaton.effects),
+        *(
+            Transition(f"{a.name}.finish", Phase.FINISH, a.finish_guard, a.finish_actions)
+            for a in abilities
+            if a.finish_guard is not None
+        ),
+        *(
+            Transition(
+                f"{a.name}.start",
+                Phase.START,
+                conjunction(a.enabled, a.start_guard),
+                a.start_actions,
+                restart=a.restart,
+            )
+            for a in abilities
+        ),
+    )
