@@ -8,7 +8,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -40,6 +40,14 @@ def are_gone(pids: list[int]) -> bool:
         ["ps", "-o", "pid=", "-p", ",".join(map(str, pids))], capture_output=True, text=True, check=False
     )
     return not listed.stdout.split()
+
+
+@pytest.fixture
+def _no_nohup() -> Iterator[None]:
+    """What is started hangs up when asked to: under nohup it would inherit, and rightly respect, that it must not."""
+    kept = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, kept)
 
 
 def starts(watched: Part, count: int) -> list[float]:
@@ -100,26 +108,31 @@ def test_what_does_not_end_in_good_order_is_killed(monkeypatch: pytest.MonkeyPat
     assert process.returncode == -signal.SIGKILL
 
 
+@pytest.mark.usefixtures("_no_nohup")
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 @pytest.mark.parametrize("after", [0.0, 1.0])
 def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, tmp_path: Path) -> None:
     """However it ends, and however early."""
-    log = (tmp_path / "log").open("wb")
-    running = subprocess.Popen(
-        command("run", str(MODEL), "--port", str(free_port()), "--emulator"),
-        cwd=REPOSITORY,
-        env={**environment(), "TMPDIR": str(tmp_path)},
-        stdout=log,
-        stderr=log,
-    )
-    eventually(lambda: len(children(running.pid)) == 3)
-    parts = children(running.pid)
-    time.sleep(after)
-    grandchildren = [each for pid in parts for each in children(pid)]
-    running.send_signal(how)
-    running.wait(20)
-    eventually(lambda: are_gone([*parts, *grandchildren]))
-    log.close()
+    with (
+        (tmp_path / "log").open("wb") as log,
+        subprocess.Popen(
+            command("run", str(MODEL), "--port", str(free_port()), "--emulator"),
+            cwd=REPOSITORY,
+            env={**environment(), "TMPDIR": str(tmp_path)},
+            stdout=log,
+            stderr=log,
+        ) as running,
+    ):
+        try:
+            eventually(lambda: len(children(running.pid)) == 3)
+            parts = children(running.pid)
+            time.sleep(after)
+            grandchildren = [each for pid in parts for each in children(pid)]
+            running.send_signal(how)
+            running.wait(20)
+            eventually(lambda: are_gone([*parts, *grandchildren]))
+        finally:
+            running.kill()
     assert running.returncode == (-how if how is signal.SIGKILL else 0)
     assert [each.name for each in tmp_path.iterdir()] == ["log"]
 
