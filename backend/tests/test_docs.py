@@ -8,25 +8,31 @@ from pathlib import Path
 import pytest
 
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.expressions.parser import parse, parse_assignment
-from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_predicate
+from sequence_planner.expressions.parser import parse, parse_assignment, parse_formula
+from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_formula, resolve_predicate
 from sequence_planner.expressions.syntax import ExpressionError
+from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.model.documents import (
     AbilityDocument,
     DocumentPart,
     EffectDocument,
+    OperationDocument,
+    SpecificationDocument,
     StageDocument,
     StationDocument,
     TopicDocument,
+    WorkMasterDocument,
+    WorkStepDocument,
 )
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.enumeration import synthesise
 
 REPOSITORY = Path(__file__).parents[2]
-TEXT = (REPOSITORY / "docs" / "model.md").read_text(encoding="utf-8")
+TEXT = "".join((REPOSITORY / "docs" / page).read_text(encoding="utf-8") for page in ("model.md", "expressions.md"))
 BLOCKS = re.findall(r"^```(\w+) ?(.*)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)
 ERRORS = re.findall(r"^\| `` (.*?) `` \| `` (\d+:\d+: .*) `` \|$", TEXT, re.MULTILINE)
+EXPRESSION_ERRORS = re.findall(r"^\| `` (.*?) `` \| `` (\d+): (.*) `` \|$", TEXT, re.MULTILINE)
 FILES = {label: content for kind, label, content in BLOCKS if kind in ("yaml", "text") and " " not in label}
 
 
@@ -46,9 +52,11 @@ def automaton(station: Path) -> Automaton:
 
 
 def test_there_is_something_to_try() -> None:
-    assert {"station.yaml", "resources/clamp.yaml", "operations.yaml", "specifications.yaml"} < FILES.keys()
-    assert {kind for kind, _, _ in BLOCKS} == {"sh", "yaml", "text", "expression", "action"}
-    assert len(ERRORS) >= 8
+    documents = {"station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml"}
+    assert {*documents, "resources/clamp.yaml"} < FILES.keys()
+    assert {kind for kind, _, _ in BLOCKS} == {"sh", "yaml", "text", "expression", "action", "formula"}
+    assert len(ERRORS) >= 7
+    assert len(EXPRESSION_ERRORS) >= 12
 
 
 def test_the_station_of_the_page_works(automaton: Automaton) -> None:
@@ -56,14 +64,27 @@ def test_the_station_of_the_page_works(automaton: Automaton) -> None:
     assert set(synthesise(automaton).guards) == {"clamp.close", "operator.load"}
 
 
+def scope_of(automaton: Automaton) -> Scope:
+    """What names mean in the clamp's document."""
+    activities = {operation.activity: BOOLEAN for operation in automaton.operations.values()}
+    return Scope({**automaton.types, **activities}, ("clamp.",))
+
+
 def test_expressions(automaton: Automaton) -> None:
-    scope = Scope(automaton.types, ("clamp.",))
+    scope = scope_of(automaton)
     for text in lines_of("expression"):
         resolve_predicate(parse(text), scope)
     for text in lines_of("action"):
         resolve_assignment(parse_assignment(text), scope)
-    with pytest.raises(ExpressionError, match=r"expected an integer in 0\.\.3"):
-        resolve_assignment(parse_assignment("count := count + 1 if count < 3"), scope)
+    for text in lines_of("formula"):
+        resolve_formula(parse_formula(text), scope)
+
+
+@pytest.mark.parametrize(("text", "column", "message"), EXPRESSION_ERRORS)
+def test_wrong_expressions_are_refused_as_shown(automaton: Automaton, text: str, column: str, message: str) -> None:
+    with pytest.raises(ExpressionError) as caught:
+        resolve_predicate(parse(text), scope_of(automaton))
+    assert (caught.value.span.start + 1, caught.value.message) == (int(column), message)
 
 
 def test_what_is_quoted_stands_there() -> None:
@@ -88,7 +109,17 @@ def test_errors_are_said_as_shown(station: Path, line: str, finding: str) -> Non
 
 @pytest.mark.parametrize(
     "part",
-    [StationDocument, TopicDocument, StageDocument, AbilityDocument, EffectDocument],
+    [
+        StationDocument,
+        TopicDocument,
+        StageDocument,
+        AbilityDocument,
+        EffectDocument,
+        OperationDocument,
+        SpecificationDocument,
+        WorkMasterDocument,
+        WorkStepDocument,
+    ],
     ids=lambda part: part.__name__,
 )
 def test_every_key_is_described(part: type[DocumentPart]) -> None:

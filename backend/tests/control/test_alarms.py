@@ -65,3 +65,21 @@ def test_an_alarm_keeps_the_time_at_which_it_came() -> None:
     assert first["planner"].since == later["planner"].since == 1000
     assert "planner" not in shown.current(None, Moment(1070, 80))
     assert shown.current("the planner has ended", Moment(1080, 90))["planner"].since == 1080
+
+
+def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
+    rig = Rig()
+    rig.start_production()
+    shown = alarms(rig)
+    assert rig.run(60, until=lambda: "nutrunner.run_nut" in rig.started)
+    shown.note(rig.ticks[-1])
+    unseen = "no-reaction:nutrunner.run_nut"
+    assert unseen not in shown.current(None, Moment(rig.now + 4, rig.now + 4))
+    late = Moment(rig.now + 6, rig.now + 6)
+    assert shown.current(None, late)[unseen].text == "Run the nutrunner has not begun within 5 s"
+
+    assert rig.run(5, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
+    shown.note(rig.ticks[-1])
+    assert unseen not in shown.current(None, late)
+    overdue = shown.current(None, Moment(rig.now + 40, rig.now + 40))
+    assert {"overdue:nutrunner.run_nut"} == {key for key in overdue if key.endswith("run_nut")}  # one cause, one alarm

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.automaton.grounding import ground
+from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.model.loading import load_station

@@ -5,11 +5,12 @@ from __future__ import annotations
 from hypothesis import strategies as st
 from hypothesis.strategies import DrawFn, SearchStrategy
 
-from sequence_planner.expressions.lexer import KEYWORDS
+from sequence_planner.expressions.lexer import INFIX_LETTERS, KEYWORDS, PREFIX_LETTERS
 from sequence_planner.expressions.syntax import (
     And,
     Arithmetic,
     Assignment,
+    BinaryTemporal,
     Comparison,
     Component,
     Constant,
@@ -19,13 +20,19 @@ from sequence_planner.expressions.syntax import (
     Name,
     Not,
     Or,
+    UnaryTemporal,
     Variable,
 )
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
 RELATIONS = ("==", "!=", "<", "<=", ">", ">=")
 
-_words = st.from_regex(r"[A-Za-z_][A-Za-z0-9_]{0,6}", fullmatch=True).filter(lambda word: word not in KEYWORDS)
+PREFIXES, INFIXES = sorted(PREFIX_LETTERS), sorted(INFIX_LETTERS)
+
+_words = st.one_of(
+    st.from_regex(r"[A-Za-z_][A-Za-z0-9_]{0,6}", fullmatch=True).filter(lambda word: word not in KEYWORDS),
+    st.sampled_from([*PREFIXES, *INFIXES]),
+)
 
 
 @st.composite
@@ -34,7 +41,15 @@ def _components(draw: DrawFn) -> Component:
     return Component(draw(_words), arguments, bool(arguments) and draw(st.booleans()))
 
 
-names: SearchStrategy[Name] = st.lists(_components(), min_size=1, max_size=3).map(tuple).map(Name)
+def _is_no_formula(name: Name) -> bool:
+    """Whether the name is not one like `F(x)`, which in a formula says that `x` comes to hold."""
+    first = name.path[0]
+    return len(name.path) > 1 or first.name not in PREFIX_LETTERS or not first.arguments or first.indexed
+
+
+names: SearchStrategy[Name] = (
+    st.lists(_components(), min_size=1, max_size=3).map(tuple).map(Name).filter(_is_no_formula)
+)
 
 
 def _compound(parts: SearchStrategy[Expression]) -> SearchStrategy[Expression]:
@@ -56,6 +71,27 @@ written: SearchStrategy[Expression] = st.recursive(
     _compound,
     max_leaves=12,
 )
+
+
+def _formulas(atoms: SearchStrategy[Expression], leaves: int) -> SearchStrategy[Expression]:
+    """Formulas of which a good part is temporal, over `atoms`."""
+    return st.recursive(
+        atoms,
+        lambda parts: st.one_of(
+            st.builds(UnaryTemporal, st.sampled_from(PREFIXES), parts),
+            st.builds(BinaryTemporal, st.sampled_from(INFIXES), parts, parts),
+            parts.map(Not),
+            st.lists(parts, min_size=2, max_size=3).map(tuple).map(And),
+            st.lists(parts, min_size=2, max_size=3).map(tuple).map(Or),
+            st.builds(Implies, parts, parts),
+        ),
+        max_leaves=leaves,
+    )
+
+
+# Formulas as the parser yields them: the letters are also names, and temporal formulas stand wherever brackets can.
+_inside = st.one_of(names, st.sampled_from([*PREFIXES, *INFIXES]).map(lambda word: Name((Component(word),))))
+written_formulas = _formulas(st.one_of(_inside, written, _compound(_formulas(_inside, 3))), 8)
 written_assignments = st.builds(Assignment, names, written, st.none() | written)
 
 POSE = EnumerationType(("unknown", "home", "above"))
@@ -127,3 +163,10 @@ def _predicates(folds: bool) -> SearchStrategy[Expression]:
 # Resolved predicates as a person can write them, and as they are once parameters have been replaced by values.
 predicates = _predicates(folds=False)
 predicates_with_parameters = _predicates(folds=True)
+
+# Resolved formulas, and traces of valuations to read them over.
+formulas = _formulas(st.one_of(st.sampled_from(_families[-1]).map(_variable), predicates), 6)
+formulas_with_parameters = _formulas(
+    st.one_of(st.sampled_from(_families[-1]).map(_variable), st.booleans().map(Constant)), 8
+)
+traces = st.lists(valuations, min_size=1, max_size=5)

@@ -20,6 +20,7 @@ NO_TOPIC = (
     "is not a topic name: write it absolute, as in /robot/state, "
     "of letters, digits and single underscores, no part beginning with a digit"
 )
+NO_QUOTES = "`'` has no meaning here; write values without quotes"
 NO_NAME = "is no name: use letters, digits and `_`, and none of the words of the language"
 
 
@@ -49,7 +50,7 @@ NO_NAME = "is no name: use letters, digits and `_`, and none of the words of the
             POZE,
         ),
         (ARM, "enabled: goto == pose and pose != position", 'enabled: "goto\\t== pose and ‹poze != position"', POZE),
-        (ARM, "enabled: goto == pose and pose != position", "enabled: 'goto == ‹''home'''", "`'` has no meaning here"),
+        (ARM, "enabled: goto == pose and pose != position", "enabled: 'goto == ‹''home'''", NO_QUOTES),
         (ARM, "enabled: goto == pose and pose != position", "enabled: &guard goto == pose and ‹poze != position", POZE),
         (
             ARM,
@@ -462,9 +463,15 @@ def test_errors_of_meaning_in_several_files_are_all_reported(tmp_path: Path) -> 
         *replace(station, ARM, "do: [goto := position]", "do: [goto := ‹positon, ‹moving := true]"),
         *replace(station, OPERATIONS, "precondition: parts[which]", "precondition: ‹part[which]"),
         *replace(station, SPECIFICATIONS, "arm.pose == out", "arm.pose == ‹outt"),
-        *replace(station, STATE, "bool moving", "‹boool moving"),
     ]
     assert {line.split(": ")[0] for line in findings(station)} == set(places)
+
+
+def test_message_definitions_come_before_what_follows_from_them(tmp_path: Path) -> None:
+    station = copy_of_cell(tmp_path)
+    replace(station, STATION, "rest: arm.pose", "rest: arm.poze")
+    places = replace(station, STATE, "bool moving", "‹boool moving")
+    assert [line.split(": ")[0] for line in findings(station)] == places
 
 
 def test_a_resource_must_have_a_name_too(tmp_path: Path) -> None:

@@ -34,6 +34,7 @@ class Alarms:
         self._commander = commander
         self._since: dict[str, float] = {}
         self._conflicts: set[tuple[str, str, str]] = set()
+        self._reacted: set[int] = set()  # the running steps that have been seen executing
         self.restless: tuple[str, ...] = ()  # abilities that finish again and again although nothing new is measured
         self.failures: dict[str, str] = {}  # what of the controller's own work fails, and how
 
@@ -41,6 +42,11 @@ class Alarms:
         """After a tick: a conflict is gone in the next one, and what came of it lasts until one of the two goes on."""
         gone_on = {*outcome.finished, *outcome.started}
         self._conflicts = {c for c in self._conflicts if gone_on.isdisjoint(c[:2])} | set(outcome.conflicts)
+        self._reacted = {
+            step.number
+            for step in self._execution.order.running
+            if step.number in self._reacted or self._executes(step.ability)
+        }
 
     def current(self, planner_trouble: str | None, moment: Moment) -> dict[str, AlarmView]:
         """All alarms now."""
@@ -52,7 +58,7 @@ class Alarms:
                 _topics(self._feeds, moment.monotonic),
                 _network(self._network, self._commander),
                 _plan(self._execution, planner_trouble),
-                _overdue(self._execution, moment.monotonic),
+                _overdue(self._execution, self._reacted, moment.monotonic),
             )
             for cause in part
         }
@@ -61,6 +67,9 @@ class Alarms:
             key: AlarmView(priority=c.priority, text=c.text, action=c.action, since=self._since[key])
             for key, c in causes.items()
         }
+
+    def _executes(self, ability: str) -> bool:
+        return self._execution.state[self._execution.automaton.abilities[ability].flag("executing")] is True
 
     def _controller(self) -> Iterator[Cause]:
         for what, how in self.failures.items():
@@ -149,17 +158,27 @@ def _plan(execution: Execution, planner_trouble: str | None) -> Iterator[Cause]:
         yield Cause("left-out", Priority.LOW, text, "These goals cannot be reached together with the others for now.")
 
 
-def _overdue(execution: Execution, monotonic: float) -> Iterator[Cause]:
+def _overdue(execution: Execution, reacted: set[int], monotonic: float) -> Iterator[Cause]:
     for step in execution.order.running:
         ability = execution.automaton.abilities[step.ability]
-        if ability.timeouts.finish is None or step.started is None:
+        if step.started is None:
             continue
-        if monotonic - step.started.monotonic > ability.timeouts.finish:
+        seconds = monotonic - step.started.monotonic
+        react, finish = ability.timeouts.react, ability.timeouts.finish
+        resource = execution.automaton.resources[ability.resource]
+        if finish is not None and seconds > finish:
             executing = execution.state[ability.flag("executing")] is True
             what = "has not finished" if executing else "is not executing and has not finished"
             yield Cause(
                 f"overdue:{step.ability}",
                 Priority.MEDIUM,
-                f"{ability.title} {what} within {ability.timeouts.finish:g} s",
-                f"Look after {execution.automaton.resources[ability.resource]}.",
+                f"{ability.title} {what} within {finish:g} s",
+                f"Look after {resource}.",
+            )
+        elif react is not None and seconds > react and step.number not in reacted:
+            yield Cause(
+                f"no-reaction:{step.ability}",
+                Priority.MEDIUM,
+                f"{ability.title} has not begun within {react:g} s",
+                f"Check that {resource} receives its commands and is ready.",
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sequence_planner.automaton.structure import Kind
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution, TickOutcome
 from sequence_planner.control.feeds import Feeds
@@ -89,6 +90,8 @@ class Viewing:
     def _variables(self) -> dict[str, VariableView]:
         views = {}
         for name, variable in self._execution.automaton.variables.items():
+            if variable.kind is Kind.ACTIVITY:
+                continue  # operations have a part of their own
             value = self._execution.state[name]
             since = self._since.get(name)
             views[name] = VariableView(

@@ -9,6 +9,7 @@ from typing import Any
 from sequence_planner.expressions.syntax import (
     And,
     Arithmetic,
+    BinaryTemporal,
     Comparison,
     Constant,
     Expression,
@@ -17,6 +18,7 @@ from sequence_planner.expressions.syntax import (
     Name,
     Not,
     Or,
+    UnaryTemporal,
     Variable,
 )
 from sequence_planner.expressions.types import Value
@@ -37,7 +39,8 @@ RELATIONS: Mapping[str, Callable[[Any, Any], bool]] = {
 def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
     """The value of a resolved expression, or None where unknown variables leave it open.
 
-    Raises KeyError for a variable that `valuation` does not have, TypeError for an unresolved name.
+    Raises KeyError for a variable that `valuation` does not have, TypeError for an unresolved name and for a temporal
+    formula, which has a value only over a trace (see `traces`).
     """
     match expression:
         case Constant(value):
@@ -48,12 +51,12 @@ def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
             truth = evaluate(operand, valuation)
             return None if truth is None else not truth
         case And(operands):
-            return _least(evaluate(part, valuation) for part in operands)
+            return least(evaluate(part, valuation) for part in operands)
         case Or(operands):
-            return _greatest(evaluate(part, valuation) for part in operands)
+            return greatest(evaluate(part, valuation) for part in operands)
         case Implies(left, right):
             premise = evaluate(left, valuation)
-            return _greatest((None if premise is None else not premise, evaluate(right, valuation)))
+            return greatest((None if premise is None else not premise, evaluate(right, valuation)))
         case Comparison(relation, left, right):
             a, b = evaluate(left, valuation), evaluate(right, valuation)
             return None if a is None or b is None else RELATIONS[relation](a, b)
@@ -62,7 +65,7 @@ def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
             if a is None:
                 return None
             found = (evaluate(option, valuation) for option in options)
-            return _greatest(None if b is None else a == b for b in found)
+            return greatest(None if b is None else a == b for b in found)
         case Arithmetic(sign, left, right):
             a, b = evaluate(left, valuation), evaluate(right, valuation)
             if a is None or b is None:
@@ -70,6 +73,8 @@ def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
             return int(a) + int(b) if sign == "+" else int(a) - int(b)
         case Name():
             raise TypeError(f"unresolved name {expression}")
+        case UnaryTemporal(operator_) | BinaryTemporal(operator_):
+            raise TypeError(f"a formula with `{operator_}` has no value in a single state")
 
 
 def holds(expression: Expression, valuation: Valuation) -> bool:
@@ -77,7 +82,8 @@ def holds(expression: Expression, valuation: Valuation) -> bool:
     return evaluate(expression, valuation) is True
 
 
-def _least(truths: Iterable[Value | None]) -> bool | None:
+def least(truths: Iterable[Value | None]) -> bool | None:
+    """Conjunction over three truth values."""
     unknown = False
     for truth in truths:
         if truth is False:
@@ -86,7 +92,8 @@ def _least(truths: Iterable[Value | None]) -> bool | None:
     return None if unknown else True
 
 
-def _greatest(truths: Iterable[Value | None]) -> bool | None:
+def greatest(truths: Iterable[Value | None]) -> bool | None:
+    """Disjunction over three truth values."""
     unknown = False
     for truth in truths:
         if truth is True:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from sequence_planner.expressions.syntax import ExpressionError, Span
 
 KEYWORDS = frozenset({"and", "or", "not", "implies", "in", "if", "true", "false"})
 
-_WORD = re.compile(
-    r"\s*(?:(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<number>[0-9]+)|(?P<sign>:=|==|!=|<=|>=|[-+<>.,()\[\]{}])|(?P<bad>\S))"
-)
+# Operators of LTL over finite traces; names everywhere but in formulas.
+PREFIX_LETTERS = frozenset("XNFG")
+INFIX_LETTERS = frozenset("URW")
 
 # Solvers and tables compute with 32 bits; sums of these fit.
 MOST_DIGITS = 6
@@ -19,22 +19,56 @@ MOST_DIGITS = 6
 # What people write out of habit from other languages, and what it is here.
 _HABITS = {
     "&": "and",
-    "|": "or",
-    "!": "not",
-    "=": "== (or := in an action)",
-    "¬": "not",
+    "&&": "and",
     "∧": "and",
+    "|": "or",
+    "||": "or",
     "∨": "or",
+    "!": "not",
+    "~": "not",
+    "¬": "not",
+    "->": "implies",
+    "→": "implies",
+    "⇒": "implies",
+    "=>": "implies (or >= between integers)",
+    "=": "== (or := in an action)",
+    ":": ":= in an action, == in a condition",
+    "===": "==",
+    "<=>": "==",
+    "<>": "!=",
+    "!==": "!=",
+    "≠": "!=",
+    "=<": "<=",
+    "≤": "<=",
+    "≥": ">=",
+    "∈": "in {...}",
+    "+=": "n := n + 1",
+    "-=": "n := n - 1",
+    "++": "n := n + 1",
+    "*": "a sum with + and -",
+    '"': "values without quotes",
+    "'": "values without quotes",
 }
+_LONG_HABITS = "|".join(re.escape(habit) for habit in sorted(_HABITS, key=len, reverse=True) if len(habit) > 1)
+_WORD = re.compile(
+    r"\s*(?:(?P<name>[A-Za-z_][A-Za-z0-9_]*)|(?P<number>[0-9]+)|"
+    rf"(?P<habit>{_LONG_HABITS})|(?P<sign>:=|==|!=|<=|>=|[-+<>.,()\[\]{{}}])|(?P<bad>\S))"
+)
+_NAME, _NUMBER, _SIGN = (_WORD.groupindex[group] for group in ("name", "number", "sign"))
 
 
-@dataclass(frozen=True)
-class Token:
+class Token(NamedTuple):
     """A word and its place. `kind` is `name`, `number`, `end`, or the keyword or sign itself."""
 
     kind: str
     text: str
-    span: Span
+    start: int
+    end: int
+
+    @property
+    def span(self) -> Span:
+        """The place of the word."""
+        return Span(self.start, self.end)
 
     def __str__(self) -> str:
         return "the end of the text" if self.kind == "end" else f"`{self.text}`"
@@ -43,19 +77,22 @@ class Token:
 def tokens(text: str) -> list[Token]:
     """Split `text` into words, ended by one of kind `end`. Raises `ExpressionError` at a character that is none."""
     found: list[Token] = []
-    place = 0
-    while (match := _WORD.match(text, place)) is not None:
-        kind = str(match.lastgroup)
-        word = match[kind]
-        span = Span(match.start(kind), match.end(kind))
-        if kind == "bad":
+    for match in _WORD.finditer(text):
+        group = match.lastindex or 0
+        word = match[group]
+        start, end = match.span(group)
+        kind = word
+        if group == _NAME:
+            if word not in KEYWORDS:
+                kind = "name"
+        elif group == _NUMBER:
+            kind = "number"
+            if len(word) > MOST_DIGITS:
+                raise ExpressionError(f"a number has at most {MOST_DIGITS} digits, found {len(word)}", Span(start, end))
+        elif group != _SIGN:
             hint = f"; write {_HABITS[word]}" if word in _HABITS else ""
-            raise ExpressionError(f"`{word}` has no meaning here{hint}", span)
-        if kind == "number" and len(word) > MOST_DIGITS:
-            raise ExpressionError(f"a number has at most {MOST_DIGITS} digits, found {len(word)}", span)
-        if kind == "sign" or word in KEYWORDS:
-            kind = word
-        found.append(Token(kind, word, span))
-        place = match.end()
+            raise ExpressionError(f"`{word}` has no meaning here{hint}", Span(start, end))
+        found.append(Token(kind, word, start, end))
     end = len(text.rstrip())
-    return [*found, Token("end", "", Span(end, end))]
+    found.append(Token("end", "", end, end))
+    return found

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from sequence_planner.expressions.lexer import PREFIX_LETTERS
 from sequence_planner.expressions.syntax import (
     And,
     Arithmetic,
     Assignment,
+    BinaryTemporal,
     Comparison,
     Constant,
     Expression,
@@ -14,12 +16,13 @@ from sequence_planner.expressions.syntax import (
     Name,
     Not,
     Or,
+    UnaryTemporal,
     Variable,
 )
 from sequence_planner.expressions.types import Value
 
 # Strength of binding; an operand weaker than its place needs brackets.
-_IMPLIES, _OR, _AND, _NOT, _RELATION, _SUM, _ATOM = range(7)
+_IMPLIES, _OR, _AND, _UNTIL, _NOT, _RELATION, _SUM, _ATOM = range(8)
 
 
 def print_value(value: Value) -> str:
@@ -54,7 +57,7 @@ def _text(expression: Expression) -> tuple[str, int]:
         case Not(operand):
             return f"not {_print(operand, _NOT)}", _NOT
         case And(operands):
-            return " and ".join(_print(part, _NOT) for part in operands), _AND
+            return " and ".join(_print(part, _UNTIL) for part in operands), _AND
         case Or(operands):
             return " or ".join(_print(part, _AND) for part in operands), _OR
         case Implies(left, right):
@@ -65,3 +68,25 @@ def _text(expression: Expression) -> tuple[str, int]:
             return f"{_print(left, _SUM)} in {{{', '.join(_print(o, _SUM) for o in options)}}}", _RELATION
         case Arithmetic(operator, left, right):
             return f"{_print(left, _SUM)} {operator} {_print(right, _ATOM)}", _SUM
+        case UnaryTemporal(operator, operand):
+            return f"{operator} {_under_letter(operand)}", _NOT
+        case BinaryTemporal(operator, left, right):
+            first = f"({_print(left, _IMPLIES)})" if _ends_in_letter(left) else _print(left, _NOT)
+            return f"{first} {operator} {_print(right, _UNTIL)}", _UNTIL
+
+
+def _under_letter(operand: Expression) -> str:
+    """The operand of a prefix letter: brackets around relations, and around `-1`, which would make it a sum."""
+    text, strength = _text(operand)
+    return text if strength == _NOT or (strength == _ATOM and text[0] != "-") else f"({text})"
+
+
+def _ends_in_letter(expression: Expression) -> bool:
+    """Whether an infix letter behind `expression` would be read as the operand of a letter that is a name."""
+    match expression:
+        case Not(operand) | UnaryTemporal(_, operand):
+            return _ends_in_letter(operand)
+        case Name() | Variable():
+            return _text(expression)[0] in PREFIX_LETTERS
+        case _:
+            return False

@@ -10,10 +10,13 @@ import difflib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from sequence_planner.expressions.lexer import KEYWORDS, PREFIX_LETTERS
+from sequence_planner.expressions.parser import temporal_refused
 from sequence_planner.expressions.syntax import (
     And,
     Arithmetic,
     Assignment,
+    BinaryTemporal,
     Comparison,
     Component,
     Constant,
@@ -25,7 +28,9 @@ from sequence_planner.expressions.syntax import (
     Not,
     Or,
     Span,
+    UnaryTemporal,
     Variable,
+    first_temporal,
 )
 from sequence_planner.expressions.types import (
     BOOLEAN,
@@ -51,6 +56,8 @@ class Scope:
 
     def substitute(self, name: Name) -> Name:
         """`name` with the parameters among its arguments replaced by their values."""
+        if not self.parameters or name.is_word:
+            return name
         parts = tuple(
             Component(part.name, tuple(self._argument(word) for word in part.arguments), part.indexed)
             for part in name.path
@@ -60,10 +67,11 @@ class Scope:
     def find(self, name: Name) -> Variable | None:
         """The variable of that name, or None."""
         text = str(self.substitute(name))
-        for prefix in (*self.prefixes, ""):
+        for prefix in self.prefixes:
             if (found := self.variables.get(prefix + text)) is not None:
                 return Variable(prefix + text, found, name.span)
-        return None
+        found = self.variables.get(text)
+        return None if found is None else Variable(text, found, name.span)
 
     def _argument(self, word: str) -> str:
         return self.parameters[word][0] if word in self.parameters else word
@@ -78,11 +86,39 @@ class Scope:
 
 def resolve_predicate(expression: Expression, scope: Scope) -> Expression:
     """`expression` with all names resolved, checked to be a truth value. Raises `ExpressionError`."""
-    return _resolve(expression, scope, BOOLEAN)
+    return _truth(expression, scope)
+
+
+def resolve_formula(formula: Expression, scope: Scope) -> Expression:
+    """A formula of LTL over finite traces with all names resolved. Raises `ExpressionError`."""
+
+    def part(inner: Expression) -> Expression:
+        return resolve_formula(inner, scope)
+
+    span = formula.span
+    match formula:
+        case Not(operand):
+            return Not(part(operand), span)
+        case And(operands):
+            return And(tuple(map(part, operands)), span)
+        case Or(operands):
+            return Or(tuple(map(part, operands)), span)
+        case Implies(left, right):
+            return Implies(part(left), part(right), span)
+        case UnaryTemporal(operator, operand):
+            return UnaryTemporal(operator, part(operand), span)
+        case BinaryTemporal(operator, left, right):
+            return BinaryTemporal(operator, part(left), part(right), span)
+    if (inside := first_temporal(formula)) is not None:
+        what = "a temporal formula is no part of a comparison, a sum or `in {...}`"
+        raise ExpressionError(f"`{inside.operator}` is a temporal operator here: {what}", inside.span)
+    return resolve_predicate(formula, scope)
 
 
 def resolve_assignment(action: Assignment, scope: Scope) -> Assignment:
-    """An action with all names resolved; its value must fit the target's domain for certain."""
+    """An action with all names resolved. Raises `ExpressionError`, also when no value it can have is in the target's
+    domain; whether each it has where it is taken is, `fitting` says.
+    """
     if not isinstance(action.target, Name):
         raise TypeError("the action is resolved already")
     if str(action.target) in scope.parameters:
@@ -90,31 +126,51 @@ def resolve_assignment(action: Assignment, scope: Scope) -> Assignment:
     target = scope.find(action.target)
     if target is None:
         raise _unknown(action.target, scope, ())
-    value = _resolve(action.value, scope, target.type)
+    value = _written(action.value, scope, target.type)
     condition = None if action.condition is None else resolve_predicate(action.condition, scope)
     return Assignment(target, value, condition, action.span)
 
 
-def suggestion(word: str, candidates: Iterable[str]) -> str:
+def suggestion(word: str, candidates: Iterable[str], likeness: float = 0.5) -> str:
     """`; did you mean ...?` with the nearest of `candidates`, or nothing."""
-    near = difflib.get_close_matches(word, list(dict.fromkeys(candidates)), n=1, cutoff=0.5)
+    near = difflib.get_close_matches(word, list(dict.fromkeys(candidates)), n=1, cutoff=likeness)
     return f"; did you mean `{near[0]}`?" if near else ""
 
 
-def _resolve(expression: Expression, scope: Scope, expected: Type) -> Expression:
-    resolved, found = _typed(expression, scope, expected)
-    fits = contains(expected, resolved.value) if isinstance(resolved, Constant) else _fits(found, expected)
-    if not fits:
-        raise ExpressionError(f"expected {_describe(expected)}, found {_describe(found)}", expression.span)
+def _truth(expression: Expression, scope: Scope) -> Expression:
+    resolved, found = _typed(expression, scope, BOOLEAN)
+    if not isinstance(found, BooleanType):
+        raise _expected(BOOLEAN, found, expression)
     return resolved
 
 
-def _fits(found: Type, expected: Type) -> bool:
-    if isinstance(found, IntegerRange) and isinstance(expected, IntegerRange):
-        return expected.minimum <= found.minimum and found.maximum <= expected.maximum
-    if isinstance(found, EnumerationType) and isinstance(expected, EnumerationType):
-        return set(found.values) <= set(expected.values)
-    return type(found) is type(expected)
+def _written(expression: Expression, scope: Scope, expected: Type) -> Expression:
+    resolved, found = _typed(expression, scope, expected)
+    fits = contains(expected, resolved.value) if isinstance(resolved, Constant) else _overlap(found, expected)
+    if not fits:
+        raise _expected(expected, found, expression)
+    return resolved
+
+
+def _expected(expected: Type, found: Type, expression: Expression) -> ExpressionError:
+    message = f"expected {_describe(expected)}, found {_describe(found)}{_truth_value(expected, found)}"
+    return ExpressionError(message, expression.span)
+
+
+def _truth_value(expected: Type, found: Type) -> str:
+    """What to write for 0 and 1 where a truth value is meant."""
+    if expected != BOOLEAN or found not in (IntegerRange(0, 0), IntegerRange(1, 1)):
+        return ""
+    return "; write true" if found == IntegerRange(1, 1) else "; write false"
+
+
+def _overlap(one: Type, other: Type) -> bool:
+    """Whether the two have a value in common."""
+    if isinstance(one, IntegerRange) and isinstance(other, IntegerRange):
+        return one.minimum <= other.maximum and other.minimum <= one.maximum
+    if isinstance(one, EnumerationType) and isinstance(other, EnumerationType):
+        return not set(one.values).isdisjoint(other.values)
+    return type(one) is type(other)
 
 
 def _describe(type_: Type) -> str:
@@ -143,13 +199,13 @@ def _typed(expression: Expression, scope: Scope, expected: Type | None) -> tuple
         case Variable(_, type_):
             return expression, type_
         case Not(operand):
-            return Not(_resolve(operand, scope, BOOLEAN), span), BOOLEAN
+            return Not(_truth(operand, scope), span), BOOLEAN
         case And(operands):
-            return And(tuple(_resolve(o, scope, BOOLEAN) for o in operands), span), BOOLEAN
+            return And(tuple(_truth(o, scope) for o in operands), span), BOOLEAN
         case Or(operands):
-            return Or(tuple(_resolve(o, scope, BOOLEAN) for o in operands), span), BOOLEAN
+            return Or(tuple(_truth(o, scope) for o in operands), span), BOOLEAN
         case Implies(left, right):
-            return Implies(_resolve(left, scope, BOOLEAN), _resolve(right, scope, BOOLEAN), span), BOOLEAN
+            return Implies(_truth(left, scope), _truth(right, scope), span), BOOLEAN
         case Comparison(operator, left, right):
             return _comparison(operator, left, right, span, scope), BOOLEAN
         case Membership(left, options):
@@ -158,6 +214,8 @@ def _typed(expression: Expression, scope: Scope, expected: Type | None) -> tuple
             return Membership(subject, members, span), BOOLEAN
         case Arithmetic(operator, left, right):
             return _arithmetic(operator, left, right, span, scope)
+        case UnaryTemporal(operator) | BinaryTemporal(operator):
+            raise temporal_refused(operator, span)
 
 
 def _named(name: Name, scope: Scope, expected: Type | None) -> tuple[Expression, Type]:
@@ -166,7 +224,7 @@ def _named(name: Name, scope: Scope, expected: Type | None) -> tuple[Expression,
         value, type_ = scope.parameters[word]
         return Constant(value, name.span), type_
     variable = scope.find(name)
-    values = expected.values if isinstance(expected, EnumerationType) else ()
+    values = _names(expected) if expected is not None else ()
     if word in values:
         if variable is not None and isinstance(variable.type, EnumerationType):
             raise ExpressionError(f"`{word}` is both a value and a variable here: rename one of them", name.span)
@@ -177,9 +235,35 @@ def _named(name: Name, scope: Scope, expected: Type | None) -> tuple[Expression,
 
 
 def _unknown(name: Name, scope: Scope, values: Iterable[str]) -> ExpressionError:
-    candidates = [*values, *scope.visible()]
+    first = name.path[0]
+    if len(name.path) == 1 and first.name in PREFIX_LETTERS and first.arguments and not first.indexed:
+        return temporal_refused(first.name, name.span)
     what = "variable or value" if values else "variable"
-    return ExpressionError(f"unknown {what} `{name}`{suggestion(str(name), candidates)}", name.span)
+    return ExpressionError(f"unknown {what} `{name}`{_meant(name, scope, values)}", name.span)
+
+
+def _meant(name: Name, scope: Scope, values: Iterable[str]) -> str:
+    """What to write in place of an unknown name, as far as that can be guessed."""
+    word = str(name)
+    if word.lower() in KEYWORDS:
+        return f"; write {word.lower()}"
+    if (last := name.path[-1].name) in values:
+        return f"; did you mean `{last}`?"
+    visible = list(dict.fromkeys(scope.visible()))
+    flags = [other for other in visible if other.startswith(word + ".") and "." not in other[len(word) + 1 :]]
+    if 0 < len(flags) < 4:  # an ability or operation, and no resource
+        return f"; write {' or '.join(flags)}"
+    if near := suggestion(word, [*values, *visible], 0.7):
+        return near
+    owners = [other for other, type_ in scope.variables.items() if word in _names(type_)]
+    for prefix in (*scope.prefixes, ""):
+        if (owner := next((other for other in owners if other.startswith(prefix)), None)) is not None:
+            return f"; a value stands beside its variable, as in `{owner.removeprefix(prefix)} == {word}`"
+    return suggestion(word, [*values, *visible])
+
+
+def _names(type_: Type) -> tuple[str, ...]:
+    return type_.values if isinstance(type_, EnumerationType) else ()
 
 
 def _comparison(operator: str, left: Expression, right: Expression, span: Span, scope: Scope) -> Expression:
@@ -197,8 +281,8 @@ def _needs_enumeration(word: Expression, scope: Scope, other: Expression) -> boo
     """Whether `word`, left of a comparison, is to be read as a value of what stands on the `other` side."""
     if not isinstance(word, Name) or str(word) in scope.parameters:
         return False
-    unknown = isinstance(other, Name) and str(other) not in scope.parameters and scope.find(other) is None
     if scope.find(word) is None:
+        unknown = isinstance(other, Name) and str(other) not in scope.parameters and scope.find(other) is None
         # With two unknown words, the one to complain about is the one that is nobody's value.
         return not unknown or (_is_a_value(word, scope) and not _is_a_value(other, scope))
     variable = scope.find(other) if isinstance(other, Name) else None
@@ -206,22 +290,16 @@ def _needs_enumeration(word: Expression, scope: Scope, other: Expression) -> boo
 
 
 def _is_a_value(word: Expression, scope: Scope) -> bool:
-    types = scope.variables.values()
-    return any(isinstance(type_, EnumerationType) and str(word) in type_.values for type_ in types)
+    return any(str(word) in _names(type_) for type_ in scope.variables.values())
 
 
 def _comparable(expression: Expression, type_: Type, scope: Scope) -> Expression:
     """`expression` resolved beside something of `type_`, with which it must have a value in common."""
     resolved, found = _typed(expression, scope, type_)
-    if isinstance(found, EnumerationType) and isinstance(type_, EnumerationType):
-        # A parameter counts with all its values, so that an ability means the same for each of them.
-        fits = bool(set(found.values) & set(type_.values))
-    elif isinstance(found, IntegerRange) and isinstance(type_, IntegerRange):
-        fits = found.minimum <= type_.maximum and type_.minimum <= found.maximum
-    else:
-        fits = type(found) is type(type_)
-    if not fits:
-        raise ExpressionError(f"cannot compare {_describe(type_)} with {_describe(found)}", expression.span)
+    # A parameter counts with all its values, so that an ability means the same for each of them.
+    if not _overlap(found, type_):
+        hint = _truth_value(type_, found)
+        raise ExpressionError(f"cannot compare {_describe(type_)} with {_describe(found)}{hint}", expression.span)
     return resolved
 
 

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
 
 from sequence_planner.expressions.types import Type, Value
 
 
-@dataclass(frozen=True)
-class Span:
+class Span(NamedTuple):
     """Half-open range of characters in the source text."""
 
     start: int
@@ -40,8 +41,7 @@ class Constant:
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
-@dataclass(frozen=True)
-class Component:
+class Component(NamedTuple):
     """One part of a dotted name: `run_nut`, `move_to_position(above)`, `bolts[bolt_pair_1]`."""
 
     name: str
@@ -63,7 +63,16 @@ class Name:
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
     def __str__(self) -> str:
-        return ".".join(str(part) for part in self.path)
+        return self._text
+
+    @cached_property
+    def _text(self) -> str:
+        return self.path[0].name if self.is_word else ".".join(map(str, self.path))
+
+    @property
+    def is_word(self) -> bool:
+        """Whether the name is a single word, without dots and arguments."""
+        return len(self.path) == 1 and not self.path[0].arguments
 
 
 @dataclass(frozen=True)
@@ -137,7 +146,39 @@ class Arithmetic:
     span: Span = field(default=NOWHERE, compare=False, repr=False)
 
 
-Expression = Constant | Name | Variable | Not | And | Or | Implies | Comparison | Membership | Arithmetic
+@dataclass(frozen=True)
+class UnaryTemporal:
+    """`X` (next), `N` (next, if there is one), `F` (eventually) and `G` (always) before a formula."""
+
+    operator: str
+    operand: Expression
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+@dataclass(frozen=True)
+class BinaryTemporal:
+    """`U` (until), `R` (release) and `W` (weak until) between two formulas."""
+
+    operator: str
+    left: Expression
+    right: Expression
+    span: Span = field(default=NOWHERE, compare=False, repr=False)
+
+
+Expression = (
+    Constant
+    | Name
+    | Variable
+    | Not
+    | And
+    | Or
+    | Implies
+    | Comparison
+    | Membership
+    | Arithmetic
+    | UnaryTemporal
+    | BinaryTemporal
+)
 
 
 @dataclass(frozen=True)
@@ -157,11 +198,13 @@ FALSE = Constant(False)
 def children(expression: Expression) -> tuple[Expression, ...]:
     """The direct parts of an expression, left to right."""
     match expression:
-        case Not(operand):
+        case Not(operand) | UnaryTemporal(_, operand):
             return (operand,)
         case And(operands) | Or(operands):
             return operands
-        case Implies(left, right) | Comparison(_, left, right) | Arithmetic(_, left, right):
+        case Implies(left, right):
+            return (left, right)
+        case Comparison(_, left, right) | Arithmetic(_, left, right) | BinaryTemporal(_, left, right):
             return (left, right)
         case Membership(left, options):
             return (left, *options)
@@ -180,6 +223,14 @@ def occurrences(expression: Expression) -> Iterator[Variable]:
 def variables(expression: Expression) -> Iterator[str]:
     """Full names of the variables a resolved expression reads, with repetitions."""
     return (variable.name for variable in occurrences(expression))
+
+
+def first_temporal(expression: Expression) -> UnaryTemporal | BinaryTemporal | None:
+    """The leftmost outermost temporal formula within `expression`, or None if it is an ordinary predicate."""
+    if isinstance(expression, UnaryTemporal | BinaryTemporal):
+        return expression
+    found = (first_temporal(child) for child in children(expression))
+    return next((formula for formula in found if formula is not None), None)
 
 
 def conjuncts(expression: Expression) -> tuple[Expression, ...]:

@@ -40,9 +40,12 @@ Duration = Annotated[tuple[Seconds, Seconds], BeforeValidator(_interval), AfterV
 
 
 class VariableDocument(DocumentPart):
-    """A variable: `type` is `bool`, an enumeration, or a range such as `0..3`."""
+    """A variable: `type` is `bool`, an enumeration, or a range such as `0..3`.
 
-    type: SourceText
+    A measured or output variable without one has the type of the message field that it belongs to.
+    """
+
+    type: SourceText | None = None
     initial: bool | int | SourceText | None = None
     each: Parameters = Field(default_factory=dict, alias="for")
 
@@ -78,19 +81,34 @@ class HumanDocument(DocumentPart):
     acknowledgement: SourceText
 
 
+class CancelDocument(DocumentPart):
+    """What is done when a running ability is called off."""
+
+    do: list[SourceText] = Field(min_length=1)
+
+
+class TimeoutsDocument(DocumentPart):
+    """Seconds after the start until an alarm is raised: by when it must have reacted, and have finished."""
+
+    react: Seconds | None = None
+    finish: Seconds | None = None
+
+
 class AbilityDocument(DocumentPart):
-    """An ability of a resource. `time_limit` in seconds is how long it may take to finish before an alarm is raised."""
+    """An ability of a resource. `duration` estimates in seconds how long a run takes."""
 
     title: SourceText | None = None
     parameters: Parameters = Field(default_factory=dict)
     restart: bool = False
     human: HumanDocument | None = None
-    time_limit: Seconds | None = None
+    timeouts: TimeoutsDocument = TimeoutsDocument()
+    duration: Duration | None = None
     enabled: Predicate = True
     start: StartDocument = StartDocument()
     executing: Predicate = False
     finished: Predicate = False
     finish: FinishDocument | None = None
+    cancel: CancelDocument | None = None
     effects: dict[SourceText, EffectDocument] = Field(default_factory=dict)
 
 
@@ -148,6 +166,7 @@ class TopicDocument(DocumentPart):
     deadline: Annotated[float, Field(gt=0)] | None = None
     every: Annotated[float, Field(gt=0)] | None = None
     quality: Literal["reliable", "sensor_data", "latched"] = "reliable"
+    ignore: list[SourceText] = Field(default_factory=list)  # fields that are no variables
     pipeline: list[StageDocument] = Field(default_factory=list)
 
     @model_validator(mode="after")
@@ -182,18 +201,52 @@ class StationDocument(DocumentPart):
 
 
 class OperationDocument(DocumentPart):
-    """A production operation: active from its precondition to its goal. The highest `priority` is kept longest."""
+    """A production operation: active from its precondition to its goal. The highest `priority` is kept longest.
+
+    `local` is a formula of linear temporal logic over the run from activation to goal.
+    """
 
     title: SourceText | None = None
     parameters: Parameters = Field(default_factory=dict)
     precondition: Predicate
     goal: Predicate
+    local: Predicate | None = None
     priority: int = 0
 
 
 class SpecificationDocument(DocumentPart):
-    """States that must never be."""
+    """What must never be. One of: states that are `forbidden`; `never` one thing `while` another; abilities that are
+    `exclusive`; a `zone` that resources share; an `order` of conditions.
+    """
 
     title: SourceText | None = None
     parameters: Parameters = Field(default_factory=dict)
-    forbidden: Predicate
+    forbidden: Predicate | None = None
+    never: Predicate | None = None
+    during: Predicate | None = Field(default=None, alias="while")
+    exclusive: list[SourceText] | None = Field(default=None, min_length=2)
+    zone: dict[SourceText, Predicate] | None = Field(default=None, min_length=2)
+    order: list[Predicate] | None = Field(default=None, min_length=2)
+
+    @model_validator(mode="after")
+    def _one_kind(self) -> SpecificationDocument:
+        if (self.never is None) != (self.during is None):
+            raise ValueError("`never` and `while` belong together: what must not be, and while what")
+        kinds = (self.forbidden, self.never, self.exclusive, self.zone, self.order)
+        if sum(kind is not None for kind in kinds) != 1:
+            raise ValueError("a specification is exactly one of forbidden, never and while, exclusive, zone, order")
+        return self
+
+
+class WorkStepDocument(DocumentPart):
+    """An operation of a job: which others must be completed before it."""
+
+    after: list[SourceText] = Field(default_factory=list)
+
+
+class WorkMasterDocument(DocumentPart):
+    """What a job consists of: its operations with their order, and the estimated values a new product `brings`."""
+
+    title: SourceText | None = None
+    brings: list[SourceText] = Field(default_factory=list)
+    operations: dict[SourceText, WorkStepDocument | None] = Field(min_length=1)

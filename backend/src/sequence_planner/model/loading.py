@@ -1,6 +1,6 @@
 """A station's folder, brought together.
 
-station.yaml  resources/*.yaml  operations.yaml  specifications.yaml  messages/<package>/msg/*.msg
+station.yaml  resources/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml  messages/<package>/msg/*.msg
 """
 
 from __future__ import annotations
@@ -11,17 +11,22 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.model.documents import (
     OperationDocument,
     ResourceDocument,
     SpecificationDocument,
     StationDocument,
+    WorkMasterDocument,
 )
 from sequence_planner.model.reading import Document, EntryPath, read_yaml
 from sequence_planner.model.source import Finding, ModelError, Place, SourceText
 from sequence_planner.model.validation import findings_of, shown
 
 D = TypeVar("D", bound=BaseModel)
+
+# The documents of a station beside its resources.
+FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml")
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,7 @@ class Station:
     resources: dict[str, ResourceDocument]
     operations: dict[SourceText, OperationDocument]
     specifications: dict[SourceText, SpecificationDocument]
+    work_masters: dict[SourceText, WorkMasterDocument]
 
     @property
     def messages(self) -> Path:
@@ -51,7 +57,7 @@ def load_station(folder: Path) -> Station:
         message = "a station is a folder with a station.yaml: there is none here"
         raise ModelError([Finding(Place(str(folder / "station.yaml"), 1, 1), message)])
     reader = _FolderReader(folder)
-    reader.require_endings()
+    reader.require_names()
     station = reader.whole("station.yaml", StationDocument)
     resources = {
         path.stem: reader.whole(f"resources/{path.name}", ResourceDocument)
@@ -59,10 +65,11 @@ def load_station(folder: Path) -> Station:
     }
     operations = reader.entries("operations.yaml", OperationDocument)
     specifications = reader.entries("specifications.yaml", SpecificationDocument)
+    work_masters = reader.entries("work_masters.yaml", WorkMasterDocument)
     if reader.findings or station is None:
         raise ModelError(reader.findings)
     present = {name: resource for name, resource in resources.items() if resource is not None}
-    return Station(folder, station, present, operations, specifications)
+    return Station(folder, station, present, operations, specifications, work_masters)
 
 
 def _is_file(path: Path) -> bool:
@@ -77,10 +84,14 @@ class _FolderReader:
         self._folder = folder
         self.findings: list[Finding] = []
 
-    def require_endings(self) -> None:
-        """Note files whose ending is almost right: they would be left out without a word."""
+    def require_names(self) -> None:
+        """Note files whose name is almost right: they would be left out without a word."""
         for path in sorted((*self._folder.glob("*.yml"), *self._folder.glob("resources/*.yml"))):
             self.findings.append(Finding(Place(str(path), 1, 1), f"rename it to {path.stem}.yaml: this is not read"))
+        for path in sorted(self._folder.glob("*.yaml")):
+            if path.name not in FILES:
+                message = f"this file is not read{suggestion(path.name, FILES)}"
+                self.findings.append(Finding(Place(str(path), 1, 1), message))
 
     def whole(self, name: str, kind: type[D]) -> D | None:
         """A file that is one document."""

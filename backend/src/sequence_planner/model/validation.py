@@ -79,7 +79,8 @@ def _expectation(details: ErrorDetails) -> str:
         case "less_than_equal":
             return f"a number of at most {limits['le']:g}"
         case "too_short":
-            return "at least one entry"
+            least = limits["min_length"]
+            return "at least one entry" if least == 1 else f"at least {least} entries"
         case other:
             return _EXPECTED.get(other.partition("_")[0], details["msg"])
 

@@ -21,7 +21,7 @@ from sequence_planner.pipelines.stages import (
     RememberStage,
     UndiscretiseStage,
 )
-from sequence_planner.ros.errors import MessageDefinitionError, MessageValueError, UnknownMessageTypeError
+from sequence_planner.ros.errors import MessageDefinitionError, MessageValueError
 from sequence_planner.ros.fields import FieldType
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.names import check_topic
@@ -37,7 +37,7 @@ def load_messages(station: Station) -> MessageRegistry:
 
 
 def build_pipelines(station: Station, automaton: Automaton, registry: MessageRegistry) -> StationPipelines:
-    """The pipelines of all topics. Raises `ModelError` with all findings."""
+    """The pipelines of all topics, whose message types `registry` knows. Raises `ModelError` with all findings."""
     building = _Building(automaton, registry)
     for resource, document in station.resources.items():
         for name, topic in document.topics.items():
@@ -63,20 +63,17 @@ class _Building:
         except ValueError as error:
             self.found(name, str(error).replace("'", "`"))
             return
-        try:
-            fields = self._registry.fields(document.type)
-        except UnknownMessageTypeError as error:
-            near = f"; did you mean `{error.suggestion}`?" if error.suggestion else ""
-            self.found(document.type, f"no message type `{document.type}` is known{near}")
-            return
         if name in self.incoming or name in self.outgoing:
             self.found(name, f"duplicate name `{name}`: a topic belongs to one resource")
             return
         incoming = document.direction == "in"
-        stages = _TopicStages(self, resource, fields, Kind.MEASURED if incoming else Kind.OUTPUT)
+        stages = _TopicStages(
+            self, resource, self._registry.fields(document.type), Kind.MEASURED if incoming else Kind.OUTPUT
+        )
         before = len(self.findings)
         for stage in document.pipeline:
             stages.add(stage, incoming)
+        stages.ignore(document.ignore)
         stages.map_remaining_fields(name)
         is_sound = len(self.findings) == before  # else what follows from that would be reported as well
         if is_sound:
@@ -214,6 +211,14 @@ class _TopicStages:
                 found = building.field(self._message, field)
                 if variable and found:
                     self._map(field, str(field), variable, found)
+
+    def ignore(self, fields: Iterable[SourceText]) -> None:
+        """Leave these fields out: they are no variables."""
+        for field in fields:
+            if field in self._used:
+                self._building.found(field, f"`{field}` is used by a stage: it cannot be ignored as well")
+            self._building.field(self._message, field)
+            self._used.add(field)
 
     def map_remaining_fields(self, topic: SourceText) -> None:
         """Map each field that no stage uses to the variable of its name, if there is one."""

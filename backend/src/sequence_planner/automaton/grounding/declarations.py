@@ -1,0 +1,189 @@
+"""What there is in a station: its enumerations, variables, flags and operations, each under one name."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from itertools import product
+
+from sequence_planner.automaton.grounding.findings import Binding, Findings, instance_name
+from sequence_planner.automaton.structure import Kind, VariableDeclaration
+from sequence_planner.expressions.lexer import KEYWORDS, MOST_DIGITS
+from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value, contains
+from sequence_planner.model.documents import AbilityDocument, Parameters, VariableDocument
+from sequence_planner.model.loading import Station
+from sequence_planner.model.source import Place, SourceText
+
+FLAGS = ("enabled", "executing", "finished")
+OPERATION = "operation"  # the first part of the name of what the tick knows of an operation
+MOST_VALUES = 1000  # of a range; every value costs memory in plans and supervisors
+
+_IDENTIFIER = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+_RANGE = re.compile(r"(-?[0-9]{1,18})\s*\.\.\s*(-?[0-9]{1,18})")
+_KINDS = (Kind.MEASURED, Kind.OUTPUT, Kind.ESTIMATED)
+
+
+class Declarations:
+    """The names of a station. `types` has the type of everything an expression can read.
+
+    `broken` are names that are declared, but of no usable type: their uses are not wrong as well.
+    """
+
+    def __init__(self, station: Station, findings: Findings) -> None:
+        self._station = station
+        self._findings = findings
+        self.enumerations: dict[str, EnumerationType] = {}
+        self.variables: dict[str, VariableDeclaration] = {}
+        self.types: dict[str, Type] = {}
+        self.places: dict[str, Place] = {}
+        self.broken: set[str] = set()
+        self._check_resources()
+        self._read_enumerations()
+        self._read_variables()
+        self._declare_flags()
+        self._declare_activities()
+
+    def abilities(self) -> Iterator[tuple[str, SourceText, AbilityDocument, Binding]]:
+        """Each ground ability: its resource, its name as written, its document, and the values of its parameters."""
+        for resource, document in self._station.resources.items():
+            for name, ability in document.abilities.items():
+                for binding in self.bindings(ability.parameters):
+                    yield resource, name, ability, binding
+
+    def bindings(self, parameters: Parameters) -> list[Binding]:
+        """Every choice of values for `parameters`; one empty choice when there are none, none for an unknown type."""
+        if any(enumeration not in self.enumerations for enumeration in parameters.values()):
+            return []
+        types = [self.enumerations[enumeration] for enumeration in parameters.values()]
+        return [
+            {str(name): (value, type_) for name, value, type_ in zip(parameters, values, types, strict=True)}
+            for values in product(*(type_.values for type_ in types))
+        ]
+
+    def check_name(self, name: SourceText) -> None:
+        """Note a name that is none."""
+        if not _IDENTIFIER.fullmatch(name) or name in KEYWORDS:
+            message = f"`{name}` is no name: use letters, digits and `_`, and none of the words of the language"
+            self._findings.add(name, message)
+
+    def check_parameters(self, parameters: Parameters) -> None:
+        """Note parameters that are none."""
+        for name, enumeration in parameters.items():
+            self.check_name(name)
+            if enumeration not in self.enumerations:
+                near = suggestion(enumeration, self.enumerations)
+                self._findings.add(enumeration, f"unknown enumeration `{enumeration}`{near}")
+
+    def _check_resources(self) -> None:
+        for name in self._station.resources:
+            file = str(self._station.folder / "resources" / f"{name}.yaml")
+            self.check_name(SourceText(name, Place(file, 1, 1), name))
+            if name == OPERATION:
+                message = f"`{OPERATION}` stands for the operations in expressions: give the resource another name"
+                self._findings.add(Place(file, 1, 1), message)
+
+    def _declare(self, name: str, key: SourceText) -> bool:
+        """Whether `name` is new; a second declaration is a finding."""
+        if name in self.places:
+            message = f"duplicate name `{name}`, first declared at {self.places[name]}: rename one of them"
+            self._findings.add(key, message)
+            return False
+        self.places[name] = key.place
+        return True
+
+    def _read_enumerations(self) -> None:
+        for name, values in self._station.station.enumerations.items():
+            self.check_name(name)
+            if name == "bool":
+                self._findings.add(name, "`bool` is a type already: rename the enumeration")
+            for index, value in enumerate(values):
+                self.check_name(value)
+                if value in values[:index]:
+                    self._findings.add(value, f"duplicate value `{value}` in `{name}`")
+            self.enumerations[name] = EnumerationType(tuple(map(str, values)))
+
+    def _read_variables(self) -> None:
+        for name, document in self._station.station.estimated.items():
+            self._read_variable(None, name, document, Kind.ESTIMATED)
+        for resource, resource_document in self._station.resources.items():
+            for kind in _KINDS:
+                for name, document in getattr(resource_document, kind.value).items():
+                    self._read_variable(resource, name, document, kind)
+
+    def _read_variable(self, resource: str | None, name: SourceText, document: VariableDocument, kind: Kind) -> None:
+        self.check_name(name)
+        full = name if resource is None else f"{resource}.{name}"
+        type_ = self._type(name, document.type, kind)
+        if name in FLAGS:
+            self._findings.add(name, f"`{name}` is a flag of every ability: give the variable another name")
+        self.check_parameters(document.each)
+        if not self._declare(full, name):
+            return
+        bindings = self.bindings(document.each)
+        if type_ is None or not bindings:
+            self.broken.add(full)
+            return
+        initial: Value = document.initial if document.initial is not None else type_.domain[0]
+        if isinstance(initial, SourceText):
+            initial = str(initial)
+        if not contains(type_, initial):
+            where = document.initial if isinstance(document.initial, SourceText) else name
+            near = suggestion(str(initial), map(str, type_.domain))
+            message = f"`{initial}` is no initial value of `{full}`, which ranges over {type_}{near}"
+            self._findings.add(where, message)
+        for binding in bindings:
+            ground_name = instance_name(full, binding, indexed=True)
+            self.variables[ground_name] = VariableDeclaration(ground_name, type_, kind, initial, resource)
+            self.types[ground_name] = type_
+            self.places[ground_name] = name.place
+
+    def _type(self, name: SourceText, text: SourceText | None, kind: Kind) -> Type | None:
+        if text is None:
+            what = "write type: bool, a range such as 0..3, or an enumeration"
+            why = "" if kind is Kind.ESTIMATED else f", and no field of a topic has one for `{name}`"
+            self._findings.add(name, f"`{name}` needs a type{why}: {what}")
+            return None
+        if text == "bool":
+            return BOOLEAN
+        if match := _RANGE.fullmatch(text):
+            return self._range(text, int(match[1]), int(match[2]))
+        if text not in self.enumerations:
+            near = suggestion(text, ["bool", *self.enumerations])
+            message = f"unknown type `{text}`: write bool, a range such as 0..3, or an enumeration{near}"
+            self._findings.add(text, message)
+            return None
+        return self.enumerations[text]
+
+    def _range(self, text: SourceText, low: int, high: int) -> IntegerRange | None:
+        if low > high:
+            self._findings.add(text, f"the range {text} is empty: write the smaller number first")
+        elif high - low >= MOST_VALUES:
+            message = f"the range {text} has more than {MOST_VALUES} values: use a coarser measure"
+            self._findings.add(text, message)
+        elif max(-low, high) >= 10**MOST_DIGITS:
+            self._findings.add(text, f"integers have at most {MOST_DIGITS} digits")
+        else:
+            return IntegerRange(low, high)
+        return None
+
+    def _declare_flags(self) -> None:
+        for resource, document in self._station.resources.items():
+            for name, ability in document.abilities.items():
+                self.check_name(name)
+                self.check_parameters(ability.parameters)
+                if self._declare(f"{resource}.{name}", name) and not self.bindings(ability.parameters):
+                    self.broken.add(f"{resource}.{name}")
+        for resource, name, _, binding in self.abilities():
+            full = instance_name(f"{resource}.{name}", binding)
+            self.types |= {f"{full}.{flag}": BOOLEAN for flag in FLAGS}
+
+    def _declare_activities(self) -> None:
+        for name, document in self._station.operations.items():
+            self.check_name(name)
+            self.check_parameters(document.parameters)
+            bindings = self.bindings(document.parameters)
+            if not bindings:
+                self.broken.add(f"{OPERATION}.{name}")
+            for binding in bindings:
+                self.types[f"{OPERATION}.{instance_name(name, binding)}.active"] = BOOLEAN

@@ -1,0 +1,89 @@
+"""Ground operations, and the work masters that put them into jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from graphlib import CycleError, TopologicalSorter
+
+from sequence_planner.automaton.grounding.declarations import OPERATION
+from sequence_planner.automaton.grounding.findings import instance_name, readable
+from sequence_planner.automaton.grounding.meaning import Meaning
+from sequence_planner.automaton.structure import Kind, Operation, WorkMaster, target
+from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.expressions.syntax import TRUE, Assignment, Constant
+from sequence_planner.model.documents import OperationDocument, WorkMasterDocument
+from sequence_planner.model.source import SourceText
+
+
+def ground_operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocument]) -> dict[str, Operation]:
+    """All operations by name."""
+    return {operation.name: operation for operation in _operations(meaning, documents)}
+
+
+def ground_work_masters(
+    meaning: Meaning, documents: Mapping[SourceText, WorkMasterDocument], operations: Mapping[str, Operation]
+) -> dict[str, WorkMaster]:
+    """All work masters by name."""
+    masters: dict[str, WorkMaster] = {}
+    for name, document in documents.items():
+        meaning.declarations.check_name(name)
+        steps = {
+            step: () if step_document is None else tuple(step_document.after)
+            for step, step_document in document.operations.items()
+        }
+        _check_steps(meaning, steps, operations)
+        masters[str(name)] = WorkMaster(
+            str(name),
+            readable(document.title, name, {}),
+            {str(step): frozenset(map(str, before)) for step, before in steps.items()},
+            _brought(meaning, document),
+        )
+    return masters
+
+
+def _operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocument]) -> Iterator[Operation]:
+    for name, document in documents.items():
+        for binding in meaning.declarations.bindings(document.parameters):
+            full = instance_name(name, binding)
+            scope = meaning.scope(binding)
+            places = meaning.declarations.places
+            places[f"{OPERATION}.{full}"] = name.place
+            yield Operation(
+                full,
+                readable(document.title, name, binding),
+                meaning.predicate(document.precondition, scope),
+                meaning.predicate(document.goal, scope),
+                document.priority,
+                None if document.local is None else meaning.formula(document.local, scope),
+            )
+
+
+def _check_steps(
+    meaning: Meaning, steps: Mapping[SourceText, tuple[SourceText, ...]], operations: Mapping[str, Operation]
+) -> None:
+    findings = meaning.findings
+    for step, before in steps.items():
+        if step not in operations:
+            findings.add(step, f"there is no operation `{step}`{suggestion(step, operations)}")
+        for each in before:
+            if each not in steps:
+                findings.add(each, f"`{each}` is no operation of this job{suggestion(each, map(str, steps))}")
+    try:
+        TopologicalSorter({str(step): map(str, before) for step, before in steps.items()}).prepare()
+    except CycleError as error:
+        circle = [str(name) for name in reversed(error.args[1])]
+        first = next(step for step in steps if step == circle[0])
+        findings.add(first, f"each of these would have to come before the next: {' → '.join(circle)}")
+
+
+def _brought(meaning: Meaning, document: WorkMasterDocument) -> tuple[Assignment, ...]:
+    """What a new product brings: it is known beforehand, so the values are constants."""
+    brought: dict[str, Assignment] = {}
+    for text in document.brings:
+        for action in meaning.actions([text], meaning.scope({}), TRUE, (Kind.ESTIMATED,), "a new product"):
+            if not isinstance(action.value, Constant) or action.condition is not None:
+                meaning.findings.add(text, "a new product brings certain values: write `variable := value`")
+            if target(action) in brought:
+                meaning.findings.add(text, f"`{target(action)}` is brought twice")
+            brought[target(action)] = action
+    return tuple(brought.values())

@@ -1,0 +1,112 @@
+"""Specifications as forbidden states. The shorthands engineers use are defined by what they expand to here.
+
+    forbidden: A                    A
+    never: A, while: B              A and B
+    exclusive: [a, b, ...]          a.executing and b.executing, for each two
+    zone: {r: A, s: B, ...}         A and B, for each two
+    order: [A, B, ...]              B and not A, for each two neighbours
+
+An ability with parameters stands for all its ground abilities in `exclusive`: one of them executes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from itertools import combinations, pairwise
+
+from sequence_planner.automaton.grounding.findings import Binding, instance_name, readable, without_arguments
+from sequence_planner.automaton.grounding.meaning import Meaning
+from sequence_planner.automaton.structure import Specification
+from sequence_planner.expressions.parser import parse
+from sequence_planner.expressions.resolution import Scope, suggestion
+from sequence_planner.expressions.simplification import simplify
+from sequence_planner.expressions.syntax import (
+    FALSE,
+    Expression,
+    ExpressionError,
+    Name,
+    Not,
+    Or,
+    Variable,
+    conjunction,
+)
+from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.model.documents import Predicate, SpecificationDocument
+from sequence_planner.model.source import SourceText
+
+Part = tuple[str, Expression]  # what of a specification is forbidden, and in which words
+
+
+def ground_specifications(
+    meaning: Meaning, documents: Mapping[SourceText, SpecificationDocument], resources: Iterable[str]
+) -> dict[str, Specification]:
+    """All specifications by name; `resources` are those that can share a zone."""
+    specifications: dict[str, Specification] = {}
+    known = list(resources)
+    for name, document in documents.items():
+        meaning.declarations.check_name(name)
+        meaning.declarations.check_parameters(document.parameters)
+        for binding in meaning.declarations.bindings(document.parameters):
+            full = instance_name(name, binding)
+            title = readable(document.title, name, binding)
+            for words, forbidden in _parts(meaning, document, binding, known):
+                part = f"{full}: {words}" if words else full
+                specifications[part] = Specification(part, f"{title}: {words}" if words else title, simplify(forbidden))
+                meaning.declarations.places[part] = name.place
+    return specifications
+
+
+def _parts(meaning: Meaning, document: SpecificationDocument, binding: Binding, resources: list[str]) -> Iterator[Part]:
+    scope = meaning.scope(binding)
+    if document.forbidden is not None:
+        yield "", meaning.predicate(document.forbidden, scope)
+    elif document.never is not None and document.during is not None:
+        yield "", conjunction(meaning.predicate(document.never, scope), meaning.predicate(document.during, scope))
+    elif document.exclusive is not None:
+        executing = [(str(text), _executing(meaning, text, scope)) for text in document.exclusive]
+        yield from _at_most_one(executing)
+    elif document.zone is not None:
+        yield from _at_most_one([_inside(meaning, *entry, binding, resources) for entry in document.zone.items()])
+    elif document.order is not None:
+        stages = [(_words(text), meaning.predicate(text, scope)) for text in document.order]
+        for (first, before), (then, after) in pairwise(stages):
+            yield f"{first} before {then}", conjunction(after, Not(before))
+
+
+def _at_most_one(parts: Iterable[Part]) -> Iterator[Part]:
+    for (one, first), (other, second) in combinations(parts, 2):
+        yield f"{one} and {other}", conjunction(first, second)
+
+
+def _words(text: Predicate) -> str:
+    return " ".join(str(text).split())
+
+
+def _inside(meaning: Meaning, resource: SourceText, text: Predicate, binding: Binding, resources: list[str]) -> Part:
+    """The condition, in its own words, under which a resource is in a zone."""
+    if resource not in resources:
+        meaning.findings.add(resource, f"there is no resource `{resource}`{suggestion(resource, resources)}")
+        return str(resource), FALSE
+    return str(resource), meaning.predicate(text, meaning.scope(binding, f"{resource}."))
+
+
+def _executing(meaning: Meaning, text: SourceText, scope: Scope) -> Expression:
+    """That the named ability executes, or one of those that bear its name with parameters."""
+    try:
+        named = parse(text)
+        if not isinstance(named, Name):
+            raise ExpressionError("expected the name of an ability, such as `robot.move`", named.span)
+        name = str(scope.substitute(named))
+        flags = [flag for flag in scope.variables if flag.endswith(".executing")]
+        found = [flag for flag in flags if flag == f"{name}.executing"]
+        found = found or [flag for flag in flags if without_arguments(flag) == f"{name}.executing"]
+        if not found:
+            abilities = {each for flag in flags for each in (flag, without_arguments(flag))}
+            near = suggestion(name, sorted(each.removesuffix(".executing") for each in abilities))
+            raise ExpressionError(f"there is no ability `{name}`{near}", named.span)
+    except ExpressionError as error:
+        if without_arguments(str(text)) not in meaning.declarations.broken:
+            meaning.findings.add(text.at(error.span), error.message)
+        return FALSE
+    variables = tuple(Variable(flag, BOOLEAN) for flag in found)
+    return variables[0] if len(variables) == 1 else Or(variables)

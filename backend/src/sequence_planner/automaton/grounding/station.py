@@ -1,0 +1,54 @@
+"""The automaton of a station, put together from its parts."""
+
+from __future__ import annotations
+
+from sequence_planner.automaton.dependencies import ordered_flags
+from sequence_planner.automaton.grounding.abilities import ground_abilities
+from sequence_planner.automaton.grounding.declarations import FLAGS, Declarations
+from sequence_planner.automaton.grounding.findings import Findings
+from sequence_planner.automaton.grounding.meaning import Meaning
+from sequence_planner.automaton.grounding.operations import ground_operations, ground_work_masters
+from sequence_planner.automaton.grounding.specifications import ground_specifications
+from sequence_planner.automaton.structure import Ability, Automaton, Flag
+from sequence_planner.model.loading import Station
+from sequence_planner.model.source import ModelError
+
+
+def ground(station: Station) -> Automaton:
+    """The automaton that `station` means. Raises `ModelError` with all findings."""
+    findings = Findings()
+    declarations = Declarations(station, findings)
+    meaning = Meaning(declarations, findings)
+    abilities, effects = ground_abilities(meaning)
+    operations = ground_operations(meaning, station.operations)
+    specifications = ground_specifications(meaning, station.specifications, station.resources)
+    work_masters = ground_work_masters(meaning, station.work_masters, operations)
+    rest = meaning.predicate(station.station.rest, meaning.scope({}))
+    automaton = Automaton(
+        name=str(station.station.name),
+        title=str(station.title),
+        description=str(station.station.description or ""),
+        resources={name: str(doc.title or name) for name, doc in station.resources.items()},
+        variables=declarations.variables | meaning.activities,
+        abilities=abilities,
+        flags=_flags(abilities, declarations, findings),
+        effects=effects,
+        operations=operations,
+        specifications=specifications,
+        rest=rest,
+        work_masters=work_masters,
+        places=declarations.places,
+    )
+    if findings.all:
+        raise ModelError(findings.all)
+    return automaton
+
+
+def _flags(abilities: dict[str, Ability], declarations: Declarations, findings: Findings) -> tuple[Flag, ...]:
+    flags = [Flag(a.flag(which), getattr(a, which)) for a in abilities.values() for which in FLAGS]
+    ordered, circle = ordered_flags(flags)
+    if circle:
+        ability = abilities[circle[0].rpartition(".")[0]]
+        message = f"flags depend on each other in a circle: {' → '.join(circle)}"
+        findings.add(declarations.places[ability.name], message)
+    return ordered
