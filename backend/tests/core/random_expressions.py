@@ -78,13 +78,24 @@ def equality(choices: Choices, scope: Scope) -> Expression:
 
 
 def actions(choices: Choices, targets: Scope, scope: Scope, least: int) -> tuple[Assignment, ...]:
-    """Actions on up to two variables of `targets`; some are conditional, some copy a variable of `scope`."""
-    return tuple(
-        Assignment(
-            target, _value_for(choices, target, scope), predicate(choices, scope, 1) if choices.chance(4) else None
+    """Actions on up to two variables of `targets`; some are conditional, some copy a variable, some count."""
+    return tuple(_action(choices, target, scope) for target in choices.different(targets, least, 2))
+
+
+def _action(choices: Choices, target: Variable, scope: Scope) -> Assignment:
+    if isinstance(target.type, IntegerRange) and choices.chance(3):
+        return _counting(choices, target, target.type)
+    condition = predicate(choices, scope, 1) if choices.chance(4) else None
+    return Assignment(target, _value_for(choices, target, scope), condition)
+
+
+def _counting(choices: Choices, target: Variable, type_: IntegerRange) -> Assignment:
+    """One more or one less, up to the end of the range."""
+    if choices.chance(2):
+        return Assignment(
+            target, Arithmetic("+", target, Constant(1)), Comparison("<", target, Constant(type_.maximum))
         )
-        for target in choices.different(targets, least, 2)
-    )
+    return Assignment(target, Arithmetic("-", target, Constant(1)), Comparison(">", target, Constant(type_.minimum)))
 
 
 def _beside(choices: Choices, subject: Variable, scope: Scope) -> Constant | Variable:

@@ -150,7 +150,7 @@ def test_letters_that_are_operators(text: str, printed: str) -> None:
         ("X F not‹›", "expected a name, a value or `(`, found the end of the text"),
         ("a == F ‹b›", "expected an operator or the end, found `b`"),
         ("a in {b, G ‹c›}", "expected `,` or `}`, found `c`"),
-        ("a ‹Until› b", "expected an operator or the end, found `Until`"),
+        ("a ‹V› b", "expected an operator or the end, found `V`"),
         ("F (a‹›", "expected an operator or `)`, found the end of the text"),
     ],
 )

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from itertools import product
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 
 from sequence_planner.expressions.parser import parse_formula
 from sequence_planner.expressions.progression import progress
@@ -85,6 +85,7 @@ LAWS: dict[str, Callable[[Expression, Expression], tuple[Expression, Expression]
 
 @pytest.mark.parametrize("law", LAWS)
 def test_laws(law: str) -> None:
+    @settings(max_examples=40)
     @given(formulas, formulas, traces)
     def check(a: Expression, b: Expression, trace: Trace) -> None:
         one, other = LAWS[law](a, b)

@@ -255,11 +255,13 @@ def _meant(name: Name, scope: Scope, values: Iterable[str]) -> str:
         return f"; write {' or '.join(flags)}"
     if near := suggestion(word, [*values, *visible], 0.7):
         return near
+    if values:
+        return suggestion(word, [*values, *visible]) or f"; write one of {', '.join(values)}"
     owners = [other for other, type_ in scope.variables.items() if word in _names(type_)]
     for prefix in (*scope.prefixes, ""):
         if (owner := next((other for other in owners if other.startswith(prefix)), None)) is not None:
             return f"; a value stands beside its variable, as in `{owner.removeprefix(prefix)} == {word}`"
-    return suggestion(word, [*values, *visible])
+    return suggestion(word, visible)
 
 
 def _names(type_: Type) -> tuple[str, ...]:
