@@ -47,7 +47,11 @@ e2e: install page e2e/node_modules/done.stamp chromium
 bench: install-test ## Measure
 	cd backend && for each in benchmarks/*.py; do echo "$$each" && .venv/bin/python "$$each" || exit 1; done
 
-types: install frontend/node_modules/done.stamp ## Make the page's types again from the server's models
+campaign: install-test ## The long runs themselves, resumable
+	cd backend && for each in campaigns/*.py; do echo "$$each" && PYTHONPATH=tests .venv/bin/python "$$each" || exit 1; done
+
+types: install frontend/node_modules/done.stamp ## Make the page's types and the editors' schemas again from the models
+	cd backend && .venv/bin/python -m sequence_planner.model.schemas ../docs/schemas
 	cd backend && .venv/bin/python -m sequence_planner.web.openapi > ../frontend/openapi.json
 	cd frontend && npm run types
 
@@ -113,4 +117,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator test lint typecheck pytest svelte-check vitest e2e bench types lock clean install install-test page node chromium
+.PHONY: help run emulator test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test page node chromium

@@ -1,9 +1,13 @@
 """The part of jsonschema that the tests use; the package itself carries no types."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+
+class ValidationError(Exception):
+    message: str
 
 class Draft202012Validator:
     def __init__(self, schema: Mapping[str, object]) -> None: ...
     @classmethod
     def check_schema(cls, schema: Mapping[str, object]) -> None: ...
     def validate(self, instance: object) -> None: ...
+    def iter_errors(self, instance: object) -> Iterator[ValidationError]: ...

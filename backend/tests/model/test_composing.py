@@ -102,7 +102,7 @@ def test_all_files_of_the_repository_are_read_alike_and_fast(text: str) -> None:
     assert fast(text) is not None
 
 
-@examples(2500)
+@examples(1200)
 @given(st.one_of(mixed, spoilt))
 def test_any_text_is_read_alike(text: str) -> None:
     assert_alike(text)

@@ -6,11 +6,10 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from ruamel.yaml import YAML
 from ruamel.yaml.error import MarkedYAMLError
-from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 from ruamel.yaml.reader import ReaderError
 
+from sequence_planner.model.composing import Node, compose
 from sequence_planner.model.source import Finding, ModelError, Place, SourceText
 
 EntryPath = tuple[str | int, ...]
@@ -54,11 +53,14 @@ def read_yaml(path: Path, name: str) -> Document:
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
         raise ModelError([Finding(Place(name, 1, 1), f"cannot be read: {reason}")]) from error
+    return read_text(text, name)
+
+
+def read_text(text: str, name: str) -> Document:
+    """Read YAML; `name` is how the text is called in messages. Raises `ModelError`."""
     reader = _Reader(name, text)
     try:
-        yaml = YAML(typ="safe", pure=True)
-        yaml.composer.warn_double_anchors = False  # an anchor may be used again, and means the last one
-        root = yaml.compose(text)
+        root = compose(text)
         content = {} if root is None else reader.read(root, ())
     except MarkedYAMLError as error:
         raise ModelError([_not_yaml(name, error)]) from error
@@ -103,14 +105,15 @@ class _Reader:
 
     def read(self, node: Node, path: EntryPath) -> object:
         """The content of `node`, which stands at `path`."""
-        self.places.setdefault(path, self._place(node))
-        if isinstance(node, ScalarNode):
+        if path not in self.places:
+            self.places[path] = self._place(node)
+        if node.kind == "scalar":
             return self._scalar(node)
-        if any(node is one for one in self._around):
+        if node in self._around:
             self._found(self._place(node), "this contains itself, by an alias of its own anchor")
             return None
         self._around.append(node)
-        content = self._mapping(node, path) if isinstance(node, MappingNode) else self._sequence(node, path)
+        content = self._mapping(node, path) if node.kind == "mapping" else self._sequence(node, path)
         self._around.pop()
         return content
 
@@ -120,17 +123,16 @@ class _Reader:
         return Place(self._file, line + 1, index - self._text.rfind("\n", 0, index))
 
     def _sequence(self, node: Node, path: EntryPath) -> list[object]:
-        assert isinstance(node, SequenceNode)
         return [self.read(item, (*path, index)) for index, item in enumerate(node.value) if self._has_room(item)]
 
-    def _mapping(self, node: MappingNode, path: EntryPath) -> dict[SourceText, object]:
+    def _mapping(self, node: Node, path: EntryPath) -> dict[SourceText, object]:
         content: dict[SourceText, object] = {}
         for key_node, value_node in node.value:
-            if not isinstance(key_node, ScalarNode):
+            if key_node.kind != "scalar":
                 self._found(self._place(key_node), "a list or mapping cannot be a name")
                 continue
             key = self._text_of(key_node)
-            if str(key_node.tag).endswith(":merge"):
+            if key_node.tag == "merge":
                 self._found(key.place, "`<<` is not known here: write the entries out")
                 continue
             if key in content:
@@ -141,7 +143,7 @@ class _Reader:
             if not self._has_room(key_node):
                 break
             self.places[(*path, str(key))] = key.place
-            if value_node.start_mark.line == key_node.start_mark.line and value_node.value != "":
+            if value_node.start.line == key_node.start.line and value_node.value != "":
                 self.values[(*path, str(key))] = self._place(value_node)
             content[key] = self.read(value_node, (*path, str(key)))
         return content
@@ -155,8 +157,8 @@ class _Reader:
     def _found(self, place: Place, message: str) -> None:
         self.findings.append(Finding(place, message))
 
-    def _scalar(self, node: ScalarNode) -> object:
-        kind = str(node.tag).rsplit(":", 1)[-1]
+    def _scalar(self, node: Node) -> object:
+        kind = node.tag
         if kind == "null":
             return None
         if kind == "bool":
@@ -176,15 +178,15 @@ class _Reader:
         return self._text_of(node)
 
     def _text_of(self, node: Node) -> SourceText:
-        raw = self._text[node.start_mark.index : node.end_mark.index]
+        raw = self._text[node.start.index : node.end.index]
         place = self._place(node)
-        if properties := _PROPERTIES.match(raw):
+        if raw[:1] in ("&", "!") and (properties := _PROPERTIES.match(raw)):
             raw = raw[properties.end() :]
-            place = self.place_at(node.start_mark.index + properties.end())
+            place = self.place_at(node.start.index + properties.end())
         return SourceText(str(node.value), place, raw)
 
     def _place(self, node: Node) -> Place:
-        return Place(self._file, node.start_mark.line + 1, node.start_mark.column + 1)
+        return Place(self._file, node.start.line + 1, node.start.column + 1)
 
 
 def _integer(text: str) -> int:

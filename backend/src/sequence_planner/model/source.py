@@ -6,7 +6,8 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
-from pydantic import GetCoreSchemaHandler
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
+from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, core_schema
 
 from sequence_planner.expressions.syntax import Span
@@ -82,6 +83,11 @@ class SourceText(str):
     def __get_pydantic_core_schema__(cls, source: type[Any], handler: GetCoreSchemaHandler) -> CoreSchema:
         """Pass unchanged through pydantic; anything else is no text."""
         return core_schema.is_instance_schema(cls, cls_repr="text")
+
+    @classmethod
+    def __get_pydantic_json_schema__(cls, schema: CoreSchema, handler: GetJsonSchemaHandler) -> JsonSchemaValue:
+        """To an editor it is a string."""
+        return {"type": "string"}
 
 
 # How one character of a text is written, by the style of the text.

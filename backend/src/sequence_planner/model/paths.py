@@ -1,0 +1,63 @@
+"""How people name an entry of a document: `abilities.run_nut.start.do[0]`."""
+
+from __future__ import annotations
+
+import re
+
+from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.model.reading import EntryPath
+
+
+class EditError(Exception):
+    """An edit that cannot be made; nothing was changed."""
+
+
+def shown_path(path: EntryPath) -> str:
+    """A path as people write it: `abilities.run_nut.start.do[0]`."""
+    written = ""
+    for step in path:
+        if isinstance(step, int):
+            written += f"[{step}]"
+        else:
+            name = step if re.fullmatch(r"[^\s.\[\]\"']+", step) else f'"{step}"'
+            written += f".{name}" if written else name
+    return written
+
+
+_STEP = re.compile(
+    r"""\[(?P<index>\d+)\]|(?P<dot>\.?)(?:"(?P<quoted>[^"]*)"|'(?P<single>[^']*)'|(?P<name>[^\s.\[\]"']+))"""
+)
+
+
+def parse_path(text: str) -> EntryPath:
+    """Read `abilities.run_nut.start.do[0]`; a name with dots, brackets or spaces stands in quotes."""
+    path: list[str | int] = []
+    at = 0
+    while at < len(text):
+        step = _STEP.match(text, at)
+        if step is None or (step["index"] is None and bool(step["dot"]) != bool(path)):
+            raise EditError(
+                f"`{text}` is no path, from `{text[at:]}` on: write names with dots between, [0] for the first entry of"
+                ' a list, and quotes around a name with dots or brackets, as in topics."/a.b".type'
+            )
+        if step["index"] is not None:
+            path.append(int(step["index"]))
+        else:
+            path.append(next(one for one in (step["quoted"], step["single"], step["name"]) if one is not None))
+        at = step.end()
+    if not path:
+        raise EditError("an empty path: write which entry, such as abilities.run_nut.enabled")
+    return tuple(path)
+
+
+def missing(path: EntryPath, depth: int, around: object) -> str:
+    """What is to be said where `around`, at the first `depth` steps of `path`, has not the next step."""
+    step = path[depth]
+    where = f"`{shown_path(path[:depth])}`" if depth else "the document"
+    if isinstance(around, dict):
+        if isinstance(step, int):
+            return f"{where} is a mapping: write a name and not [{step}]"
+        return f"{where} has no entry `{step}`{suggestion(step, list(map(str, around)))}"
+    if isinstance(around, list):
+        return f"{where} is a list of {len(around)}, counted from [0]: there is no `{shown_path((step,))}` in it"
+    return f"{where} has no entries"

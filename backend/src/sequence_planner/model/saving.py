@@ -1,0 +1,75 @@
+"""Editing files: a change of a file's text is written whole or not at all, and only over the file it was made from."""
+
+from __future__ import annotations
+
+import difflib
+import hashlib
+import os
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+
+from sequence_planner.model.paths import EditError
+
+BYTE_ORDER_MARK = "\ufeff"
+
+
+def digest(path: Path) -> str:
+    """What `edit_file` can be told to expect: changes whenever the file does."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def edit_file(path: Path, change: Callable[[str], str], *, expected: str | None = None) -> str:
+    """Change a file's text; returns the difference as `diff -u` shows it, empty if there is none.
+
+    Line ends and permissions stay as they were. With `expected`, the `digest` of the file that the change is based on,
+    a file that was changed since is left alone. Raises `EditError`.
+    """
+    try:
+        written = path.read_bytes()
+        text = written.decode("utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
+        raise EditError(f"{path} cannot be read: {reason}") from error
+    if expected is not None and hashlib.sha256(written).hexdigest() != expected:
+        raise EditError(
+            f"{path} was changed by somebody else in the meantime. Nothing is lost: the file is as they left it, and"
+            " your change was not made. Look at it again and repeat your change"
+        )
+    mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
+    plain = text.removeprefix(mark).replace("\r\n", "\n")
+    has_windows_ends = "\r\n" in text
+    if has_windows_ends and plain.count("\n") != text.count("\r\n"):
+        raise EditError(f"{path} has line ends of both kinds, LF and CRLF: make them one kind first")
+    new = change(plain)
+    if new != plain:
+        content = mark + (new.replace("\n", "\r\n") if has_windows_ends else new)
+        try:
+            _write(path, content.encode("utf-8"))
+        except OSError as error:
+            raise EditError(f"{path} cannot be written: {error.strerror}") from error
+    return _difference(path, plain, new)
+
+
+def _difference(path: Path, old: str, new: str) -> str:
+    lines: list[str] = []
+    for line in difflib.unified_diff(old.splitlines(True), new.splitlines(True), str(path), str(path)):
+        lines.append(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n")
+    return "".join(lines)
+
+
+def _write(path: Path, content: bytes) -> None:
+    """Put `content` in the place of the file in one step: whoever reads it finds the old or the new, never a part."""
+    target = path.resolve()  # a link stays a link
+    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    temporary = Path(name)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
+            file.flush()
+            os.fsync(file.fileno())
+        temporary.chmod(target.stat().st_mode & 0o7777)
+        temporary.replace(target)
+    except BaseException:
+        temporary.unlink(missing_ok=True)
+        raise
