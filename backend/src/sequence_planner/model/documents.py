@@ -13,7 +13,7 @@ from sequence_planner.model.source import SourceText
 class DocumentPart(BaseModel):
     """Base of all parts: nothing beside what is declared."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
 
 
 # A predicate is a text of the guard language; YAML itself reads a bare `true` as a truth value.
@@ -36,7 +36,11 @@ def _ascending(interval: tuple[float, float]) -> tuple[float, float]:
     return interval
 
 
-Duration = Annotated[tuple[Seconds, Seconds], BeforeValidator(_interval), AfterValidator(_ascending)]
+Duration = Annotated[
+    tuple[Seconds, Seconds],
+    BeforeValidator(_interval, json_schema_input_type=Seconds | tuple[Seconds, Seconds]),
+    AfterValidator(_ascending),
+]
 
 
 class VariableDocument(DocumentPart):
@@ -46,70 +50,100 @@ class VariableDocument(DocumentPart):
     """
 
     type: SourceText | None = None
+    """`bool`, an enumeration, or a range such as `0..3`. May be left out where a message field tells it."""
     initial: bool | int | SourceText | None = None
+    """The first value; without it the first of the type."""
     each: Parameters = Field(default_factory=dict, alias="for")
+    """One variable per value of an enumeration: `{where: side}` makes `name[left]` and `name[right]`."""
 
 
 class StartDocument(DocumentPart):
     """The start of an ability: a further guard beside `enabled`, and the actions."""
 
     when: Predicate = True
+    """What must hold for a start beside `enabled`."""
     do: list[SourceText] = Field(default_factory=list)
+    """Actions on outputs and estimates, such as `wanted := closed`."""
 
 
 class FinishDocument(DocumentPart):
     """The finish of an ability: its guard and actions."""
 
     when: Predicate
+    """As soon as this holds, the finish actions are taken."""
     do: list[SourceText] = Field(default_factory=list)
+    """Actions on outputs and estimates."""
 
 
 class EffectDocument(DocumentPart):
     """How measured variables are expected to react; `takes` is its shortest and longest time in seconds."""
 
     kind: Literal["starting", "executing", "finishing"]
+    """For the reader: when in a run it is expected."""
     when: Predicate
+    """The condition under which it happens, on measured and output variables."""
     do: list[SourceText] = Field(min_length=1)
+    """What changes, all at once: actions on measured variables."""
     takes: Duration = (0.5, 0.5)
+    """Seconds, or the fewest and the most; emulated devices take so long."""
     fault: bool = False
+    """It may happen, but nobody counts on it."""
 
 
 class HumanDocument(DocumentPart):
     """A person carries the ability out: what the watch says, and the measured variable that is the acknowledgement."""
 
     task: SourceText
+    """What the watch says."""
     acknowledgement: SourceText
+    """A measured `bool` of the resource."""
 
 
 class CancelDocument(DocumentPart):
     """What is done when a running ability is called off."""
 
     do: list[SourceText] = Field(min_length=1)
+    """Actions on outputs and estimates."""
 
 
 class TimeoutsDocument(DocumentPart):
     """Seconds after the start until an alarm is raised: by when it must have reacted, and have finished."""
 
     react: Seconds | None = None
+    """By when it must have been seen executing, or have finished."""
     finish: Seconds | None = None
+    """By when it must have finished."""
 
 
 class AbilityDocument(DocumentPart):
     """An ability of a resource. `duration` estimates in seconds how long a run takes."""
 
     title: SourceText | None = None
+    """For people; `{parameter}` is replaced by the value."""
     parameters: Parameters = Field(default_factory=dict)
+    """`{name: enumeration}`: one ability per value."""
     restart: bool = False
+    """Only for getting back to work after trouble."""
     human: HumanDocument | None = None
+    """A person does it."""
     timeouts: TimeoutsDocument = TimeoutsDocument()
+    """Seconds after a start until an alarm is raised."""
     duration: Duration | None = None
+    """Seconds that a run is estimated to take, or the fewest and the most."""
     enabled: Predicate = True
+    """The ability can be used now."""
     start: StartDocument = StartDocument()
+    """The start: a further guard, and its actions."""
     executing: Predicate = False
+    """It is under way."""
     finished: Predicate = False
+    """It is done; for use in other conditions."""
     finish: FinishDocument | None = None
+    """The finish. An ability without one is done with its start."""
     cancel: CancelDocument | None = None
+    """What calls a running ability off."""
     effects: dict[SourceText, EffectDocument] = Field(default_factory=dict)
+    """How the device is expected to react."""
 
 
 Coordinates = dict[SourceText, Annotated[list[float], Field(min_length=1)]]
@@ -119,36 +153,52 @@ class DiscretiseDocument(DocumentPart):
     """Numbers of a message become the value whose coordinates are within `tolerance` of each, else `otherwise`."""
 
     field: SourceText
+    """An array of numbers in the message."""
     variable: SourceText
+    """The measured enumeration that gets the name of the point."""
     values: Coordinates
+    """The coordinates of each named point."""
     tolerance: Annotated[float, Field(gt=0)]
+    """How far from a point each number may be."""
     otherwise: SourceText
+    """The value between points."""
 
 
 class RememberDocument(DocumentPart):
     """A variable keeps the last value of another, but for the values in `except`."""
 
     variable: SourceText
+    """The measured variable that keeps the value."""
     of: SourceText
+    """The variable, of the same topic, whose value is kept."""
     ignored: list[SourceText] = Field(default_factory=list, alias="except")
+    """Values that are not kept."""
 
 
 class UndiscretiseDocument(DocumentPart):
     """A value becomes its coordinates."""
 
     variable: SourceText
+    """The output whose value names a point."""
     field: SourceText
+    """The array of numbers in the message."""
     values: Coordinates
+    """The coordinates of every value."""
 
 
 class StageDocument(DocumentPart):
     """One stage of a pipeline: exactly one kind. Fields and variables of one name are mapped without being asked."""
 
     discretise: DiscretiseDocument | None = None
+    """From numbers to the name of a point; for incoming topics."""
     remember: RememberDocument | None = None
+    """Keep the last value of another variable; for incoming topics."""
     undiscretise: UndiscretiseDocument | None = None
+    """From the name of a point to its numbers; for outgoing topics."""
     constant: Mapping[SourceText, Any] | None = None
-    rename: dict[SourceText, SourceText] | None = None  # field: variable
+    """Fields with a fixed value; for outgoing topics."""
+    rename: dict[SourceText, SourceText] | None = None
+    """Which field is which variable, where their names differ: `{field: variable}`."""
 
     @model_validator(mode="after")
     def _one_kind(self) -> StageDocument:
@@ -162,12 +212,19 @@ class TopicDocument(DocumentPart):
     """A ROS 2 topic. An incoming one is stale after `deadline` seconds; an outgoing one is repeated `every` seconds."""
 
     type: SourceText
+    """The message type, `package/msg/Name`."""
     direction: Literal["in", "out"]
+    """`in`: from a device; `out`: to a device."""
     deadline: Annotated[float, Field(gt=0)] | None = None
+    """Seconds without a message after which the topic's variables are unknown; incoming topics only."""
     every: Annotated[float, Field(gt=0)] | None = None
+    """Seconds after which the message is repeated; outgoing topics only."""
     quality: Literal["reliable", "sensor_data", "latched"] = "reliable"
-    ignore: list[SourceText] = Field(default_factory=list)  # fields that are no variables
+    """The topic's quality of service."""
+    ignore: list[SourceText] = Field(default_factory=list)
+    """Fields that are no variables."""
     pipeline: list[StageDocument] = Field(default_factory=list)
+    """Stages, where names alone do not tell what belongs together."""
 
     @model_validator(mode="after")
     def _timing_fits_direction(self) -> TopicDocument:
@@ -182,22 +239,34 @@ class ResourceDocument(DocumentPart):
     """A resource: its topics, its variables by who writes them, and what it can do."""
 
     title: SourceText | None = None
+    """For people."""
     topics: dict[SourceText, TopicDocument] = Field(default_factory=dict)
+    """The ROS 2 topics that the resource is reached by."""
     measured: dict[SourceText, VariableDocument] = Field(default_factory=dict)
+    """Variables written by incoming messages."""
     output: dict[SourceText, VariableDocument] = Field(default_factory=dict)
+    """Variables written by abilities, which leave in outgoing messages."""
     estimated: dict[SourceText, VariableDocument] = Field(default_factory=dict)
+    """Variables written by abilities, which no message carries."""
     abilities: dict[SourceText, AbilityDocument] = Field(default_factory=dict)
+    """What the resource can do."""
 
 
 class StationDocument(DocumentPart):
     """The station as a whole: what is common to its resources. `rest` describes the states of rest."""
 
     name: SourceText
+    """The station's name."""
     title: SourceText | None = None
+    """For people."""
     description: SourceText | None = None
+    """For people."""
     enumerations: dict[SourceText, Annotated[list[SourceText], Field(min_length=1)]] = Field(default_factory=dict)
+    """Named values, in order."""
     estimated: dict[SourceText, VariableDocument] = Field(default_factory=dict)
+    """Variables of the station as a whole, which abilities of every resource may write."""
     rest: Predicate = True
+    """The states to which the station can always be brought back."""
 
 
 class OperationDocument(DocumentPart):
@@ -207,11 +276,17 @@ class OperationDocument(DocumentPart):
     """
 
     title: SourceText | None = None
+    """For people; `{parameter}` is replaced by the value."""
     parameters: Parameters = Field(default_factory=dict)
+    """`{name: enumeration}`: one operation per value."""
     precondition: Predicate
+    """It becomes active when this holds, and the goal does not."""
     goal: Predicate
+    """It is completed when this holds."""
     local: Predicate | None = None
+    """A formula that holds from its activation to its goal, such as `not bad U good`."""
     priority: int = 0
+    """When not all active operations can be planned together, the lowest are left out first."""
 
 
 class SpecificationDocument(DocumentPart):
@@ -220,13 +295,21 @@ class SpecificationDocument(DocumentPart):
     """
 
     title: SourceText | None = None
+    """For people; `{parameter}` is replaced by the value."""
     parameters: Parameters = Field(default_factory=dict)
+    """`{name: enumeration}`: one specification per value."""
     forbidden: Predicate | None = None
+    """States that must never be."""
     never: Predicate | None = None
+    """What must not be `while` something else holds."""
     during: Predicate | None = Field(default=None, alias="while")
+    """While what `never` must not be."""
     exclusive: list[SourceText] | None = Field(default=None, min_length=2)
+    """Abilities of which no two execute at once."""
     zone: dict[SourceText, Predicate] | None = Field(default=None, min_length=2)
+    """Resources that share a space, each with the condition under which it is inside."""
     order: list[Predicate] | None = Field(default=None, min_length=2)
+    """Conditions none of which holds without the one before."""
 
     @model_validator(mode="after")
     def _one_kind(self) -> SpecificationDocument:
@@ -242,11 +325,15 @@ class WorkStepDocument(DocumentPart):
     """An operation of a job: which others must be completed before it."""
 
     after: list[SourceText] = Field(default_factory=list)
+    """The operations that must be completed before it."""
 
 
 class WorkMasterDocument(DocumentPart):
     """What a job consists of: its operations with their order, and the estimated values a new product `brings`."""
 
     title: SourceText | None = None
+    """For people."""
     brings: list[SourceText] = Field(default_factory=list)
+    """The estimated values of a new product, such as `part := absent`."""
     operations: dict[SourceText, WorkStepDocument | None] = Field(min_length=1)
+    """The operations of a job, each with what comes before it."""

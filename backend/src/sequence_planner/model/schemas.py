@@ -37,17 +37,11 @@ FILES: Mapping[str, tuple[Any, str]] = {
 
 
 class _Generator(GenerateJsonSchema):
-    """Without the titles that only repeat a key, and with the short form of a duration."""
+    """Without the titles that only repeat a key."""
 
     def field_title_should_be_set(self, schema: object) -> bool:
         """A key says it."""
         return False
-
-    def function_before_schema(self, schema: core_schema.BeforeValidatorFunctionSchema) -> JsonSchemaValue:
-        """What is made a list of two before it is looked at may also be a single one."""
-        inner = super().function_before_schema(schema)
-        both = inner.get("prefixItems", [])
-        return {"anyOf": [both[0], inner]} if len(both) == 2 and both[0] == both[1] else inner
 
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
         """A document part; its title in words, and how many keys it has where that is more than their names say."""
