@@ -28,11 +28,16 @@ PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")
 
 
 @cache
-def truck_engine() -> tuple[ReadyStation, Supervisor, Planner]:
-    """The truck engine station with its supervisor and a warm planner."""
-    station = prepare_station(TRUCK_ENGINE)
+def ready(folder: Path) -> tuple[ReadyStation, Supervisor, Planner]:
+    """The station in `folder` with its supervisor and a warm planner."""
+    station = prepare_station(folder)
     supervisor = synthesise(station.automaton)
     return station, supervisor, Planner(station.automaton, supervisor)
+
+
+def truck_engine() -> tuple[ReadyStation, Supervisor, Planner]:
+    """The truck engine station."""
+    return ready(TRUCK_ENGINE)
 
 
 Acknowledging = Callable[[Task, float], bool]
@@ -57,6 +62,7 @@ class Rig:
     step: float = 0.1
     now: float = 1000.0
     thinking: int = 0  # ticks that pass until the planner answers
+    folder: Path = TRUCK_ENGINE
     silent: set[str] = field(default_factory=set)  # topics from which nothing comes
     started: list[str] = field(default_factory=list)
     completed: list[str] = field(default_factory=list)
@@ -64,7 +70,7 @@ class Rig:
 
     def __post_init__(self) -> None:
         self._asked: tuple[PlanRequest, int] | None = None
-        self.station, supervisor, self.planner = truck_engine()
+        self.station, supervisor, self.planner = ready(self.folder)
         self.execution = Execution(self.station.automaton, supervisor)
         self.desk = TaskDesk(self.station.automaton)
         self.devices = EmulatedDevices(self.station.automaton, self.station.pipelines, seed=self.seed)

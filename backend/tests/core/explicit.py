@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations, product
 
-from sequence_planner.automaton.structure import Ability, Automaton, Effect, State
+from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, State
 from sequence_planner.automaton.tick import (
     apply_effects,
     effect_writes,
@@ -65,9 +65,17 @@ class Explicit:
 
     def _uncontrollable(self, effects: Sequence[Effect]) -> dict[Key, frozenset[Key]]:
         return {
-            key: frozenset(self.key(after) for after in outcomes(self.automaton, state, effects))
+            key: frozenset(
+                (*(self.key(after) for after in outcomes(self.automaton, state, effects)), *self._flips(key))
+            )
             for key, state in self.states.items()
         }
+
+    def _flips(self, key: Key) -> Iterator[Key]:
+        """In step 4, any operation may become active, or be so no longer."""
+        for position, variable in enumerate(self.automaton.variables.values()):
+            if variable.kind is Kind.ACTIVITY:
+                yield (*key[:position], not key[position], *key[position + 1 :])
 
     @cached_property
     def uncontrollable(self) -> dict[Key, frozenset[Key]]:

@@ -12,6 +12,7 @@ from sequence_planner.automaton.structure import (
     Effect,
     Flag,
     Kind,
+    Operation,
     Specification,
     VariableDeclaration,
 )
@@ -47,6 +48,9 @@ def device_station(choices: Choices) -> Automaton:
         declared[command.name] = VariableDeclaration(command.name, type_, Kind.OUTPUT, initial, None)
         declared[report.name] = VariableDeclaration(report.name, type_, Kind.MEASURED, initial, None)
         devices.append((command, report))
+    operations = {name: Operation(name, name, TRUE, FALSE) for name in ("g0",) if choices.chance(3)}
+    for operation in operations.values():
+        declared[operation.activity] = VariableDeclaration(operation.activity, BOOLEAN, Kind.ACTIVITY, False, None)
     plain = [Variable(name, variable.type) for name, variable in declared.items()]
     seen = [variable for device in devices for variable in device]
     abilities = [
@@ -72,6 +76,7 @@ def device_station(choices: Choices) -> Automaton:
             for i in range(choices.number(0, 2))
         },
         rest=equality(choices, plain) if choices.chance(3) else None,
+        operations=operations,
     )
 
 

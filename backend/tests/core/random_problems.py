@@ -38,8 +38,8 @@ def problem(choices: Choices, unknown: bool = False) -> Problem:
         if not supervisor.safe.includes(state):
             state = state_of(choices, station, unknown)
     operations: dict[str, Operation] = {}
-    for number in range(choices.number(1, 3)):
-        name = f"g{number}"
+    for number in range(max(choices.number(1, 3), len(station.operations))):
+        name = f"g{number}"  # such as those whose activity is read
         goal = _goal(choices, station, state, _run(choices, station, supervisor, state))
         operations[name] = Operation(name, name, TRUE, goal, choices.number(0, 2))
     return Problem(replace(station, operations=operations), supervisor, state)

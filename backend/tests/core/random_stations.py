@@ -1,8 +1,8 @@
 """Random small stations, directly as automata, and states of them.
 
 They are so small that the plain implementations in `explicit` and `breadth_first` can look at every state; and yet
-flags read flags, finish guards read `executing`, effects and finishes dispute variables, some effects are faults and
-some abilities are for restart only.
+flags read flags, finish guards read `executing`, effects and finishes dispute variables, some effects are faults, some
+abilities are for restart only, and some predicates read which operations are active.
 """
 
 from __future__ import annotations
@@ -15,12 +15,13 @@ from sequence_planner.automaton.structure import (
     Effect,
     Flag,
     Kind,
+    Operation,
     Specification,
     State,
     VariableDeclaration,
 )
 from sequence_planner.automaton.tick import synchronise
-from sequence_planner.expressions.syntax import TRUE, And, Expression, Variable
+from sequence_planner.expressions.syntax import FALSE, TRUE, And, Expression, Variable
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 
 from .choices import Choices
@@ -55,7 +56,10 @@ def declarations(choices: Choices) -> dict[str, VariableDeclaration]:
 
 def automaton(choices: Choices) -> Automaton:
     """A station of one to four abilities, up to four effects and up to two specifications."""
+    operations = {name: Operation(name, name, TRUE, FALSE) for name in ("g0",) if choices.chance(2)}
     declared = declarations(choices)
+    for each in operations.values():
+        declared[each.activity] = VariableDeclaration(each.activity, BOOLEAN, Kind.ACTIVITY, False, None)
     plain = [Variable(name, variable.type) for name, variable in declared.items()]
     of_kind = {kind: [v for v in plain if declared[v.name].kind is kind] for kind in Kind}
     names = [f"a{number}" for number in range(choices.number(1, 4))]
@@ -79,6 +83,7 @@ def automaton(choices: Choices) -> Automaton:
             f"s{i}": Specification(f"s{i}", f"s{i}", rare(choices, everything)) for i in range(choices.number(0, 2))
         },
         rest=predicate(choices, everything, 1) if choices.chance(2) else None,
+        operations=operations,
     )
 
 

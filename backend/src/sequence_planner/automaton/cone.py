@@ -46,6 +46,8 @@ def cone_of_influence(automaton: Automaton, questions: Iterable[Expression]) -> 
                 for action in transition.actions:
                     if target(action) in relevant:
                         relevant |= _read_by(automaton, action)
+            if automaton.one_at_a_time:
+                continue  # no two are ever taken together
             if phase is Phase.SENSE:
                 # Without an effect from outside the one inside can still happen, so only these can stand in its way.
                 relevant |= _disputed(automaton, combinations(inside, 2), relevant)

@@ -9,15 +9,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind, State
-from sequence_planner.automaton.tick import (
-    finish,
-    sense,
-    supervised_start,
-    synchronise,
-    update_operations,
-)
+from sequence_planner.automaton.tick import reverts
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.start_order import StartOrder
 from sequence_planner.control.view import Mode, PlanStatus, Production
@@ -50,9 +45,10 @@ class Execution:
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self.automaton = automaton
         self.supervisor = supervisor
-        self.state: State = synchronise(
-            automaton, {**automaton.initial_valuation, **dict.fromkeys(automaton.names(Kind.MEASURED), None)}
-        )
+        self._compiled = CompiledTick(automaton)
+        unmeasured = dict.fromkeys(automaton.names(Kind.MEASURED), None)
+        self._run = CompiledRun(self._compiled, {**automaton.initial_valuation, **unmeasured})
+        self._run.synchronise()
         self.published: State = self.state
         self.active: frozenset[str] = frozenset()
         self.mode = Mode.AUTOMATIC
@@ -68,6 +64,15 @@ class Execution:
         self._asked: tuple[frozenset[str], State] | None = None
         self._started_since_asked = False
         self._none_while_blind = False  # the last answer was that there is no plan, and values were unknown
+
+    @property
+    def state(self) -> State:
+        """The values of all variables and flags. It can be set to any other state, from which the ticks then go on."""
+        return self._run.state
+
+    @state.setter
+    def state(self, state: State) -> None:
+        self._run = CompiledRun(self._compiled, state)
 
     @property
     def safe(self) -> bool:
@@ -100,25 +105,31 @@ class Execution:
 
     def _tick(self, measured: Mapping[str, Value | None], now: Moment) -> TickOutcome:
         before = self.state
-        finishing = finish(self.automaton, sense(before, measured))
-        self.state = synchronise(self.automaton, finishing.state)
+        self._run.sense(measured)
+        finishing = self._run.finish()
+        self._run.synchronise()
         ended = tuple(name for name in finishing.finished if self.order.finish(name, now))
-        active = update_operations(self.automaton, self.state, self.active)
+        active = self._run.update_operations(self.active)
+        self._run.record_activity(active)
         activated, completed = active - self.active, self.active - active
         self.active = active
         self.order.goals &= active
         if not self.order.goals:
             self.order.drop()  # goals already met need no plan
         started = self._start(now)
-        self._look_at_plan(changed=bool(started) or self.state != before)
+        moved = self._moved_from(before)
+        self._look_at_plan(changed=bool(started) or moved)
         # Before production is started nothing is published, and then all outputs are: no change of one is news.
         news = self.automaton.outputs if self.production is Production.STARTED else ()
         outputs = frozenset(name for name in news if self.state[name] != self.published[name])
         self.published = self.state
-        changed = bool(started or ended or activated or completed or outputs) or self.state != before
+        changed = bool(started or ended or activated or completed or outputs) or moved
         return TickOutcome(
             finishing.finished, ended, started, activated, completed, finishing.conflicts, outputs, changed
         )
+
+    def _moved_from(self, before: State) -> bool:
+        return self.state is not before and self.state != before
 
     def request(self, deadline: float) -> PlanRequest | None:
         """What to ask the planner now, or None when there is nothing to ask or it would answer the same again."""
@@ -183,8 +194,8 @@ class Execution:
         started: list[str] = []
         if self.mode is not Mode.AUTOMATIC or self.production is not Production.STARTED or self.obstacles:
             return ()
-        while (after := self._next()) is not None:
-            self.state = after
+        while self._next_may_start():
+            self._run.start(self.order.ahead[0].ability)
             self._started_since_asked = True
             step = self.order.start(now)
             ability = self.automaton.abilities[step.ability]
@@ -193,18 +204,18 @@ class Execution:
             started.append(ability.name)
         return tuple(started)
 
-    def _next(self) -> State | None:
-        """The state after the start of the first ability of the order, or None while it waits.
+    def _next_may_start(self) -> bool:
+        """Whether the first ability of the order starts now, or else it waits.
 
         While it waits, the order is as good as any other in which the rest still reaches the goals: the first ability
         behind it for which that holds is pulled to the front. So a robot does not wait for a person whose task has
         nothing to do with it.
         """
         if not self.order.ahead:
-            return None
+            return False
         after = self.startable(self.order.ahead[0].ability)
         if after is not None and self.may_go_on(after):
-            return after
+            return True
         tried = {self.order.ahead[0].ability}
         for index, step in enumerate(self.order.ahead[1:], start=1):
             if step.ability in tried:
@@ -214,13 +225,17 @@ class Execution:
             rest = self.order.names[:index] + self.order.names[index + 1 :]
             if after is not None and self._replay.eagerly(after, self.published, self.order.goals, rest):
                 self.order.pull_forward(index)
-                return after
-        return None
+                return True
+        return False
 
     def startable(self, name: str) -> State | None:
         """The state after the start of the ability, if its guards and the supervisor allow it now."""
-        ability = self.automaton.abilities[name]
-        return supervised_start(self.automaton, self.supervisor, self.published, self.state, ability)
+        if name not in self._run.startable():
+            return None
+        after = self._run.after_start(name)
+        if after is None or reverts(self.automaton, self.published, self.state, after):
+            return None
+        return after if self.supervisor.allows(self.state, after) else None
 
     def may_go_on(self, after: State) -> bool:
         """Whether the order after its first start, which leads to the state `after`, still reaches the goals."""

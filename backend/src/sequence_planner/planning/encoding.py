@@ -176,7 +176,9 @@ class Encoding:
         writes: Writes = {}
         determined: list[int] = []
         for action in actions:
-            value = self.reading.symbol(action.value, state)
+            # Where it is taken, an action writes a value of the domain; it is encoded for all states.
+            domain = self.automaton.variables[target(action)].type.domain
+            value = self.reading.symbol(action.value, state).within(domain)
             if action.condition is None:
                 writes[target(action)] = Write(Circuit.TRUE, value)
                 determined.append(value.known)

@@ -6,15 +6,30 @@ there is no plan at all; this is the delete relaxation of planning (Bonet and Ge
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from itertools import product
+from math import prod
 
-from sequence_planner.automaton.structure import Automaton, State, target
+from sequence_planner.automaton.structure import Automaton, Flag, State, target
+from sequence_planner.automaton.transitions import Transition, transitions
 from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import And, Assignment, Expression, Not, Or, variables
+from sequence_planner.expressions.syntax import (
+    And,
+    Assignment,
+    Comparison,
+    Constant,
+    Expression,
+    Implies,
+    Membership,
+    Not,
+    Or,
+    Variable,
+    variables,
+)
 from sequence_planner.expressions.types import Value
 
-Possible = dict[str, set[Value | None]]
+Possible = Mapping[str, set[Value | None]]
 
 # An expression over more combinations than this is not evaluated: it may have any value, so the relaxation stays sound.
 _MOST_COMBINATIONS = 4096
@@ -22,69 +37,116 @@ _MOST_COMBINATIONS = 4096
 
 def unreachable_goals(automaton: Automaton, state: State, goals: Iterable[str]) -> frozenset[str]:
     """Those of the operations `goals` whose goal no run from `state` can ever reach."""
-    possible: Possible = {name: {value} for name, value in state.items()}
-    transitions: list[tuple[tuple[Expression, ...], tuple[Assignment, ...]]] = [
-        ((effect.guard,), effect.actions) for effect in automaton.effects if not effect.fault
-    ]
-    for ability in automaton.abilities.values():
-        if not ability.restart:
-            transitions.append(((ability.enabled, ability.start_guard), ability.start_actions))
-        if ability.finish_guard is not None:
-            transitions.append(((ability.finish_guard,), ability.finish_actions))
-    grown = True
-    while grown:
-        grown = False
-        for guards, actions in transitions:
-            if all(_may(guard, True, possible) for guard in guards):
-                for action in actions:
-                    grown |= _gather(automaton, action, possible)
-        for flag in automaton.flags:
-            for truth in (True, False):
-                if truth not in possible[flag.name] and _may(flag.predicate, truth, possible):
-                    possible[flag.name].add(truth)
-                    grown = True
-    return frozenset(goal for goal in goals if not _may(automaton.operations[goal].goal, True, possible))
+    counted = [transition for transition in transitions(automaton) if not (transition.fault or transition.restart)]
+    reached = Relaxation(automaton, {name: {value} for name, value in state.items()}, counted)
+    return frozenset(goal for goal in goals if not reached.may(automaton.operations[goal].goal))
 
 
-def _gather(automaton: Automaton, action: Assignment, possible: Possible) -> bool:
-    """Add what `action` can write; whether anything was new."""
-    if action.condition is not None and not _may(action.condition, True, possible):
-        return False
-    name = target(action)
-    if possible[name] == {None}:
-        return False  # the planner keeps an unknown variable unknown
-    values = _values(action.value, possible)
-    if values is None:
-        values = set(automaton.variables[name].type.domain)
-    new = values - {None} - possible[name]
-    possible[name] |= new
-    return bool(new)
+class Relaxation:
+    """What each variable and flag may become from `first`, where each has some values already, by `moves`."""
 
+    def __init__(self, automaton: Automaton, first: Possible, moves: Iterable[Transition]) -> None:
+        self._automaton = automaton
+        self.possible = {name: set(values) for name, values in first.items()}
+        self._true: set[tuple[int, bool]] = set()  # expressions known to have a truth value, which they never lose
+        self._kept: list[Expression] = []  # so that no identity is given to another expression
+        steps: list[Transition | Flag] = [*automaton.flags, *moves]
+        readers: dict[str, list[int]] = defaultdict(list)
+        for number, step in enumerate(steps):
+            for name in set(variables(step.predicate)) if isinstance(step, Flag) else step.reads:
+                readers[name].append(number)
+        waiting = dict.fromkeys(range(len(steps)))
+        while waiting:
+            for name in self._taken(steps[waiting.popitem()[0]]):
+                waiting.update(dict.fromkeys(readers[name]))
 
-def _may(predicate: Expression, truth: bool, possible: Mapping[str, set[Value | None]]) -> bool:
-    """Whether some choice of possible values may give `predicate` the value `truth`."""
-    match predicate:
-        case Not(operand):
-            return _may(operand, not truth, possible)
-        case And(operands):
-            decide = all if truth else any
-            return decide(_may(part, truth, possible) for part in operands)
-        case Or(operands):
-            decide = any if truth else all
-            return decide(_may(part, truth, possible) for part in operands)
-    values = _values(predicate, possible)
-    return values is None or truth in values
+    def may(self, predicate: Expression, truth: bool = True) -> bool:
+        """Whether some choice of possible values may give `predicate` the value `truth`."""
+        key = (id(predicate), truth)
+        if key in self._true:
+            return True
+        if not self._may(predicate, truth):
+            return False
+        self._true.add(key)
+        self._kept.append(predicate)
+        return True
 
+    def _taken(self, step: Transition | Flag) -> list[str]:
+        """Take a step if it may be; what has gained values."""
+        if isinstance(step, Flag):
+            values = self.possible[step.name]
+            new = [t for t in (True, False) if t not in values and self.may(step.predicate, t)]
+            values.update(new)
+            return [step.name] if new else []
+        if not self.may(step.guard):
+            return []
+        return [target(action) for action in step.actions if self._gather(action)]
 
-def _values(expression: Expression, possible: Mapping[str, set[Value | None]]) -> set[Value | None] | None:
-    """What `expression` may be; None when there are too many combinations to say."""
-    names = sorted(set(variables(expression)))
-    combinations = 1
-    for name in names:
-        combinations *= len(possible[name])
-    if combinations > _MOST_COMBINATIONS:
-        return None
-    return {
-        evaluate(expression, dict(zip(names, values, strict=True)))
-        for values in product(*(possible[name] for name in names))
-    }
+    def _gather(self, action: Assignment) -> bool:
+        """Add what `action` can write; whether anything was new."""
+        if action.condition is not None and not self.may(action.condition):
+            return False
+        name = target(action)
+        if self.possible[name] == {None}:
+            return False  # the planner keeps an unknown variable unknown
+        domain = set(self._automaton.variables[name].type.domain)
+        values = self._values(action.value)
+        # Where it is taken an action writes a value of the domain; it is looked at where it is not taken, too.
+        new = (domain if values is None else domain & values) - self.possible[name]
+        self.possible[name] |= new
+        return bool(new)
+
+    def _may(self, predicate: Expression, truth: bool) -> bool:
+        match predicate:
+            case Constant(value):
+                return value is truth
+            case Variable(name):
+                return truth in self.possible[name]
+            case Not(operand):
+                return self.may(operand, not truth)
+            case And(operands):
+                decide = all if truth else any
+                return decide(self.may(part, truth) for part in operands)
+            case Or(operands):
+                decide = any if truth else all
+                return decide(self.may(part, truth) for part in operands)
+            case Implies(left, right) if truth:
+                return self.may(left, False) or self.may(right, True)
+            case Implies(left, right):
+                return self.may(left, True) and self.may(right, False)
+            case Comparison("==" | "!=" as relation, left, Constant(value)):
+                return self._may_equal(left, {value}, truth is (relation == "=="))
+            case Comparison("==" | "!=" as relation, left, Variable(name)):
+                return self._may_equal(left, self.possible[name], truth is (relation == "=="))
+            case Membership(left, options) if all(isinstance(option, Constant) for option in options):
+                return self._may_be_among(left, {o.value for o in options if isinstance(o, Constant)}, truth)
+        values = self._values(predicate)
+        return values is None or truth in values
+
+    def _may_equal(self, left: Expression, right: set[Value | None], truth: bool) -> bool:
+        if (values := self._values(left)) is None:
+            return True
+        known, other = values - {None}, right - {None}
+        return bool(known & other) if truth else len(known | other) > 1 and bool(known and other)
+
+    def _may_be_among(self, left: Expression, options: set[Value], truth: bool) -> bool:
+        values = self._values(left)
+        return values is None or bool(values & options if truth else values - options - {None})
+
+    def _values(self, expression: Expression) -> set[Value | None] | None:
+        """What `expression` may be; None when there are too many combinations to say."""
+        match expression:
+            case Constant(value):
+                return {value}
+            case Variable(name):
+                return self.possible[name]
+        names = sorted(set(variables(expression)))
+        if self._combinations(names) > _MOST_COMBINATIONS:
+            return None
+        return {
+            evaluate(expression, dict(zip(names, values, strict=True)))
+            for values in product(*(self.possible[name] for name in names))
+        }
+
+    def _combinations(self, names: Iterable[str]) -> int:
+        return prod(len(self.possible[name]) for name in names)

@@ -7,7 +7,7 @@ and the circuit makes them one gate.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from itertools import product
 
@@ -21,7 +21,6 @@ from sequence_planner.expressions.syntax import (
     Expression,
     Implies,
     Membership,
-    Name,
     Not,
     Or,
     Variable,
@@ -40,6 +39,12 @@ class Symbol:
     def literal(self, value: Value) -> int:
         """The literal that is true when the value is `value`."""
         return self.literals.get(value, Circuit.FALSE)
+
+    def within(self, domain: Collection[Value]) -> Symbol:
+        """The same value where it is one of `domain`."""
+        if self.literals.keys() <= set(domain):
+            return self
+        return Symbol({value: literal for value, literal in self.literals.items() if value in domain}, self.known)
 
 
 @dataclass(frozen=True)
@@ -82,7 +87,7 @@ class Reading:
             case Membership(left, options):
                 subject = self.symbol(left, state)
                 return self._any([self._comparison("==", subject, self.symbol(o, state)) for o in options])
-            case Arithmetic() | Name():
+            case _:
                 raise TypeError(f"{expression} is no predicate")
 
     def symbol(self, expression: Expression, state: SymbolicState) -> Symbol:

@@ -5,16 +5,16 @@ A state is its index in the product of the domains, in row-major order of `names
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import prod
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sequence_planner.automaton.structure import Ability, Automaton, Effect, target
-from sequence_planner.expressions.syntax import Expression
-from sequence_planner.expressions.types import Value
+from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, State, target
+from sequence_planner.expressions.syntax import Assignment, Expression
+from sequence_planner.expressions.types import BOOLEAN, Value
 from sequence_planner.synthesis.vectorised import Column, Columns, Mask, Numbering, Writes
 
 Indices = NDArray[np.int64]
@@ -63,22 +63,38 @@ class Plant:
         return self._numbering.mask((predicate,), self._with_flags, self.size)
 
     def uncontrollable(self, faults: bool) -> Steps:
-        """Steps 1 to 3 of the tick, with every set of compatible effects that is enabled, the empty one included.
+        """What happens without us. With `faults`, effects marked as faults may be among it.
 
-        With `faults`, effects marked as faults may be among them.
+        Steps 1 to 3 of the tick, with every set of compatible effects that is enabled, the empty one included; and step
+        4, of which any outcome is possible: the activity of any operation changes by itself. In a plain automaton, each
+        effect alone.
         """
         effects = [e for e in self.automaton.effects if (faults or not e.fault) and self._concerned(e)]
         everywhere = np.arange(self.size, dtype=np.int64)
-        parts = list(self._effect_sets(effects, everywhere, {}))
-        return Steps(np.concatenate([s for s, _ in parts]), np.concatenate([t for _, t in parts]))
+        if self.automaton.one_at_a_time:
+            return _joined(self._taken((effect.guard,), effect.actions) for effect in effects)
+        senses = (Steps(s, self._finished(s, sensed)) for s, sensed in self._effect_sets(effects, everywhere, {}))
+        return _joined((*senses, *self._activity_changes(everywhere)))
+
+    def conflicting_finishes(self, one: Ability, other: Ability, within: Mask) -> State | None:
+        """What the two abilities see when both finish, after a step from `within`, and would write different values.
+
+        Variables are as just measured, flags as before.
+        """
+        effects = [e for e in self.automaton.effects if self._concerned(e)]
+        for source, sensed in self._effect_sets(effects, np.flatnonzero(within).astype(np.int64), {}):
+            before = self._at(source)
+            columns = {**before, **_applied(before, sensed)}
+            found = {a.name: (taken, writes) for a, taken, writes in self._finishing(columns, len(source))}
+            (first, first_writes), (second, second_writes) = found[one.name], found[other.name]
+            where = np.flatnonzero(first & second & _conflict(first_writes, second_writes, len(source)))
+            if len(where):
+                return self._seen(columns, int(where[0]))
+        return None
 
     def starts(self, ability: Ability) -> Steps:
         """The start of `ability`, followed by synchronisation."""
-        guards = (ability.enabled, ability.start_guard)
-        source = np.flatnonzero(self._numbering.mask(guards, self._with_flags, self.size)).astype(np.int64)
-        columns = self._at(source)
-        writes = self._numbering.writes(ability.start_actions, columns, len(source), self.names)
-        return Steps(source, self._moved(source, columns, _applied(columns, writes)))
+        return self._taken((ability.enabled, ability.start_guard), ability.start_actions)
 
     def _all_columns(self) -> dict[str, Column]:
         if not self.names:
@@ -96,20 +112,41 @@ class Plant:
                 continue  # it reads a variable outside, so nothing here reads it
         return after
 
+    def _taken(self, guards: Iterable[Expression], actions: Iterable[Assignment]) -> Steps:
+        source = np.flatnonzero(self._numbering.mask(guards, self._with_flags, self.size)).astype(np.int64)
+        columns = self._at(source)
+        writes = self._numbering.writes(actions, columns, len(source), self.names)
+        return Steps(source, self._moved(source, columns, _applied(columns, writes)))
+
+    def _activity_changes(self, source: Indices) -> Iterator[Steps]:
+        """An operation becomes active, or is so no longer; one at a time, as several are several such steps."""
+        for name in self.automaton.names(Kind.ACTIVITY):
+            if name in self._strides:
+                stride = self._strides[name]
+                yield Steps(source, np.where(source // stride % len(BOOLEAN.domain), source - stride, source + stride))
+
     def _concerned(self, effect: Effect) -> bool:
         return any(target(action) in self._strides for action in effect.actions)
 
     def _at(self, source: Indices) -> dict[str, Column]:
         return {name: column[source] for name, column in self._with_flags.items()}
 
+    def _seen(self, columns: Columns, position: int) -> State:
+        """The values at one position of `columns`."""
+        seen: dict[str, Value | None] = {name: bool(column[position]) for name, column in columns.items()}
+        for name, domain in zip(self.names, self.domains, strict=True):
+            (at,) = np.flatnonzero(self._numbers[name] == columns[name][position])
+            seen[name] = domain[int(at)]
+        return seen
+
     def _effect_sets(
         self, effects: Sequence[Effect], source: Indices, chosen: Writes
-    ) -> Iterator[tuple[Indices, Indices]]:
-        """Steps with the writes of `chosen`, and with each compatible choice among `effects` beside them."""
+    ) -> Iterator[tuple[Indices, Writes]]:
+        """`chosen` alone, and with each compatible choice among `effects` beside it, each with its states."""
         if not len(source):
             return
         if not effects:
-            yield source, self._finished(source, chosen)
+            yield source, chosen
             return
         first, rest = effects[0], effects[1:]
         yield from self._effect_sets(rest, source, chosen)
@@ -124,15 +161,7 @@ class Plant:
         before = self._at(source)
         columns = {**before, **_applied(before, sensed)}
         length = len(source)
-        finishing = [
-            (
-                self._numbering.mask((ability.finish_guard,), columns, length),
-                self._numbering.writes(ability.finish_actions, columns, length, self.names),
-            )
-            for ability in self.automaton.abilities.values()
-            if ability.finish_guard is not None
-            and any(target(action) in self._strides for action in ability.finish_actions)
-        ]
+        finishing = [(taken, writes) for _, taken, writes in self._finishing(columns, length)]
         refused = [np.zeros(length, dtype=np.bool_) for _ in finishing]
         for i, (one, first) in enumerate(finishing):
             for j, (other, second) in enumerate(finishing[:i]):
@@ -144,6 +173,19 @@ class Plant:
             together = _together(together, {n: (w & taken & ~no, v) for n, (w, v) in writes.items()})
         return self._moved(source, before, _applied(before, together))
 
+    def _finishing(self, columns: Columns, length: int) -> list[tuple[Ability, Mask, Writes]]:
+        """Where each ability finishes, and what it writes then."""
+        return [
+            (
+                ability,
+                self._numbering.mask((ability.finish_guard,), columns, length),
+                self._numbering.writes(ability.finish_actions, columns, length, self.names),
+            )
+            for ability in self.automaton.abilities.values()
+            if ability.finish_guard is not None
+            and any(target(action) in self._strides for action in ability.finish_actions)
+        ]
+
     def _moved(self, source: Indices, before: Columns, after: Columns) -> Indices:
         """The states that differ from those of `source` by the values of `after`."""
         moved = source.copy()
@@ -153,6 +195,16 @@ class Plant:
             axis, axis_before = (order[np.searchsorted(numbers, c, sorter=order)] for c in (column, before[name]))
             moved += self._strides[name] * (axis - axis_before)
         return moved
+
+
+def _joined(parts: Iterable[Steps]) -> Steps:
+    """All of them, and none of none."""
+    nothing = np.zeros(0, dtype=np.int64)
+    steps = list(parts)
+    return Steps(
+        np.concatenate([nothing, *(each.source for each in steps)]),
+        np.concatenate([nothing, *(each.target for each in steps)]),
+    )
 
 
 def _conflict(first: Writes, second: Writes, length: int) -> Mask:

@@ -22,7 +22,6 @@ from sequence_planner.expressions.syntax import (
     Expression,
     Implies,
     Membership,
-    Name,
     Not,
     Or,
     Variable,
@@ -81,8 +80,8 @@ class Numbering:
             case Arithmetic(sign, left, right):
                 a, b = self.evaluate(left, columns, length), self.evaluate(right, columns, length)
                 return a + b if sign == "+" else a - b
-            case Name():
-                raise TypeError(f"unresolved name {expression}")
+            case _:
+                raise TypeError(f"{expression} has no value in a single state")
 
     def mask(self, expressions: Iterable[Expression], columns: Columns, length: int) -> Mask:
         """Where all of `expressions` hold."""

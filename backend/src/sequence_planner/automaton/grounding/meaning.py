@@ -98,7 +98,7 @@ class Meaning:
         if not isinstance(text, SourceText):
             return Constant(bool(text))
         try:
-            return self._noted(simplify(read(text)))
+            return self._noted(text, simplify(read(text)))
         except ExpressionError as error:
             self._misread(text, error, scope)
             return FALSE
@@ -109,16 +109,15 @@ class Meaning:
         except ExpressionError as error:
             self._misread(text, error, scope)
             return None
-        self._noted(action.value)
-        self._noted(action.condition or TRUE)
+        self._noted(text, action.value)
+        self._noted(text, action.condition or TRUE)
         return action
 
-    def _noted(self, expression: Expression) -> Expression:
-        """`expression`, whose readings of operations are kept in mind."""
-        prefix = f"{OPERATION}."
-        for variable in occurrences(expression):
-            if variable.name.startswith(prefix):
-                self._activities[variable.name] = None
+    def _noted(self, text: SourceText, expression: Expression) -> Expression:
+        """The meaning of `text`, whose readings of operations are kept in mind."""
+        if OPERATION in text:
+            read = (variable.name for variable in occurrences(expression))
+            self._activities |= dict.fromkeys(name for name in read if name.startswith(f"{OPERATION}."))
         return expression
 
     def _check_fits(self, text: SourceText, action: Assignment, guard: Expression) -> None:

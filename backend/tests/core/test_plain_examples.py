@@ -1,0 +1,182 @@
+"""Plain automata as people write them: two users of one thing, philosophers, counters."""
+
+from __future__ import annotations
+
+import json
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+from sequence_planner.automaton.plain.meaning import plain_automaton
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.printing import print_expression
+from sequence_planner.model.plain_documents import read_plain
+from sequence_planner.planning.plain import plan_transitions
+from sequence_planner.planning.plan import Verdict
+from sequence_planner.synthesis.enumeration import SynthesisError, enumerate_states, synthesise
+
+Transition = dict[str, Any]
+
+
+def event(name: str, guard: str, updates: dict[str, object], controllable: bool = True) -> Transition:
+    return {"event": name, "controllable": controllable, "guard": guard, "set": updates}
+
+
+def read(**entries: object) -> Automaton:
+    return plain_automaton(read_plain(json.dumps({"name": "example", **entries}, indent=1), "example.efa.json"))
+
+
+def two_users() -> Automaton:
+    """Of one thing; each asks for it and gives it back when it likes. `n` counts up to 3, then the thing is cleaned."""
+    return read(
+        variables={u: ["idle", "waits", "has"] for u in ("u1", "u2")} | {"free": "bool", "n": {"min": 0, "max": 3}},
+        initial="u1 == idle and u2 == idle and free and n == 0",
+        transitions=[event("cleans", "n == 3 and free", {"n": 0})]
+        + [
+            transition
+            for u in ("u1", "u2")
+            for transition in (
+                event(f"{u}_asks", f"{u} == idle", {u: "waits"}, False),
+                event(f"{u}_grabs", f"{u} == waits", {u: "has", "free": False, "n": "n + 1"}),
+                event(f"{u}_drops", f"{u} == has", {u: "idle", "free": True}, False),
+            )
+        ],
+        forbidden=["u1 == has and u2 == has"],
+        marked="u1 == idle",
+        goal=["F (u1 == has)", "F (u2 == has)", "F (n == 3)", "G (n < 3)", "F (u1 == has and u2 == has)"],
+    )
+
+
+def philosophers(number: int) -> Automaton:
+    """Each takes the left fork, then the right one. `N` thinks, `L` has the left one, `R` has both."""
+    names = [f"p{i}" for i in range(number)]
+    forks = [f"f{i}" for i in range(number)]
+    transitions = []
+    for i, p in enumerate(names):
+        left, right = forks[i], forks[(i + 1) % number]
+        transitions += [
+            event(f"left{i}", f"{p} == N and {left}", {p: "L", left: False}),
+            event(f"right{i}", f"{p} == L and {right}", {p: "R", right: False}),
+            event(f"back{i}", f"{p} == R", {p: "N", left: True, right: True}, False),
+        ]
+    return read(
+        variables={p: ["N", "L", "R"] for p in names} | dict.fromkeys(forks, "bool"),
+        initial=" and ".join([*(f"{p} == N" for p in names), *forks]),
+        transitions=transitions,
+        marked=" and ".join(f"{p} == N" for p in names),
+        goal=["F (p1 == R)"],
+    )
+
+
+def test_the_second_user_must_wait_until_the_first_has_given_the_thing_back() -> None:
+    automaton = two_users()
+    supervisor = synthesise(automaton)
+    state = dict(automaton.initial_valuation) | {"u1": "waits", "u2": "has", "free": False, "n": 1}
+    assert not supervisor.guards["u1_grabs"].includes(state)
+    assert supervisor.guards["u1_grabs"].includes(state | {"u2": "idle", "free": True})
+
+
+def test_an_update_out_of_range_disables_its_transition() -> None:
+    automaton = two_users()
+    assert print_expression(automaton.abilities["u1_grabs"].start_guard) == "u1 == waits and n + 1 <= 3"
+    counter = read(
+        variables={"n": {"min": 0, "max": 3}},
+        initial="n == 0",
+        marked="n == 0",
+        transitions=[event("up", "true", {"n": "n + 1"}), event("down", "true", {"n": "n - 1"}, False)],
+    )
+    assert enumerate_states(counter).reachable(supervised=True).sum() == 4
+
+
+def test_plans_are_sequences_of_events_in_which_the_environment_helps() -> None:
+    automaton = two_users()
+    supervisor = synthesise(automaton)
+    answer = plan_transitions(automaton, supervisor, "goal_1")
+    assert answer.events == ("u1_asks", "u1_grabs")
+    thrice = plan_transitions(automaton, supervisor, "goal_3")
+    assert [e.partition("_")[2] for e in thrice.events].count("grabs") == 3
+    # Only those of the form F p can be planned; all are kept.
+    assert set(automaton.operations) == {"goal_1", "goal_2", "goal_3", "goal_5"}
+    assert len(automaton.goals) == 5
+
+
+def test_no_plan_goes_against_the_supervisor() -> None:
+    automaton = two_users()
+    assert plan_transitions(automaton, synthesise(automaton), "goal_5", longest=12).verdict is Verdict.NONE_UP_TO
+
+
+def test_a_goal_that_holds_needs_no_transition_and_outside_the_safe_set_nothing_is_planned() -> None:
+    automaton = two_users()
+    state = dict(automaton.initial_valuation) | {"u1": "has", "free": False}
+    assert plan_transitions(automaton, synthesise(automaton), "goal_1", state).transitions == ()
+    with pytest.raises(ValueError, match="outside the safe set"):
+        plan_transitions(automaton, synthesise(automaton), "goal_1", state | {"u2": "has"})
+
+
+@pytest.mark.parametrize("number", [2, 3])
+def test_philosophers_never_each_hold_one_fork(number: int) -> None:
+    """Then nobody could go on. All else stays possible: the supervisor removes exactly that state."""
+    automaton = philosophers(number)
+    found = enumerate_states(automaton)
+    free, supervised = found.reachable(supervised=False), found.reachable(supervised=True)
+    [removed] = (free & ~supervised).nonzero()[0].tolist()
+    state = found.plant.state(removed)
+    assert {state[f"p{i}"] for i in range(number)} == {"L"}
+    assert plan_transitions(automaton, synthesise(automaton), "goal_1").events == ("left1", "right1")
+
+
+def test_of_two_transitions_that_exclude_each_other_only_one_happens() -> None:
+    """One at a time: in a tick, effects of both could happen together."""
+    automaton = read(
+        variables={"a": "bool", "b": "bool"},
+        initial="not a and not b",
+        transitions=[event("left", "not b", {"a": True}, False), event("right", "not a", {"b": True}, False)],
+        forbidden=["a and b"],
+        goal=["F (a and b)"],
+    )
+    supervisor = synthesise(automaton)
+    assert supervisor.safe.includes(automaton.initial_valuation)
+    assert enumerate_states(automaton).reachable(supervised=True).sum() == 3
+    free = read(
+        variables={"a": "bool", "b": "bool"},
+        initial="not a and not b",
+        transitions=[event("left", "not b", {"a": True}, False), event("right", "not a", {"b": True}, False)],
+        goal=["F (a and b)"],
+    )
+    assert plan_transitions(free, synthesise(free), "goal_1", longest=6).verdict is Verdict.NONE_UP_TO
+
+
+def test_every_initial_state_must_be_safe() -> None:
+    entries: dict[str, Any] = {
+        "variables": {"a": "bool", "hot": "bool"},
+        "transitions": [event("heats", "a", {"hot": True}, False)],
+        "forbidden": ["hot"],
+    }
+    assert synthesise(read(initial="not hot and not a", **entries))
+    with pytest.raises(SynthesisError) as error:
+        synthesise(read(initial="not hot", **entries))
+    assert str(error.value).splitlines() == [
+        "specification forbidden_1 cannot be met: no start could prevent this from the initial state on",
+        "  step 1: hot := true",
+        "  violated with a = true, hot = true",
+    ]
+
+
+def test_initial_states_are_found_among_more_than_could_be_enumerated() -> None:
+    names = [f"x{i}" for i in range(60)]
+    alike = " and ".join(f"{one} == {other}" for one, other in pairwise(names))
+    automaton = read(variables=dict.fromkeys(names, "bool"), initial=f"{alike} and x59")
+    assert automaton.initial is None
+    assert all(automaton.variables[name].initial is True for name in names)
+    several = read(variables=dict.fromkeys(names, "bool"), initial=alike)
+    assert several.initial is not None
+    assert holds(several.initial, several.initial_valuation)
+
+
+def test_what_has_too_many_states_to_enumerate_says_so() -> None:
+    names = [f"x{i}" for i in range(60)]
+    automaton = read(variables=dict.fromkeys(names, "bool"), initial="true", forbidden=[" and ".join(names)])
+    with pytest.raises(SynthesisError, match="60 variables with 1152921504606846976 states together"):
+        synthesise(automaton)
