@@ -212,7 +212,7 @@ def test_what_is_active_before_production_is_shown_with_the_reason_for_no_plan()
     assert execution.request(5) is None
 
 
-def test_what_is_active_is_known_to_the_starts_of_the_same_tick_and_to_flags_from_the_next_one_on() -> None:
+def test_what_is_active_is_known_to_the_flags_and_starts_of_the_same_tick() -> None:
     active = "operation.light.active"
     station = automaton(
         {"shine": Does(start=("lamp := true",), when=active, finished=active)},
@@ -225,14 +225,12 @@ def test_what_is_active_is_known_to_the_starts_of_the_same_tick_and_to_flags_fro
     assert execution.startable("shine") is None
 
     assert execution.tick({"lit": False}, NOW).activated == {"light"}
-    assert (execution.state[active], execution.state["shine.finished"]) == (True, False)
+    assert (execution.state[active], execution.state["shine.finished"]) == (True, True)
     after = execution.startable("shine")
     assert after is not None
     assert (after["lamp"], after["shine.finished"]) == (True, True)
     assert execution.state["lamp"] is False  # looked at, and not taken
 
     assert execution.tick({"lit": True}, NOW).completed == {"light"}
-    assert (execution.state[active], execution.state["shine.finished"]) == (False, True)
+    assert (execution.state[active], execution.state["shine.finished"]) == (False, False)
     assert execution.startable("shine") is None
-    execution.tick({}, NOW)
-    assert execution.state["shine.finished"] is False

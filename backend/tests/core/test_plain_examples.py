@@ -180,3 +180,13 @@ def test_what_has_too_many_states_to_enumerate_says_so() -> None:
     automaton = read(variables=dict.fromkeys(names, "bool"), initial="true", forbidden=[" and ".join(names)])
     with pytest.raises(SynthesisError, match="60 variables with 1152921504606846976 states together"):
         synthesise(automaton)
+
+
+@pytest.mark.parametrize("value", [4, "4", "n + 9", "n - 4", "m + 2"])
+def test_an_update_that_can_never_fit_disables_its_transition(value: object) -> None:
+    automaton = read(
+        variables={"n": {"min": 0, "max": 3}, "m": {"min": 5, "max": 9}},
+        initial="n == 0 and m == 5",
+        transitions=[event("leaps", "true", {"n": value})],
+    )
+    assert print_expression(automaton.abilities["leaps"].start_guard) == "false"

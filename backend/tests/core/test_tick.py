@@ -9,6 +9,7 @@ from sequence_planner.automaton.tick import (
     effect_writes,
     finish,
     initial_state,
+    record_activity,
     reverts,
     sense,
     start,
@@ -248,3 +249,20 @@ def test_an_operation_whose_goal_is_undetermined_stays_as_it_is() -> None:
     unknown = synchronise(station, sense(station.initial_valuation, {"x": None}))
     assert update_operations(station, unknown, frozenset()) == frozenset()
     assert update_operations(station, unknown, frozenset({"reach"})) == {"reach"}
+
+
+def test_flags_follow_what_is_active_before_a_finish_can_see_them_apart() -> None:
+    """Else the finish would see an operation that has ended and a flag that says it has not."""
+    active = "operation.light.active"
+    station = automaton(
+        {"shine": Does(start=(), executing=active, finish=f"executing and not {active}", finally_=("lamp := true",))},
+        measured={"lit": OFF},
+        output={"lamp": OFF},
+        estimated={active: OFF},
+        goals={"light": "lit"},
+    )
+    begun = record_activity(station, initial_state(station), frozenset({"light"}))
+    assert begun["shine.executing"] is True
+    ended = record_activity(station, begun, frozenset())
+    assert ended["shine.executing"] is False
+    assert finish(station, ended).finished == ()

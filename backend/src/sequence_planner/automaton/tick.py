@@ -125,12 +125,13 @@ def update_operations(automaton: Automaton, state: State, active: frozenset[str]
 
 
 def record_activity(automaton: Automaton, state: State, active: frozenset[str]) -> State:
-    """The state after step 4: the operations that expressions read are active or not."""
-    after = dict(state)
-    for operation in automaton.operations.values():
-        if operation.activity in after:
-            after[operation.activity] = operation.name in active
-    return after
+    """The state after step 4: the operations that expressions read are active or not, and flags that read them follow.
+
+    Were these left as they are until the next tick, a finish guard could see an activity and a flag that contradicts
+    it, which no state that the supervisor knows of does.
+    """
+    known = {o.activity: o.name in active for o in automaton.operations.values() if o.activity in automaton.variables}
+    return synchronise(automaton, {**state, **known}) if known else state
 
 
 def start_guard_holds(ability: Ability, state: State) -> bool:

@@ -109,12 +109,13 @@ class CompiledRun:
         return (active | self._activating) - self._completing
 
     def record_activity(self, active: frozenset[str]) -> None:
-        """After step 4, the operations that expressions read are active or not."""
+        """After step 4, the operations that expressions read are active or not, and flags that read them follow."""
         if active == self._recorded:
             return
         for name, activity in self._compiled.activities:
             if self._values[activity] is not (name in active):
                 self._set(activity, name in active)
+        self.synchronise()
         self._recorded = active
 
     def startable(self) -> Set[str]:

@@ -19,6 +19,7 @@ from sequence_planner.automaton.structure import (
     Specification,
     VariableDeclaration,
 )
+from sequence_planner.expressions.lexer import MOST_DIGITS
 from sequence_planner.expressions.parser import parse, parse_formula
 from sequence_planner.expressions.printing import print_expression, print_value
 from sequence_planner.expressions.resolution import (
@@ -44,7 +45,7 @@ from sequence_planner.expressions.syntax import (
     conjuncts,
     first_temporal,
 )
-from sequence_planner.expressions.types import Type, Value, contains
+from sequence_planner.expressions.types import IntegerRange, Type, Value, contains
 from sequence_planner.model.documents import Predicate
 from sequence_planner.model.plain_documents import PlainModel, TransitionDocument, UpdateDocument
 from sequence_planner.model.source import Finding, ModelError, Place, SourceText
@@ -53,6 +54,10 @@ T = TypeVar("T")
 
 # What tells the transitions of one event apart: `grab`, `grab#2`, `grab#3`.
 NUMBER_SIGN = "#"
+
+
+# What an update is read as being written to: a name that nothing in a document can have.
+_WRITTEN = ":="
 
 
 def plain_automaton(model: PlainModel) -> Automaton:
@@ -70,6 +75,12 @@ def plain_automaton(model: PlainModel) -> Automaton:
 def event_of(transition: str) -> str:
     """The event of a transition, by its name."""
     return transition.partition(NUMBER_SIGN)[0]
+
+
+def _unlimited(type_: Type) -> Type:
+    """The type, or all integers: an update beyond a range is no mistake, and disables its transition."""
+    limit = 10 ** (2 * MOST_DIGITS)
+    return IntegerRange(-limit, limit) if isinstance(type_, IntegerRange) else type_
 
 
 class _Meaning:
@@ -156,18 +167,19 @@ class _Meaning:
             message = f"unknown variable `{name}`{suggestion(name, self._types)}"
             self._findings.append(Finding(variable.place, message))
             return None
-        type_ = self._types[name]
-        if isinstance(value, SourceText):
-            written = Name(tuple(map(Component, name.split("."))))
-            return self._read(
-                value, lambda: simplify_assignment(resolve_assignment(Assignment(written, parse(value)), self._scope))
-            )
-        if not contains(type_, value):
-            place = self._model.source.place_of_value(("transitions", index, "set", name))
-            message = f"`{print_value(value)}` is no value of `{name}`, which ranges over {type_}"
-            self._findings.append(Finding(place, message))
-            return None
-        return Assignment(Variable(name, type_), Constant(value))
+        written_to = Variable(name, self._types[name])
+        if not isinstance(value, SourceText):
+            if not contains(_unlimited(written_to.type), value):
+                place = self._model.source.place_of_value(("transitions", index, "set", name))
+                message = f"`{print_value(value)}` is no value of `{name}`, which ranges over {written_to.type}"
+                self._findings.append(Finding(place, message))
+                return None
+            return Assignment(written_to, Constant(value))
+        written = Scope({**self._types, _WRITTEN: _unlimited(written_to.type)})
+        action = self._read(
+            value, lambda: resolve_assignment(Assignment(Name((Component(_WRITTEN),)), parse(value)), written)
+        )
+        return None if action is None else simplify_assignment(Assignment(written_to, action.value))
 
     def _specifications(self) -> dict[str, Specification]:
         specifications: dict[str, Specification] = {}
