@@ -43,22 +43,34 @@ class TransitionDocument(DocumentPart):
     """One transition of an event. The values of `set` are those of the state before it."""
 
     event: SourceText
+    """Its name; several transitions may share one."""
     controllable: StrictBool
+    """Whether a supervisor can keep it from happening."""
     guard: Predicate = True
+    """The condition under which it can happen."""
     updates: dict[SourceText, UpdateDocument] = Field(default_factory=dict, alias="set")
+    """New values, all at once: JSON values, or expressions such as `n + 1`."""
 
 
 class PlainDocument(DocumentPart):
     """A whole plain automaton. `goal` holds formulas of LTL over finite traces."""
 
     name: SourceText
+    """The automaton's name."""
     variables: dict[SourceText, DomainDocument]
+    """Each with its values: a list of names, "bool", or a range such as {"min": 0, "max": 3}."""
     initial: Predicate
+    """The initial states."""
     transitions: list[TransitionDocument] = Field(default_factory=list)
+    """What can happen, one at a time."""
     forbidden: list[Predicate] = Field(default_factory=list)
+    """Conditions that must never hold."""
     marked: Predicate = True
+    """States that can always be reached again."""
     invariant: Predicate = True
+    """States that do not satisfy it do not exist."""
     goal: list[SourceText] = Field(default_factory=list)
+    """Formulas about a run, such as `F (u1 == has)`."""
 
 
 @dataclass(frozen=True)

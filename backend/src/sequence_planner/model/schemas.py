@@ -25,14 +25,16 @@ from sequence_planner.model.documents import (
     StationDocument,
     WorkMasterDocument,
 )
+from sequence_planner.model.plain_documents import PlainDocument
 
-# The files of a station, by the names of their schemas: what each holds, and what it is called.
+# The files of a station, and plain automata, by the names of their schemas: what each holds, and what it is called.
 FILES: Mapping[str, tuple[Any, str]] = {
     "station": (StationDocument, "station.yaml"),
     "resource": (ResourceDocument, "resources/<name>.yaml"),
     "operations": (dict[str, OperationDocument], "operations.yaml"),
     "specifications": (dict[str, SpecificationDocument], "specifications.yaml"),
     "work_masters": (dict[str, WorkMasterDocument], "work_masters.yaml"),
+    "efa": (PlainDocument, "*.efa.json"),
 }
 
 

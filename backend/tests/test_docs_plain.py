@@ -1,0 +1,44 @@
+"""What the page about plain automata shows is tried."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from sequence_planner.automaton.plain.meaning import plain_automaton
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.model.documents import DocumentPart
+from sequence_planner.model.plain_documents import PlainDocument, TransitionDocument, read_plain
+from sequence_planner.planning.plain import plan_transitions
+from sequence_planner.synthesis.enumeration import synthesise
+
+TEXT = (Path(__file__).parents[2] / "docs" / "plain-automata.md").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def automaton() -> Automaton:
+    [text] = re.findall(r"^```json two-users.efa.json\n(.*?)^```$", TEXT, re.MULTILINE | re.DOTALL)
+    return plain_automaton(read_plain(text, "two-users.efa.json"))
+
+
+def test_the_supervisor_holds_back_what_the_page_says(automaton: Automaton) -> None:
+    supervisor = synthesise(automaton)
+    assert set(supervisor.guards) == {"u1_grabs", "u2_grabs"}
+    has = {**automaton.initial_valuation, "u1": "has", "free": False, "uses": 1}
+    assert not supervisor.guards["u2_grabs"].includes(has)
+    assert supervisor.guards["u2_grabs"].includes({**has, "u1": "idle"})
+
+
+def test_its_goals_are_planned(automaton: Automaton) -> None:
+    supervisor = synthesise(automaton)
+    assert plan_transitions(automaton, supervisor, "goal_1").events == ("u1_asks", "u1_grabs")
+    thrice = plan_transitions(automaton, supervisor, "goal_2").events
+    assert sum(event.endswith("grabs") for event in thrice) == 3
+
+
+@pytest.mark.parametrize("part", [PlainDocument, TransitionDocument], ids=lambda part: part.__name__)
+def test_every_key_is_described(part: type[DocumentPart]) -> None:
+    for name, field in part.model_fields.items():
+        assert f"| `{field.alias or name}` |" in TEXT, f"{name} of {part.__name__} is not described"
