@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.model.loading import load_station
+from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.pipelines.building import build_pipelines, load_messages
 from sequence_planner.pipelines.inference import with_inferred_variables
 from sequence_planner.pipelines.pipeline import StationPipelines
@@ -30,3 +32,12 @@ def prepare_station(folder: Path) -> ReadyStation:
     station = with_inferred_variables(written, registry)
     automaton = ground(station)
     return ReadyStation(automaton, build_pipelines(station, automaton, registry), registry)
+
+
+def require_runnable(station: ReadyStation) -> None:
+    """Raises `ModelError` when the model says something that a running station would not keep to."""
+    automaton = station.automaton
+    formulas = [f"{OPERATION}.{o.name}.local" for o in automaton.operations.values() if o.local is not None]
+    if formulas:
+        message = "plans do not keep to `local` formulas yet, so this station is not run: say it as a specification"
+        raise ModelError([Finding(automaton.places[formula], message) for formula in formulas])

@@ -214,10 +214,13 @@ def children(expression: Expression) -> tuple[Expression, ...]:
 
 def occurrences(expression: Expression) -> Iterator[Variable]:
     """Each place where a resolved expression reads a variable, left to right."""
-    if isinstance(expression, Variable):
-        yield expression
-    for child in children(expression):
-        yield from occurrences(child)
+    pending = [expression]
+    while pending:
+        part = pending.pop()
+        if isinstance(part, Variable):
+            yield part
+        elif not isinstance(part, Constant):
+            pending.extend(reversed(children(part)))
 
 
 def variables(expression: Expression) -> Iterator[str]:

@@ -11,8 +11,8 @@ from sequence_planner.automaton.grounding.meaning import Meaning
 from sequence_planner.automaton.structure import Kind, Operation, WorkMaster, target
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.syntax import TRUE, Assignment, Constant
-from sequence_planner.model.documents import OperationDocument, WorkMasterDocument
-from sequence_planner.model.source import SourceText
+from sequence_planner.model.documents import OperationDocument, Predicate, WorkMasterDocument
+from sequence_planner.model.source import Place, SourceText
 
 
 def ground_operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocument]) -> dict[str, Operation]:
@@ -48,6 +48,8 @@ def _operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocume
             scope = meaning.scope(binding)
             places = meaning.declarations.places
             places[f"{OPERATION}.{full}"] = name.place
+            if document.local is not None:
+                places[f"{OPERATION}.{full}.local"] = _place(document.local, name)
             yield Operation(
                 full,
                 readable(document.title, name, binding),
@@ -56,6 +58,10 @@ def _operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocume
                 document.priority,
                 None if document.local is None else meaning.formula(document.local, scope),
             )
+
+
+def _place(text: Predicate, otherwise: SourceText) -> Place:
+    return text.place if isinstance(text, SourceText) else otherwise.place
 
 
 def _check_steps(
