@@ -1,4 +1,4 @@
-"""The command line. Exit codes: 0 fine, 2 unusable input or surroundings; what is wrong is said on standard error."""
+"""Running a station and its parts. What keeps one from running is said on standard error, with exit code 2."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ import contextlib
 import signal
 from collections.abc import Awaitable, Callable
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated
 
 import typer
 
+from sequence_planner.cli.options import StationFolder, refuse
 from sequence_planner.control.process import Running, control
 from sequence_planner.control.unix_socket import SocketTakenError
 from sequence_planner.emulation.process import BY_HAND_TOPIC, BY_HAND_TYPE, Emulation, emulate
@@ -26,13 +27,10 @@ from sequence_planner.ros.exclusivity import DISCOVERY
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import QualityOfService, Transport, TransportError
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
+from sequence_planner.synthesis.enumeration import SynthesisError
 from sequence_planner.web.server import serve
 from sequence_planner.web.settings import Settings, SettingsError
 
-app = typer.Typer(no_args_is_help=True, add_completion=False, help="Model and control automation stations on ROS 2.")
-
-Model = Annotated[Path, typer.Argument(metavar="MODEL", help="The station's folder.")]
 TransportOption = Annotated[
     TransportChoice, typer.Option(help="How to speak ROS 2; auto takes rclpy where it can be imported.")
 ]
@@ -42,9 +40,8 @@ Launched = Annotated[
 Socket = Annotated[Path, typer.Option(help="The local socket between controller and server.")]
 
 
-@app.command()
 def run(
-    model: Model,
+    model: StationFolder,
     host: Annotated[str, typer.Option(help="Address of the page; the loopback only.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port of the page.")] = 8000,
     transport: TransportOption = "auto",
@@ -54,32 +51,16 @@ def run(
 ) -> None:
     """Run a station: controller, server and page."""
     if start and not emulator:
-        _refuse("--start is for emulated devices: with real ones a person starts production on the page")
+        refuse("--start is for emulated devices: with real ones a person starts production on the page")
     _prepare(model)
     try:
         raise typer.Exit(launch(Launch(model, host, port, transport, emulator, start, emulator_speed)))
     except SettingsError as error:
-        _refuse(str(error))
+        refuse(str(error))
 
 
-@app.command()
-def check(model: Model) -> None:
-    """Check a station: its documents, its pipelines, and that its specifications can be met."""
-    station = _prepare(model)
-    try:
-        supervisor = synthesise(station.automaton)
-    except SynthesisError as error:
-        _refuse(f"{model}: {error}")
-    typer.echo(
-        f"{station.automaton.title}: {len(station.automaton.variables)} variables, "
-        f"{len(station.automaton.abilities)} abilities, {len(station.automaton.operations)} operations; "
-        f"the supervisor guards {len(supervisor.guards)} abilities"
-    )
-
-
-@app.command("emulate")
 def emulate_command(
-    model: Model,
+    model: StationFolder,
     transport: TransportOption = "auto",
     speed: Annotated[float, typer.Option(min=0.1, max=100, help="Go so much faster than real devices.")] = 1.0,
     seed: Annotated[int, typer.Option(help="Draws the delays.")] = 0,
@@ -91,7 +72,6 @@ def emulate_command(
     _until_interrupted(lambda connect: emulate(Emulation(station, speed, seed), connect), station.registry, transport)
 
 
-@app.command("by-hand")
 def by_hand(
     change: Annotated[str, typer.Argument(help='Such as "robot.pose := home".')], transport: TransportOption = "auto"
 ) -> None:
@@ -99,23 +79,22 @@ def by_hand(
     asyncio.run(_send_by_hand(change, transport))
 
 
-@app.command()
 def messages(
-    model: Model, ament: Annotated[Path, typer.Option(help="Folder to write the ROS 2 packages of its messages to.")]
+    model: StationFolder,
+    ament: Annotated[Path, typer.Option(help="Folder to write the ROS 2 packages of its messages to.")],
 ) -> None:
     """Write the station's message definitions as packages that colcon builds, for ROS 2 with rclpy."""
     try:
         station = load_station(model)
         load_messages(station)
     except ModelError as error:
-        _refuse(str(error))
+        refuse(str(error))
     for package in write_ament_package(station.messages, ament):
         typer.echo(package)
 
 
-@app.command(hidden=True)
 def controller(
-    model: Model,
+    model: StationFolder,
     socket: Socket,
     transport: TransportOption = "auto",
     emulated: Annotated[bool, typer.Option("--emulated")] = False,
@@ -130,7 +109,6 @@ def controller(
     )
 
 
-@app.command(hidden=True)
 def server(
     socket: Socket,
     page: Annotated[Path, typer.Option()],
@@ -143,11 +121,6 @@ def server(
     serve(Settings(controller_socket=socket, page=page, host=host, port=port))
 
 
-def main() -> None:
-    """Run the command line."""
-    app()
-
-
 def _begin(launched: bool, folder: Path | None = None) -> None:
     """Set up a process of the station; `folder` is one that the launcher has made for it."""
     configure_logs()
@@ -155,16 +128,11 @@ def _begin(launched: bool, folder: Path | None = None) -> None:
         end_with_launcher(folder)
 
 
-def _refuse(message: str) -> NoReturn:
-    typer.echo(message, err=True)
-    raise typer.Exit(2)
-
-
-def _prepare(model: Path) -> ReadyStation:
+def _prepare(folder: Path) -> ReadyStation:
     try:
-        return prepare_station(model)
+        return prepare_station(folder)
     except ModelError as error:
-        _refuse(str(error))
+        refuse(str(error))
 
 
 def _until_interrupted(
@@ -183,7 +151,7 @@ def _until_interrupted(
     try:
         asyncio.run(live())
     except (TransportError, SynthesisError, SocketTakenError) as error:
-        _refuse(str(error))
+        refuse(str(error))
 
 
 async def _send_by_hand(change: str, choice: TransportChoice) -> None:
@@ -191,17 +159,13 @@ async def _send_by_hand(change: str, choice: TransportChoice) -> None:
     try:
         transport = open_transport(choice, registry, "by_hand", asyncio.get_running_loop())
     except TransportError as error:
-        _refuse(str(error))
+        refuse(str(error))
     try:
         transport.advertise(BY_HAND_TOPIC, BY_HAND_TYPE, QualityOfService.RELIABLE)
         await asyncio.sleep(DISCOVERY)
         if not any(e.topic == BY_HAND_TOPIC and e.direction == "subscriber" and not e.own for e in transport.graph()):
-            _refuse("no emulated devices are running: start them with `sequence-planner emulate MODEL`")
+            refuse("no emulated devices are running: start them with `sequence-planner emulate MODEL`")
         transport.publish(BY_HAND_TOPIC, BY_HAND_TYPE, registry.encode(BY_HAND_TYPE, {"data": change}))
         await asyncio.sleep(0.5)
     finally:
         transport.close()
-
-
-if __name__ == "__main__":
-    main()

@@ -76,8 +76,8 @@ class Plant:
         senses = (Steps(s, self._finished(s, sensed)) for s, sensed in self._effect_sets(effects, everywhere, {}))
         return _joined((*senses, *self._activity_changes(everywhere)))
 
-    def conflicting_finishes(self, one: Ability, other: Ability, within: Mask) -> State | None:
-        """What the two abilities see when both finish, after a step from `within`, and would write different values.
+    def conflicting_finishes(self, one: Ability, other: Ability, variable: str, within: Mask) -> State | None:
+        """What two abilities see when both finish, after a step from `within`, and would write `variable` differently.
 
         Variables are as just measured, flags as before.
         """
@@ -87,7 +87,8 @@ class Plant:
             columns = {**before, **_applied(before, sensed)}
             found = {a.name: (taken, writes) for a, taken, writes in self._finishing(columns, len(source))}
             (first, first_writes), (second, second_writes) = found[one.name], found[other.name]
-            where = np.flatnonzero(first & second & _conflict(first_writes, second_writes, len(source)))
+            (writes, value), (other_writes, other_value) = first_writes[variable], second_writes[variable]
+            where = np.flatnonzero(first & second & writes & other_writes & (value != other_value))
             if len(where):
                 return self._seen(columns, int(where[0]))
         return None

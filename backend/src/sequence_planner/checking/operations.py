@@ -1,0 +1,23 @@
+"""Local specifications of operations that say nothing about the run."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.checking.warning import ModelWarning, families, place
+from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.syntax import Constant, variables
+
+
+def check_operations(automaton: Automaton) -> Iterator[ModelWarning]:
+    """Operations whose local specification reads nothing at all."""
+    for family, names in families(automaton.operations).items():
+        local = automaton.operations[names[0]].local
+        if local is None or isinstance(local, Constant) or any(variables(local)):
+            continue
+        message = (
+            f"the local specification `{print_expression(local)}` of `{family}` reads no variable, so it only says how "
+            "long the run is: write what must hold on the way, or leave it out"
+        )
+        yield ModelWarning(place(automaton, f"operation.{names[0]}"), "empty-local-specification", message)

@@ -1,0 +1,39 @@
+"""Tasks of people who could not tell which of them they acknowledge."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterator
+from itertools import combinations
+
+from sequence_planner.automaton.structure import Ability, Automaton
+from sequence_planner.checking.satisfiability import can_be_asked, satisfying
+from sequence_planner.checking.warning import ModelWarning, described, place
+from sequence_planner.expressions.syntax import conjunction, variables
+
+MOST_REPORTED = 3  # pairs for each acknowledgement
+
+
+def check_people(automaton: Automaton) -> Iterator[ModelWarning]:
+    """Pairs of human abilities with one acknowledgement that can be open at once: one answer would be for both."""
+    sharing: dict[str, list[Ability]] = defaultdict(list)
+    for ability in automaton.abilities.values():
+        if ability.human is not None:
+            sharing[ability.human.acknowledgement].append(ability)
+    for acknowledgement, abilities in sharing.items():
+        reported = 0
+        for one, other in combinations(abilities, 2):
+            both = conjunction(one.executing, other.executing)
+            if reported == MOST_REPORTED or not can_be_asked(automaton, both):
+                break
+            if (state := satisfying(automaton, both)) is None:
+                continue
+            reported += 1
+            when = described(state, dict.fromkeys(variables(both)))
+            message = (
+                f"the tasks of `{one.name}` and `{other.name}` can be open at once ({when}), and `{acknowledgement}` "
+                "acknowledges both: give each its own, or let `executing` tell which one is asked for"
+            )
+            yield ModelWarning(
+                place(automaton, f"{other.name}.executing", other.name), "shared-acknowledgement", message
+            )

@@ -1,0 +1,29 @@
+"""The command line, a module for each command.
+
+Exit codes: 0 fine, 1 findings, 2 unusable input or surroundings, which are said on standard error.
+"""
+
+from __future__ import annotations
+
+import typer
+
+from sequence_planner.cli import running
+from sequence_planner.cli.check import check
+from sequence_planner.cli.edit import edit
+from sequence_planner.cli.new import new
+from sequence_planner.cli.show import show
+from sequence_planner.cli.tick import tick
+
+app = typer.Typer(no_args_is_help=True, add_completion=False, help="Model and control automation stations on ROS 2.")
+
+for command in (new, check, show, edit, tick, running.run, running.messages):
+    app.command()(command)
+app.command("emulate")(running.emulate_command)
+app.command("by-hand")(running.by_hand)
+app.command(hidden=True)(running.controller)
+app.command(hidden=True)(running.server)
+
+
+def main() -> None:
+    """Run the command line."""
+    app()

@@ -1,0 +1,116 @@
+"""`check`: whether a model can be used, and what is suspicious in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+import typer
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.checking.checks import check_automaton
+from sequence_planner.checking.warning import ModelWarning
+from sequence_planner.cli.loading import Model, load_model
+from sequence_planner.cli.options import FINDINGS, UNUSABLE, AnyModel, AsJson, print_json
+from sequence_planner.model.source import ModelError, Place
+from sequence_planner.synthesis.enumeration import SynthesisError, TooManyStatesError, synthesise
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What was found in a model that can be used; no `supervisor` if there is none or it was not computed."""
+
+    model: Model
+    warnings: list[ModelWarning]
+    supervisor: Supervisor | None
+
+
+def check(model: AnyModel, json: AsJson = False) -> None:
+    """Check a model: its documents, its pipelines, that its specifications can be met, and what is suspicious in it.
+
+    Errors make a model unusable: they go to standard error, and the exit code is 2. Warnings, also that the
+    specifications cannot be met, go to standard output, and the exit code is 1. Without either it is 0.
+    With --json: {model, findings: [{severity, kind, file, line, column, message}], summary}.
+    """
+    try:
+        checked = checked_model(model, load_model(model))
+    except ModelError as error:
+        if json:
+            findings = [_finding("error", "unusable", each.place, each.message) for each in error.findings]
+            print_json({"model": str(model), "findings": findings, "summary": None})
+        else:
+            typer.echo(str(error), err=True)
+        raise typer.Exit(UNUSABLE) from error
+    if json:
+        findings = [_finding("warning", each.kind, each.place, each.message) for each in checked.warnings]
+        print_json({"model": str(model), "findings": findings, "summary": _summary(checked)})
+    else:
+        _say(checked.warnings)
+        typer.echo(_summary_line(checked))
+    if checked.warnings:
+        raise typer.Exit(FINDINGS)
+
+
+def checked_model(path: Path, model: Model) -> Checked:
+    """All that can be found in a model that can be used."""
+    warnings = check_automaton(model.automaton, model.connections)
+    supervisor = None
+    try:
+        supervisor = synthesise(model.automaton)
+    except TooManyStatesError as error:
+        warnings.append(ModelWarning(_specifications(path), "supervisor-not-computed", str(error)))
+    except SynthesisError as error:
+        warnings.append(ModelWarning(_specifications(path), "specification-cannot-be-met", str(error)))
+    return Checked(model, warnings, supervisor)
+
+
+def _specifications(path: Path) -> Place:
+    """Where specifications are written; the place of `rest`, where there are none."""
+    if path.is_file():
+        return Place(str(path), 1, 1)
+    file = path / "specifications.yaml"
+    return Place(str(file if file.exists() else path / "station.yaml"), 1, 1)
+
+
+def _say(warnings: Iterable[ModelWarning]) -> None:
+    for warning in warnings:
+        typer.echo(str(warning))
+
+
+def _finding(severity: str, kind: str, place: Place, message: str) -> dict[str, object]:
+    return {
+        "severity": severity,
+        "kind": kind,
+        "file": place.file,
+        "line": place.line,
+        "column": place.column,
+        "message": message,
+    }
+
+
+def _summary(checked: Checked) -> dict[str, object]:
+    automaton, supervisor = checked.model.automaton, checked.supervisor
+    return {
+        "title": automaton.title,
+        "kind": "station" if checked.model.station is not None else "plain automaton",
+        "variables": len(automaton.variables),
+        "abilities": len(automaton.abilities),
+        "effects": len(automaton.effects),
+        "operations": len(automaton.operations),
+        "specifications": len(automaton.specifications),
+        "guarded_abilities": None if supervisor is None else sorted(supervisor.guards),
+    }
+
+
+def _summary_line(checked: Checked) -> str:
+    automaton, supervisor = checked.model.automaton, checked.supervisor
+    parts = f"{automaton.title}: {len(automaton.variables)} variables, "
+    if checked.model.station is None:
+        parts += f"{len(automaton.abilities)} controllable and {len(automaton.effects)} uncontrollable transitions"
+        what = "transitions"
+    else:
+        parts += f"{len(automaton.abilities)} abilities, {len(automaton.operations)} operations"
+        what = "abilities"
+    guarded = "no supervisor" if supervisor is None else f"the supervisor guards {len(supervisor.guards)} {what}"
+    return f"{parts}; {guarded}"

@@ -1,0 +1,49 @@
+"""Models that commands are given: a station's folder, or the file of a plain automaton."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from sequence_planner.automaton.plain.meaning import plain_automaton
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.checking.connections import Connections
+from sequence_planner.cli.options import refuse
+from sequence_planner.model.plain_documents import load_plain
+from sequence_planner.model.source import ModelError
+from sequence_planner.station import ReadyStation, prepare_station
+
+PLAIN_SUFFIX = ".efa.json"
+
+
+@dataclass(frozen=True)
+class Model:
+    """An automaton, and the station that it is of; a plain automaton is of none."""
+
+    automaton: Automaton
+    station: ReadyStation | None
+
+    @property
+    def connections(self) -> Connections | None:
+        """What topics feed and carry."""
+        if self.station is None:
+            return None
+        pipelines = self.station.pipelines
+        carried = (name for outgoing in pipelines.outgoing.values() for name in outgoing.variables)
+        return Connections(frozenset(pipelines.feeds), frozenset(carried))
+
+
+def load_model(path: Path) -> Model:
+    """Read a model. Raises `ModelError` with the findings."""
+    if path.name.endswith(PLAIN_SUFFIX):
+        return Model(plain_automaton(load_plain(path)), None)
+    station = prepare_station(path)
+    return Model(station.automaton, station)
+
+
+def usable_model(path: Path) -> Model:
+    """Read a model, or end with what is wrong with it."""
+    try:
+        return load_model(path)
+    except ModelError as error:
+        refuse(str(error))

@@ -1,0 +1,28 @@
+"""What the commands share: their arguments, and how they refuse."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated, NoReturn
+
+import typer
+
+FINE, FINDINGS, UNUSABLE = 0, 1, 2  # exit codes
+
+StationFolder = Annotated[Path, typer.Argument(metavar="MODEL", help="The station's folder.")]
+AnyModel = Annotated[
+    Path, typer.Argument(metavar="MODEL", help="A station's folder, or the file of a plain automaton (*.efa.json).")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, for programs.")]
+
+
+def refuse(message: str) -> NoReturn:
+    """Say on standard error what makes the input unusable, and end."""
+    typer.echo(message, err=True)
+    raise typer.Exit(UNUSABLE)
+
+
+def print_json(document: object) -> None:
+    """Write one document to standard output."""
+    typer.echo(json.dumps(document, indent=2, ensure_ascii=False))

@@ -1,0 +1,182 @@
+"""`show`: the ground automaton of a model, for people and as JSON."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Annotated
+
+import typer
+
+from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, Operation, VariableDeclaration
+from sequence_planner.cli.describing import described_automaton
+from sequence_planner.cli.loading import usable_model
+from sequence_planner.cli.options import AnyModel, AsJson, print_json, refuse
+from sequence_planner.expressions.printing import print_assignment, print_expression, print_value
+from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.expressions.syntax import FALSE, TRUE, Assignment, Expression
+
+Lines = Iterator[str]
+
+
+def show(
+    model: AnyModel,
+    names: Annotated[
+        list[str] | None,
+        typer.Argument(metavar="[NAME]...", help="Show these only: a resource, variable, ability, operation, ..."),
+    ] = None,
+    json: AsJson = False,
+) -> None:
+    """Show what a model means: its variables, ground abilities with their effects, operations and specifications.
+
+    A NAME shows what bears it and what begins with it: `robot` is all of the robot, `robot.move` all its instances.
+    With --json also the transitions of each phase of the tick, with what they read and write.
+    """
+    automaton = usable_model(model).automaton
+    wanted = list(names or ())
+    known = _names(automaton)
+    for name in wanted:
+        if not any(_bears(each, name) for each in known):
+            refuse(f"{model}: there is nothing called `{name}`{suggestion(name, known)}")
+    if json:
+        print_json(described_automaton(automaton, lambda name: _chosen(name, wanted)))
+        return
+    for line in _lines(automaton, wanted):
+        typer.echo(line)
+
+
+def _names(automaton: Automaton) -> list[str]:
+    groups: tuple[Iterable[str], ...] = (
+        automaton.resources,
+        automaton.variables,
+        automaton.abilities,
+        automaton.operations,
+        automaton.specifications,
+        automaton.work_masters,
+        (effect.name for effect in automaton.effects),
+    )
+    return [name for group in groups for name in group]
+
+
+def _bears(name: str, wanted: str) -> bool:
+    return name == wanted or any(name.startswith(f"{wanted}{sign}") for sign in (".", "(", "[", ":"))
+
+
+def _chosen(name: str, wanted: list[str]) -> bool:
+    return not wanted or any(_bears(name, each) for each in wanted)
+
+
+def _lines(automaton: Automaton, wanted: list[str]) -> Lines:
+    if not wanted:
+        yield f"{automaton.title} ({automaton.name})"
+    for resource, title in (*automaton.resources.items(), (None, "The station")):
+        variables = [v for v in automaton.variables.values() if v.resource == resource and _chosen(v.name, wanted)]
+        abilities, effects = _of_resource(automaton, resource)
+        shown = [*_variables(variables), *_abilities(abilities, effects, wanted)]
+        if shown:
+            yield from ("", title if resource is None else f"{title} ({resource})", *shown)
+    if automaton.one_at_a_time:
+        yield from _transitions(automaton, wanted)
+    for operation in automaton.operations.values():
+        if _chosen(operation.name, wanted):
+            yield from ("", *_operation(operation))
+    for specification in automaton.specifications.values():
+        if _chosen(specification.name, wanted):
+            yield from ("", f"specification {specification.name}: {specification.title}")
+            yield f"  forbidden   {print_expression(specification.forbidden)}"
+    for master in automaton.work_masters.values():
+        if _chosen(master.name, wanted):
+            yield from ("", f"work master {master.name}: {master.title}")
+            for step, before in master.operations.items():
+                yield f"  {step}" + (f" after {', '.join(sorted(before))}" if before else "")
+            yield from _actions("brings", master.brings)
+    if not wanted and automaton.rest is not None:
+        yield from ("", f"rest  {print_expression(automaton.rest)}")
+
+
+def _of_resource(automaton: Automaton, resource: str | None) -> tuple[list[Ability], list[Effect]]:
+    """The abilities and effects of a resource; the transitions of a plain automaton are of none."""
+    if automaton.one_at_a_time:
+        return [], []
+    abilities = [ability for ability in automaton.abilities.values() if ability.resource == resource]
+    return abilities, [effect for effect in automaton.effects if effect.resource == resource]
+
+
+def _variables(variables: Iterable[VariableDeclaration]) -> Lines:
+    for kind in Kind:
+        for variable in variables:
+            if variable.kind is kind:
+                initial = print_value(variable.initial)
+                yield f"  {kind.value:9}  {variable.name}: {variable.type}, initially {initial}"
+
+
+def _abilities(abilities: Iterable[Ability], effects: Iterable[Effect], wanted: list[str]) -> Lines:
+    left = {effect.name: effect for effect in effects}
+    for ability in abilities:
+        own = [left.pop(name) for name in list(left) if name.startswith(f"{ability.name}.")]
+        shown = [effect for effect in own if _chosen(ability.name, wanted) or _chosen(effect.name, wanted)]
+        if _chosen(ability.name, wanted):
+            yield from _ability(ability)
+        for effect in shown:
+            yield from _effect(effect)
+
+
+def _ability(ability: Ability) -> Lines:
+    restart = ", for restart mode only" if ability.restart else ""
+    yield from ("", f"  ability {ability.name}: {ability.title}{restart}")
+    yield from _condition("enabled", ability.enabled, TRUE)
+    yield from _condition("start", ability.start_guard, TRUE)
+    yield from _actions("start", ability.start_actions, "    ")
+    yield from _condition("executing", ability.executing, FALSE)
+    yield from _condition("finished", ability.finished, FALSE)
+    if ability.finish_guard is not None:
+        yield from _condition("finish", ability.finish_guard, None)
+        yield from _actions("finish", ability.finish_actions, "    ")
+    yield from _actions("cancel", ability.cancel_actions, "    ")
+    if ability.human is not None:
+        yield f"    person      {ability.human.text} (acknowledged by {ability.human.acknowledgement})"
+    limits = {"react": ability.timeouts.react, "finish": ability.timeouts.finish}
+    for name, seconds in limits.items():
+        if seconds is not None:
+            yield f"    {name} within {seconds:g} s"
+    if ability.duration is not None:
+        yield f"    duration    {ability.duration[0]:g} to {ability.duration[1]:g} s"
+
+
+def _effect(effect: Effect) -> Lines:
+    fault = ", a fault" if effect.fault else ""
+    yield f"    effect {effect.name} ({effect.kind}{fault}, {effect.shortest:g} to {effect.longest:g} s)"
+    yield f"      {'when':10}  {print_expression(effect.guard)}"
+    yield from _actions("do", effect.actions, "      ")
+
+
+def _transitions(automaton: Automaton, wanted: list[str]) -> Lines:
+    """Those of a plain automaton."""
+    for ability in automaton.abilities.values():
+        if _chosen(ability.name, wanted):
+            yield from ("", f"controllable {ability.name}")
+            yield from _condition("guard", ability.start_guard, TRUE)
+            yield from _actions("set", ability.start_actions, "    ")
+    for effect in automaton.effects:
+        if _chosen(effect.name, wanted):
+            yield from ("", f"uncontrollable {effect.name}")
+            yield from _condition("guard", effect.guard, TRUE)
+            yield from _actions("set", effect.actions, "    ")
+
+
+def _operation(operation: Operation) -> Lines:
+    yield f"operation {operation.name}: {operation.title}, priority {operation.priority}"
+    yield f"  precondition  {print_expression(operation.precondition)}"
+    yield f"  goal          {print_expression(operation.goal)}"
+    if operation.local is not None:
+        yield f"  local         {print_expression(operation.local)}"
+
+
+def _condition(name: str, condition: Expression, usual: Expression | None) -> Lines:
+    """A condition, if it says more than the usual one."""
+    if condition != usual:
+        yield f"    {name:10}  {print_expression(condition)}"
+
+
+def _actions(name: str, actions: Iterable[Assignment], margin: str = "  ") -> Lines:
+    for action in actions:
+        yield f"{margin}{name:10}  {print_assignment(action)}"

@@ -1,0 +1,208 @@
+"""`tick`: one reference tick of a station, or one transition of a plain automaton."""
+
+from __future__ import annotations
+
+import json as json_text
+import sys
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from typing import Annotated, Any, TypeVar
+
+import typer
+
+from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.plain.steps import plain_transitions, step
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, Kind, State, target
+from sequence_planner.automaton.tick import initial_state, writes
+from sequence_planner.cli.loading import usable_model
+from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
+from sequence_planner.cli.ticking import Changes, EffectRefused, Moment, Request, TickTaken, changes, lacking, take_tick
+from sequence_planner.expressions.parser import parse_assignment
+from sequence_planner.expressions.printing import print_value
+from sequence_planner.expressions.resolution import Scope, resolve_assignment, suggestion
+from sequence_planner.expressions.syntax import ExpressionError
+from sequence_planner.expressions.types import Value, contains
+from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
+
+T = TypeVar("T")
+StateFile = Annotated[
+    str | None, typer.Option("--state", metavar="FILE", help="Begin with the state in FILE (- is standard input).")
+]
+Sets = Annotated[
+    list[str] | None, typer.Option("--set", help='A measured value, such as "robot.pose := home". Repeatable.')
+]
+Unknowns = Annotated[
+    list[str] | None, typer.Option("--unknown", help="A measured variable whose topic has gone silent. Repeatable.")
+]
+Effects = Annotated[list[str] | None, typer.Option("--effect", help="An expected effect that happens. Repeatable.")]
+Starts = Annotated[
+    list[str] | None,
+    typer.Option("--start", help="An ability to start, in this order; the event of a plain automaton. Repeatable."),
+]
+RestartMode = Annotated[bool, typer.Option("--restart-mode", help="Restart abilities may start, too.")]
+
+
+def tick(
+    model: AnyModel,
+    state: StateFile = None,
+    sets: Sets = None,
+    unknown: Unknowns = None,
+    effects: Effects = None,
+    starts: Starts = None,
+    restart_mode: RestartMode = False,
+    json: AsJson = False,
+) -> None:
+    """Take one tick of the reference interpreter, and say what each of its steps did.
+
+    It begins in the initial state, or in that of --state: what --json prints, so that ticks can be piped into each
+    other. There a value that is unknown is null, and variables that are left out have their initial value. The exit
+    code is 1 when a start that was asked for was not taken, or finishes are in conflict.
+    """
+    automaton = usable_model(model).automaton
+    before = _moment(automaton, state)
+    if automaton.one_at_a_time:
+        if sets or unknown or effects or len(starts or ()) != 1:
+            refuse("a plain automaton takes one transition at a time: give one event with --start, and nothing else")
+        _plain(automaton, before.state, (starts or [""])[0], json)
+        return
+    request = Request(
+        {**_measured(automaton, before.state, sets or ()), **_forgotten(automaton, unknown or ())},
+        [_named({effect.name: effect for effect in automaton.effects}, name, "effect") for name in effects or ()],
+        [_named(automaton.abilities, name, "ability") for name in starts or ()],
+        restart_mode,
+    )
+    try:
+        taken = take_tick(automaton, _supervisor(automaton, bool(starts)), before, request)
+    except EffectRefused as error:
+        refuse(str(error))
+    if json:
+        print_json(_document(taken))
+    else:
+        _say(taken)
+    if taken.conflicts or any(tried.waits_for for tried in taken.starts):
+        raise typer.Exit(FINDINGS)
+
+
+def _supervisor(automaton: Automaton, needed: bool) -> Supervisor | None:
+    try:
+        return synthesise(automaton) if needed else None
+    except SynthesisError as error:
+        typer.echo(f"starts are not supervised here: {error}", err=True)
+        return None
+
+
+def _named(known: Mapping[str, T], name: str, what: str) -> T:
+    if name not in known:
+        refuse(f"there is no {what} `{name}`{suggestion(name, known)}")
+    return known[name]
+
+
+def _measured(automaton: Automaton, state: State, texts: Iterable[str]) -> dict[str, Value | None]:
+    measured: dict[str, Value | None] = {}
+    for text in texts:
+        try:
+            action = resolve_assignment(parse_assignment(text), Scope(automaton.types))
+        except ExpressionError as error:
+            refuse(f"--set {text!r}: {error.message}")
+        name = target(action)
+        _require_measured(automaton, name)
+        value = (writes([action], state) or {}).get(name)
+        if value is None or not contains(automaton.types[name], value):
+            refuse(f"--set {text!r} gives `{name}` no value of {automaton.types[name]} here")
+        measured[name] = value
+    return measured
+
+
+def _forgotten(automaton: Automaton, names: Iterable[str]) -> dict[str, Value | None]:
+    for name in names:
+        _require_measured(automaton, name)
+    return dict.fromkeys(names)
+
+
+def _require_measured(automaton: Automaton, name: str) -> None:
+    measured = automaton.names(Kind.MEASURED)
+    if name not in measured:
+        kind = automaton.variables[name].kind.value if name in automaton.variables else "no"
+        refuse(f"messages set measured variables, and `{name}` is {kind} variable{suggestion(name, measured)}")
+
+
+def _moment(automaton: Automaton, file: str | None) -> Moment:
+    if file is None:
+        return Moment(initial_state(automaton), frozenset())
+    try:
+        text = sys.stdin.read() if file == "-" else Path(file).read_text(encoding="utf-8")
+        document = json_text.loads(text)
+    except (OSError, ValueError) as error:
+        refuse(f"{file} holds no state: {error}")
+    values = document.get("state") if isinstance(document, dict) else None
+    active = document.get("active", []) if isinstance(document, dict) else None
+    if not isinstance(values, dict) or not isinstance(active, list):
+        refuse(f'{file} holds no state: expected {{"state": {{variable: value}}, "active": [operation]}}')
+    for name, value in values.items():
+        if name not in automaton.types:
+            refuse(f"{file}: there is no variable `{name}`{suggestion(name, automaton.types)}")
+        if value is not None and not contains(automaton.types[name], value):
+            refuse(f"{file}: `{value}` is no value of `{name}`, which ranges over {automaton.types[name]}")
+    for name in active:
+        _named(automaton.operations, str(name), "operation")
+    return Moment({**initial_state(automaton), **values}, frozenset(map(str, active)))
+
+
+def _plain(automaton: Automaton, state: State, event: str, json: bool) -> None:
+    """Take the first transition of an event that is enabled."""
+    known = plain_transitions(automaton)
+    named = [t for name, t in known.items() if event in (name, event_of(name))]
+    if not named:
+        refuse(f"there is no event `{event}`{suggestion(event, map(event_of, known))}")
+    taken, after = next(((t, s) for t in named if (s := step(state, t)) is not None), (None, state))
+    waits_for = [] if taken else [reason for t in named for reason in lacking(t.guard, state)]
+    changed = changes(state, after)
+    if json:
+        name = None if taken is None else taken.name
+        print_json({"transition": name, "waits_for": waits_for, "changes": changed, "state": dict(after)})
+    else:
+        typer.echo(f"{event}: {_changes(changed)}" if taken else f"{event} is not enabled: {', '.join(waits_for)}")
+    if taken is None:
+        raise typer.Exit(FINDINGS)
+
+
+def _document(taken: TickTaken) -> dict[str, Any]:
+    return {
+        "sensed": taken.sensed,
+        "finished": {
+            "abilities": taken.finished,
+            "conflicts": [{"abilities": [one, other], "variable": name} for one, other, name in taken.conflicts],
+            "changes": taken.finish_changes,
+        },
+        "flags": taken.flags,
+        "operations": {"activated": taken.activated, "completed": taken.completed},
+        "starts": [
+            {"ability": each.ability, "taken": not each.waits_for, "waits_for": each.waits_for, "changes": each.changes}
+            for each in taken.starts
+        ],
+        "published": taken.published,
+        "state": dict(taken.after.state),
+        "active": sorted(taken.after.active),
+    }
+
+
+def _say(taken: TickTaken) -> None:
+    typer.echo(f"1 sense        {_changes(taken.sensed)}")
+    finished = f"{', '.join(taken.finished)}: {_changes(taken.finish_changes)}" if taken.finished else "none"
+    typer.echo(f"2 finish       {finished}")
+    for one, other, name in taken.conflicts:
+        typer.echo(f"               {one} and {other} would write different values to {name}: neither is applied")
+    typer.echo(f"3 synchronise  {_changes(taken.flags)}")
+    operations = [*(f"{name} active" for name in taken.activated), *(f"{name} completed" for name in taken.completed)]
+    typer.echo(f"4 operations   {', '.join(operations) or 'no change'}")
+    typer.echo(f"5 start        {'' if taken.starts else 'none'}".rstrip())
+    for tried in taken.starts:
+        outcome = f"waits, as {' and '.join(tried.waits_for)}" if tried.waits_for else _changes(tried.changes)
+        typer.echo(f"               {tried.ability}: {outcome}")
+    typer.echo(f"6 act          {_changes(taken.published)}")
+
+
+def _changes(changed: Changes) -> str:
+    texts = [f"{name} := {'?' if value is None else print_value(value)}" for name, value in changed.items()]
+    return ", ".join(texts) or "no change"

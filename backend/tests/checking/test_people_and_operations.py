@@ -1,0 +1,49 @@
+"""Tasks that share an acknowledgement, and local specifications that say nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from checking.small import device, found, station
+
+PERSON = """
+measured: {done: {type: bool}}
+output: {asked: {type: request}}
+abilities:
+  put:
+    parameters: {where: side}
+    human: {task: "Put it to the {where}.", acknowledgement: done}
+    enabled: asked == none and not done
+    start: {do: [asked := where]}
+    executing: %s
+    finish: {when: asked == where and done, do: [asked := none]}
+    effects:
+      answers: {kind: executing, when: asked != none and not done, do: [done := true]}
+      is_free: {kind: finishing, when: asked == none and done, do: [done := false]}
+"""
+SIDES = "name: s\nenumerations: {side: [left, right], request: [none, left, right]}"
+
+
+def test_two_tasks_that_one_answer_would_end(tmp_path: Path) -> None:
+    assert found(station(tmp_path, {"person": PERSON % "asked != none and not done"}, station=SIDES)) == [
+        "person.yaml:10:16: the tasks of `person.put(left)` and `person.put(right)` can be open at once (person.asked "
+        "== left and person.done == false), and `person.done` acknowledges both: give each its own, or let `executing` "
+        "tell which one is asked for [shared-acknowledgement]"
+    ]
+
+
+def test_tasks_of_which_one_is_open_at_a_time(tmp_path: Path) -> None:
+    assert found(station(tmp_path, {"person": PERSON % "asked == where and not done"}, station=SIDES)) == []
+
+
+def test_a_local_specification_that_reads_nothing(tmp_path: Path) -> None:
+    operations = 'o: {precondition: not part, goal: part, local: "X true"}'
+    assert found(device(tmp_path, operations=operations)) == [
+        "operations.yaml:1:1: the local specification `X true` of `o` reads no variable, so it only says how long the "
+        "run is: write what must hold on the way, or leave it out [empty-local-specification]"
+    ]
+
+
+def test_a_local_specification_about_the_run(tmp_path: Path) -> None:
+    operations = 'o: {precondition: not part, goal: part, local: "F device.command"}'
+    assert found(device(tmp_path, operations=operations)) == []

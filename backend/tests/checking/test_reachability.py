@@ -1,0 +1,54 @@
+"""Every reading that proves something impossible, against what the station is seen to do."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sequence_planner.automaton.grounding.station import ground
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.tick import synchronise
+from sequence_planner.checking.abstraction import cannot_be
+from sequence_planner.checking.growth import Growth
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.parser import parse
+from sequence_planner.expressions.resolution import Scope, resolve_predicate
+from sequence_planner.expressions.syntax import Expression
+from sequence_planner.model.loading import load_station
+from sequence_planner.synthesis.enumeration import reachable_states
+
+STATIONS = Path(__file__).parents[1] / "stations"
+
+
+def predicate(automaton: Automaton, text: str) -> Expression:
+    return resolve_predicate(parse(text), Scope(automaton.types))
+
+
+def test_what_is_reached_is_never_said_to_be_impossible() -> None:
+    """For every pair of values of every two variables of the worked example."""
+    automaton = ground(load_station(STATIONS / "worked_example"))
+    plant, reached = reachable_states(automaton, tuple(automaton.variables))
+    states = [plant.state(int(index)) for index in reached.nonzero()[0]]
+    full = [synchronise(automaton, {**automaton.initial_valuation, **state}) for state in states]
+    growth = Growth(automaton, any_measurement=False)
+    texts = [f"bolts == {bolts}" for bolts in ("empty", "placed", "tightened")]
+    texts += [f"robot.target_pose == {pose}" for pose in ("home", "above", "bolt_pair")]
+    texts += ["operator.task", "not operator.task", "nutrunner.set_tool_idle", "nutrunner.run_nut.executing"]
+    impossible = 0
+    for one in texts:
+        for other in texts:
+            both = predicate(automaton, f"({one}) and ({other})")
+            if any(holds(both, state) for state in full):
+                assert growth.may(both)
+                assert not cannot_be(automaton, [both])
+            else:
+                impossible += cannot_be(automaton, [both])
+    assert impossible > 0
+
+
+def test_of_the_reachable_states_none_is_forbidden_and_all_allowed_ones_are_there() -> None:
+    """180 states are reachable without the specification (see the worked example), 24 of them forbidden."""
+    automaton = ground(load_station(STATIONS / "worked_example"))
+    plant, reached = reachable_states(automaton, tuple(automaton.variables))
+    (specification,) = automaton.specifications.values()
+    assert not (reached & plant.where(specification.forbidden)).any()
+    assert 148 <= int(reached.sum()) <= 180 - 24

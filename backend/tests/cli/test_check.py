@@ -1,0 +1,78 @@
+"""`check`: exit codes, and findings for people and for programs."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from cli.commands import CELL, EXAMPLE, TRUCK, as_json, command, plain
+from sequence_planner.synthesis import enumeration
+
+
+def test_a_fine_station() -> None:
+    code, document = as_json("check", TRUCK)
+    assert code == 0
+    assert (document["model"], document["findings"]) == (str(TRUCK), [])
+    assert document["summary"]["kind"] == "station"
+    assert "robot.move_to_position(bolt_pair_1)" in document["summary"]["guarded_abilities"]
+
+
+def test_warnings() -> None:
+    code, out, err = command("check", CELL)
+    assert (code, err) == (1, "")
+    assert out == (
+        f"{CELL}/resources/arm.yaml:26:3: warning: nothing reads `arm.last`: leave it out, and list its field under "
+        "`ignore` if a message has it [never-read]\n"
+        f"{CELL}/resources/arm.yaml:27:3: warning: nothing reads `arm.moving`: leave it out, and list its field under "
+        "`ignore` if a message has it [never-read]\n"
+        f"{CELL}/station.yaml:8:3: warning: no ability writes `parts`: it stays `empty`. Write the action that is "
+        "missing, or leave it out [never-written]\n"
+        "cell: 6 variables, 2 abilities, 2 operations; the supervisor guards 1 abilities\n"
+    )
+
+
+def test_warnings_for_programs() -> None:
+    code, document = as_json("check", EXAMPLE)
+    assert code == 1
+    (finding,) = [each for each in document["findings"] if each["kind"] == "relies-on-executing"]
+    assert finding.pop("message").startswith("`nutrunner.run_nut` finishes only after it was seen executing")
+    file = str(EXAMPLE / "resources" / "nutrunner.yaml")
+    assert finding == {"severity": "warning", "kind": "relies-on-executing", "file": file, "line": 19, "column": 13}
+
+
+def test_unusable_input_for_programs(tmp_path: Path) -> None:
+    cell = Path(shutil.copytree(CELL, tmp_path / "cell"))
+    (cell / "station.yaml").write_text("nam: cell\nname: cell\n", encoding="utf-8")
+    code, document = as_json("check", cell)
+    assert (code, document["summary"]) == (2, None)
+    assert document["findings"][0] == {
+        "severity": "error",
+        "kind": "unusable",
+        "file": str(cell / "station.yaml"),
+        "line": 1,
+        "column": 1,
+        "message": "`nam` is not known here; did you mean `name`?",
+    }
+
+
+def test_a_supervisor_that_is_not_computed_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(enumeration, "MOST_STATES", 10)
+    code, document = as_json("check", TRUCK)
+    assert (code, document["summary"]["guarded_abilities"]) == (1, None)
+    assert [each["kind"] for each in document["findings"]] == ["supervisor-not-computed"]
+
+
+def test_a_plain_automaton(tmp_path: Path) -> None:
+    code, out, err = command("check", plain(tmp_path))
+    assert (code, err) == (0, "")
+    assert out.startswith("two-users: 2 variables, 2 controllable and 1 uncontrollable transitions;")
+
+
+def test_a_plain_automaton_that_is_none(tmp_path: Path) -> None:
+    file = plain(tmp_path)
+    file.write_text(file.read_text(encoding="utf-8").replace("user == waits and", "usr == waits and"), encoding="utf-8")
+    code, out, err = command("check", file)
+    assert (code, out) == (2, "")
+    assert "did you mean `user`?" in err

@@ -1,0 +1,113 @@
+"""`new` writes a station to begin from, and `edit` changes one entry of one."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import httpx
+import pytest
+from jsonschema import Draft202012Validator
+from ruamel.yaml import YAML
+
+from cli.commands import as_json, command
+
+
+@pytest.fixture
+def gate(tmp_path: Path) -> Path:
+    folder = tmp_path / "north gate"
+    code, out, err = command("new", folder)
+    assert (code, err) == (0, "")
+    assert f"{folder}/resources/gate.yaml" in out.splitlines()
+    return folder
+
+
+def test_a_new_station_is_fine(gate: Path) -> None:
+    code, document = as_json("check", gate)
+    assert (code, document["findings"]) == (0, [])
+    assert document["summary"]["guarded_abilities"] == ["gate.open_gate"]
+    assert "\nname: north_gate\n" in (gate / "station.yaml").read_text(encoding="utf-8")
+
+
+def test_its_files_name_schemas_that_they_satisfy(gate: Path) -> None:
+    files = [*gate.glob("*.yaml"), *gate.glob("resources/*.yaml")]
+    assert len(files) == 4
+    for file in files:
+        first, _, text = file.read_text(encoding="utf-8").partition("\n")
+        schema = file.parent / first.partition("$schema=")[2]
+        content = YAML(typ="safe").load(text)
+        Draft202012Validator(YAML(typ="safe").load(schema)).validate(content)
+
+
+def test_nothing_is_overwritten(gate: Path) -> None:
+    assert command("new", gate) == (2, "", f"{gate} is not empty: name a folder that is new or empty\n")
+    assert command("new", gate / "station.yaml")[0] == 2
+
+
+def test_a_new_station_runs(gate: Path) -> None:
+    with socket.socket() as listener:
+        listener.bind(("127.0.0.1", 0))
+        port = listener.getsockname()[1]
+    program = [sys.executable, "-m", "sequence_planner.cli", "run", str(gate), "--emulator", "--start"]
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(20 + os.getpid() % 180)}
+    with (gate / "log").open("wb") as log:
+        running = subprocess.Popen([*program, "--port", str(port)], stdout=log, stderr=log, env=environment)
+    try:
+        assert _completed(port, time.monotonic() + 60), (gate / "log").read_text()
+    finally:
+        running.send_signal(signal.SIGTERM)
+        assert running.wait(timeout=20) == 0
+
+
+def _completed(port: int, end: float) -> bool:
+    while time.monotonic() < end:
+        try:
+            operations = httpx.get(f"http://127.0.0.1:{port}/api/v1/operations").json()["operations"]
+            if operations["let_through"]["completed"] == 1:
+                return True
+        except (httpx.HTTPError, KeyError):
+            pass
+        time.sleep(0.2)
+    return False
+
+
+def test_an_edit_keeps_comments_and_is_shown(gate: Path) -> None:
+    file = gate / "resources" / "gate.yaml"
+    before = file.read_text(encoding="utf-8")
+    code, out, err = command("edit", gate, "resources/gate.yaml", "abilities.open_gate.timeouts.finish", "12")
+    assert (code, err) == (0, "")
+    changed = [line for line in out.splitlines() if line[0] in "+-" and line[:3] not in ("+++", "---")]
+    assert changed == [
+        "-    timeouts: {finish: 10} # seconds until an alarm is raised",
+        "+    timeouts: {finish: 12} # seconds until an alarm is raised",
+    ]
+    assert file.read_text(encoding="utf-8") == before.replace("finish: 10", "finish: 12")
+
+
+def test_an_edit_that_would_make_the_station_unusable(gate: Path) -> None:
+    file = gate / "resources" / "gate.yaml"
+    before = file.read_text(encoding="utf-8")
+    change = ("edit", gate, "resources/gate.yaml", "abilities.open_gate.enabled", "is_closd")
+    said = f"{file}:37:14: unknown variable `is_closd`; did you mean `is_closed`?\n"
+    refused = "the station could not be used after this change, so it was not made (--force makes it)\n"
+    assert command(*change) == (2, "", said + refused)
+    assert file.read_text(encoding="utf-8") == before
+    code, out, err = command(*change, "--force")
+    assert (code, err) == (2, said)
+    assert "+    enabled: is_closd\n" in out
+    assert "    enabled: is_closd\n" in file.read_text(encoding="utf-8")
+
+
+def test_edits_of_what_is_not_there(gate: Path) -> None:
+    assert command("edit", gate, "resources/gat.yaml", "title", "x")[2] == (
+        f"{gate}/resources/gat.yaml: there is no such file\n"
+    )
+    assert command("edit", gate, "../other.yaml", "title", "x")[2] == f"../other.yaml is not in {gate}\n"
+    code, _, err = command("edit", gate, "resources/gate.yaml", "abilities.open_gat.title", "x")
+    assert code == 2
+    assert "open_gat" in err

@@ -1,0 +1,86 @@
+"""`show`: the ground automaton."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from cli.commands import EXAMPLE, TRUCK, as_json, command, plain
+
+
+def test_one_ability_and_its_effects() -> None:
+    code, out, _ = command("show", EXAMPLE, "operator.place_bolt", "bolts")
+    assert code == 0
+    assert (
+        out
+        == """
+Operator with watch (operator)
+
+  ability operator.place_bolt: place bolt
+    enabled     bolts == empty and not operator.task and not operator.acknowledged
+    start       operator.task := true
+    executing   operator.task and not operator.acknowledged
+    finish      operator.place_bolt.executing and operator.acknowledged
+    finish      operator.task := false
+    finish      bolts := placed
+    effect operator.place_bolt.operator_acknowledges (executing, 0.5 to 0.5 s)
+      when        operator.task and not operator.acknowledged
+      do          operator.acknowledged := true
+    effect operator.place_bolt.operator_is_free (finishing, 0.5 to 0.5 s)
+      when        not operator.task and operator.acknowledged
+      do          operator.acknowledged := false
+
+The station
+  estimated  bolts: {empty, placed, tightened}, initially empty
+"""
+    )
+
+
+def test_all_of_it() -> None:
+    code, out, _ = command("show", TRUCK)
+    assert code == 0
+    for part in (
+        "Truck engine station (truck_engine_station)",
+        "  ability robot.move_to_previous: Move to the previous pose, for restart mode only",
+        "operation tighten_bolt_pair(bolt_pair_2): Tighten bolt pair 2, priority 1",
+        "specification no_standing_tool_on_placed_bolts(bolt_pair_1): The tool must turn before it meets placed bolts",
+        "    finish within 30 s",
+    ):
+        assert part in out.splitlines()
+
+
+def test_all_instances_of_a_name() -> None:
+    _, document = as_json("show", TRUCK, "robot.move_to_position")
+    assert len(document["abilities"]) == 5
+    assert document["variables"] == {}
+
+
+def test_phases_with_what_they_read_and_write() -> None:
+    _, document = as_json("show", EXAMPLE)
+    assert set(document["phases"]) == {"sense", "finish", "start"}
+    (start,) = [each for each in document["phases"]["start"] if each["name"] == "engine.next_engine.start"]
+    assert start == {"name": "engine.next_engine.start", "reads": ["bolts"], "writes": ["bolts"]}
+    assert document["variables"]["robot.pose"]["domain"] == ["home", "above", "bolt_pair", "unknown"]
+
+
+def test_a_name_that_nothing_has() -> None:
+    said = f"{EXAMPLE}: there is nothing called `robot.mov`; did you mean `robot.pose`?\n"
+    assert command("show", EXAMPLE, "robot.mov")[:2] == (2, "")
+    assert command("show", EXAMPLE, "robot.pos") == (2, "", said.replace("robot.mov", "robot.pos"))
+
+
+def test_a_plain_automaton(tmp_path: Path) -> None:
+    code, out, _ = command("show", plain(tmp_path), "ask", "grab")
+    assert code == 0
+    assert (
+        out
+        == """
+controllable grab
+    guard       user == waits and free
+    set         user := has
+    set         free := false
+
+uncontrollable ask
+    guard       user == idle
+    set         user := waits
+"""
+    )
