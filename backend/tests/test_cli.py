@@ -120,3 +120,18 @@ def test_a_specification_that_cannot_be_met(cell: Path) -> None:
     assert (code, err) == (1, "")
     assert f"{cell}/specifications.yaml:1:1: warning: specification never cannot be met" in out
     assert out.splitlines()[-1] == "cell: 6 variables, 2 abilities, 2 operations; no supervisor"
+
+
+@pytest.mark.parametrize("verb", ["run", "controller"])
+def test_a_station_is_not_run_that_says_what_nothing_would_keep_to(cell: Path, verb: str, tmp_path: Path) -> None:
+    file = cell / "operations.yaml"
+    file.write_text(file.read_text(encoding="utf-8") + "  local: not arm.moving U arm.goto == out\n", encoding="utf-8")
+    line = len(file.read_text(encoding="utf-8").splitlines())
+    options = ["--socket", str(tmp_path / "socket")] if verb == "controller" else []
+    code, out, err = check(cell, verb, *options)
+    assert (code, out) == (2, "")
+    message = "plans do not keep to `local` formulas yet, so this station is not run: say it as a specification"
+    assert err == f"{file}:{line}:10: {message}\n"
+    code, out, err = check(cell)
+    assert (code, err) == (1, "")
+    assert f"{file}:{line}:10: warning: {message} [formula-not-planned]" in out.splitlines()

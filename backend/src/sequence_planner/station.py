@@ -8,11 +8,13 @@ from pathlib import Path
 from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.collection import collection_put_off
 from sequence_planner.model.loading import load_station
 from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.pipelines.building import build_pipelines, load_messages
 from sequence_planner.pipelines.inference import with_inferred_variables
 from sequence_planner.pipelines.pipeline import StationPipelines
+from sequence_planner.planning.plan import NO_FORMULAS
 from sequence_planner.ros.messages import MessageRegistry
 
 
@@ -25,6 +27,7 @@ class ReadyStation:
     registry: MessageRegistry
 
 
+@collection_put_off()
 def prepare_station(folder: Path) -> ReadyStation:
     """Load and check a station's folder. Raises `ModelError` with the findings."""
     written = load_station(folder)
@@ -39,5 +42,4 @@ def require_runnable(station: ReadyStation) -> None:
     automaton = station.automaton
     formulas = [f"{OPERATION}.{o.name}.local" for o in automaton.operations.values() if o.local is not None]
     if formulas:
-        message = "plans do not keep to `local` formulas yet, so this station is not run: say it as a specification"
-        raise ModelError([Finding(automaton.places[formula], message) for formula in formulas])
+        raise ModelError([Finding(automaton.places[formula], NO_FORMULAS) for formula in formulas])

@@ -32,7 +32,7 @@ def test_a_start_that_waits_says_for_what() -> None:
 
 def test_a_start_that_the_supervisor_forbids() -> None:
     state = {"bolts": "placed", "robot.pose": "above", "robot.target_pose": "above"}
-    given = json.dumps({"state": {**state, "robot.move(bolt_pair).enabled": True}})
+    given = json.dumps({"state": state})  # flags follow
     code, document = as_json("tick", EXAMPLE, "--state", "-", "--start", "robot.move(bolt_pair)", given=given)
     assert code == 1
     assert document["starts"][0]["waits_for"] == [

@@ -13,6 +13,7 @@ from sequence_planner.checking.checks import check_automaton
 from sequence_planner.checking.warning import ModelWarning
 from sequence_planner.cli.loading import Model, load_model
 from sequence_planner.cli.options import FINDINGS, UNUSABLE, AnyModel, AsJson, print_json
+from sequence_planner.collection import collection_put_off
 from sequence_planner.model.source import ModelError, Place
 from sequence_planner.synthesis.enumeration import SynthesisError, TooManyStatesError, synthesise
 
@@ -52,6 +53,7 @@ def check(model: AnyModel, json: AsJson = False) -> None:
         raise typer.Exit(FINDINGS)
 
 
+@collection_put_off()
 def checked_model(path: Path, model: Model) -> Checked:
     """All that can be found in a model that can be used."""
     warnings = check_automaton(model.automaton, model.connections)

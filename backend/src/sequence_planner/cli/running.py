@@ -12,7 +12,6 @@ from typing import Annotated
 import typer
 
 from sequence_planner.cli.options import StationFolder, refuse
-from sequence_planner.control.process import Running, control
 from sequence_planner.control.unix_socket import SocketTakenError
 from sequence_planner.emulation.process import BY_HAND_TOPIC, BY_HAND_TYPE, Emulation, emulate
 from sequence_planner.launcher import Launch, launch
@@ -26,9 +25,8 @@ from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.exclusivity import DISCOVERY
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import QualityOfService, Transport, TransportError
-from sequence_planner.station import ReadyStation, prepare_station
+from sequence_planner.station import ReadyStation, prepare_station, require_runnable
 from sequence_planner.synthesis.enumeration import SynthesisError
-from sequence_planner.web.server import serve
 from sequence_planner.web.settings import Settings, SettingsError
 
 TransportOption = Annotated[
@@ -52,7 +50,7 @@ def run(
     """Run a station: controller, server and page."""
     if start and not emulator:
         refuse("--start is for emulated devices: with real ones a person starts production on the page")
-    _prepare(model)
+    _runnable(model)
     try:
         raise typer.Exit(launch(Launch(model, host, port, transport, emulator, start, emulator_speed)))
     except SettingsError as error:
@@ -102,8 +100,11 @@ def controller(
     launched: Launched = False,
 ) -> None:
     """Run the controller alone; `run` does this."""
+    # Each process imports what it runs: the controller no web server, the server no planner, `check` neither.
+    from sequence_planner.control.process import Running, control  # noqa: PLC0415
+
     _begin(launched, socket.parent)
-    station = _prepare(model)
+    station = _runnable(model)
     _until_interrupted(
         lambda connect: control(Running(station, socket, connect, emulated, start)), station.registry, transport
     )
@@ -117,6 +118,8 @@ def server(
     launched: Launched = False,
 ) -> None:
     """Run the server alone; `run` does this."""
+    from sequence_planner.web.server import serve  # noqa: PLC0415
+
     _begin(launched)
     serve(Settings(controller_socket=socket, page=page, host=host, port=port))
 
@@ -133,6 +136,15 @@ def _prepare(folder: Path) -> ReadyStation:
         return prepare_station(folder)
     except ModelError as error:
         refuse(str(error))
+
+
+def _runnable(folder: Path) -> ReadyStation:
+    station = _prepare(folder)
+    try:
+        require_runnable(station)
+    except ModelError as error:
+        refuse(str(error))
+    return station
 
 
 def _until_interrupted(

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json as json_text
-import sys
-from collections.abc import Iterable, Mapping
-from pathlib import Path
+from collections.abc import Iterable
 from typing import Annotated, Any, TypeVar
 
 import typer
@@ -14,10 +11,11 @@ from sequence_planner.automaton.plain.meaning import event_of
 from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind, State, target
-from sequence_planner.automaton.tick import initial_state, writes
+from sequence_planner.automaton.tick import writes
 from sequence_planner.cli.loading import usable_model
+from sequence_planner.cli.moments import StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
-from sequence_planner.cli.ticking import Changes, EffectRefused, Moment, Request, TickTaken, changes, lacking, take_tick
+from sequence_planner.cli.ticking import Changes, EffectRefused, Request, TickTaken, changes, lacking, take_tick
 from sequence_planner.expressions.parser import parse_assignment
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.resolution import Scope, resolve_assignment, suggestion
@@ -26,9 +24,6 @@ from sequence_planner.expressions.types import Value, contains
 from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
 
 T = TypeVar("T")
-StateFile = Annotated[
-    str | None, typer.Option("--state", metavar="FILE", help="Begin with the state in FILE (- is standard input).")
-]
 Sets = Annotated[
     list[str] | None, typer.Option("--set", help='A measured value, such as "robot.pose := home". Repeatable.')
 ]
@@ -60,7 +55,7 @@ def tick(
     code is 1 when a start that was asked for was not taken, or finishes are in conflict.
     """
     automaton = usable_model(model).automaton
-    before = _moment(automaton, state)
+    before = moment(automaton, state)
     if automaton.one_at_a_time:
         if sets or unknown or effects or len(starts or ()) != 1:
             refuse("a plain automaton takes one transition at a time: give one event with --start, and nothing else")
@@ -68,8 +63,8 @@ def tick(
         return
     request = Request(
         {**_measured(automaton, before.state, sets or ()), **_forgotten(automaton, unknown or ())},
-        [_named({effect.name: effect for effect in automaton.effects}, name, "effect") for name in effects or ()],
-        [_named(automaton.abilities, name, "ability") for name in starts or ()],
+        [named({effect.name: effect for effect in automaton.effects}, name, "effect") for name in effects or ()],
+        [named(automaton.abilities, name, "ability") for name in starts or ()],
         restart_mode,
     )
     try:
@@ -90,12 +85,6 @@ def _supervisor(automaton: Automaton, needed: bool) -> Supervisor | None:
     except SynthesisError as error:
         typer.echo(f"starts are not supervised here: {error}", err=True)
         return None
-
-
-def _named(known: Mapping[str, T], name: str, what: str) -> T:
-    if name not in known:
-        refuse(f"there is no {what} `{name}`{suggestion(name, known)}")
-    return known[name]
 
 
 def _measured(automaton: Automaton, state: State, texts: Iterable[str]) -> dict[str, Value | None]:
@@ -127,36 +116,14 @@ def _require_measured(automaton: Automaton, name: str) -> None:
         refuse(f"messages set measured variables, and `{name}` is {kind} variable{suggestion(name, measured)}")
 
 
-def _moment(automaton: Automaton, file: str | None) -> Moment:
-    if file is None:
-        return Moment(initial_state(automaton), frozenset())
-    try:
-        text = sys.stdin.read() if file == "-" else Path(file).read_text(encoding="utf-8")
-        document = json_text.loads(text)
-    except (OSError, ValueError) as error:
-        refuse(f"{file} holds no state: {error}")
-    values = document.get("state") if isinstance(document, dict) else None
-    active = document.get("active", []) if isinstance(document, dict) else None
-    if not isinstance(values, dict) or not isinstance(active, list):
-        refuse(f'{file} holds no state: expected {{"state": {{variable: value}}, "active": [operation]}}')
-    for name, value in values.items():
-        if name not in automaton.types:
-            refuse(f"{file}: there is no variable `{name}`{suggestion(name, automaton.types)}")
-        if value is not None and not contains(automaton.types[name], value):
-            refuse(f"{file}: `{value}` is no value of `{name}`, which ranges over {automaton.types[name]}")
-    for name in active:
-        _named(automaton.operations, str(name), "operation")
-    return Moment({**initial_state(automaton), **values}, frozenset(map(str, active)))
-
-
 def _plain(automaton: Automaton, state: State, event: str, json: bool) -> None:
     """Take the first transition of an event that is enabled."""
     known = plain_transitions(automaton)
-    named = [t for name, t in known.items() if event in (name, event_of(name))]
-    if not named:
+    transitions = [t for name, t in known.items() if event in (name, event_of(name))]
+    if not transitions:
         refuse(f"there is no event `{event}`{suggestion(event, map(event_of, known))}")
-    taken, after = next(((t, s) for t in named if (s := step(state, t)) is not None), (None, state))
-    waits_for = [] if taken else [reason for t in named for reason in lacking(t.guard, state)]
+    taken, after = next(((t, s) for t in transitions if (s := step(state, t)) is not None), (None, state))
+    waits_for = [] if taken else [reason for t in transitions for reason in lacking(t.guard, state)]
     changed = changes(state, after)
     if json:
         name = None if taken is None else taken.name

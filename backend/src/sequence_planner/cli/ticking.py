@@ -18,20 +18,13 @@ from sequence_planner.automaton.tick import (
     synchronise,
     update_operations,
 )
+from sequence_planner.cli.moments import Moment
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import Expression, conjuncts
 from sequence_planner.expressions.types import Value
 
 Changes = Mapping[str, Value | None]
-
-
-@dataclass(frozen=True)
-class Moment:
-    """Where a tick begins and ends: the values of variables and flags, and which operations are active."""
-
-    state: State
-    active: frozenset[str]
 
 
 @dataclass(frozen=True)

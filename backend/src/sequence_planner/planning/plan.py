@@ -8,6 +8,9 @@ from enum import StrEnum
 
 from sequence_planner.expressions.types import Value
 
+# What is said of a station that the planner would not do justice to.
+NO_FORMULAS = "plans do not keep to `local` formulas yet, so this station is not run: say it as a specification"
+
 
 @dataclass(frozen=True)
 class PlanTick:

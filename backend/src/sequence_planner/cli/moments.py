@@ -1,0 +1,65 @@
+"""The moment a command begins at: the initial state, or one that a file holds."""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+import typer
+
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.cli.options import refuse
+from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.expressions.types import contains
+
+T = TypeVar("T")
+StateFile = Annotated[
+    str | None, typer.Option("--state", metavar="FILE", help="Begin with the state in FILE (- is standard input).")
+]
+
+
+@dataclass(frozen=True)
+class Moment:
+    """A state, and the operations that are active in it."""
+
+    state: State
+    active: frozenset[str]
+
+
+def named(known: Mapping[str, T], name: str, what: str) -> T:
+    """What of `known` bears the name; ends the command if nothing does."""
+    if name not in known:
+        refuse(f"there is no {what} `{name}`{suggestion(name, known)}")
+    return known[name]
+
+
+def moment(automaton: Automaton, file: str | None) -> Moment:
+    """What `file` holds, as `tick --json` writes it.
+
+    Variables that are left out have their initial value, and flags that are left out equal their predicates.
+    """
+    if file is None:
+        return Moment(initial_state(automaton), frozenset())
+    try:
+        text = sys.stdin.read() if file == "-" else Path(file).read_text(encoding="utf-8")
+        document = json.loads(text)
+    except (OSError, ValueError) as error:
+        refuse(f"{file} holds no state: {error}")
+    values = document.get("state") if isinstance(document, dict) else None
+    active = document.get("active", []) if isinstance(document, dict) else None
+    if not isinstance(values, dict) or not isinstance(active, list):
+        refuse(f'{file} holds no state: expected {{"state": {{variable: value}}, "active": [operation]}}')
+    for name, value in values.items():
+        if name not in automaton.types:
+            refuse(f"{file}: there is no variable `{name}`{suggestion(name, automaton.types)}")
+        if value is not None and not contains(automaton.types[name], value):
+            refuse(f"{file}: `{value}` is no value of `{name}`, which ranges over {automaton.types[name]}")
+    for name in active:
+        named(automaton.operations, str(name), "operation")
+    state = synchronise(automaton, {**automaton.initial_valuation, **values})
+    return Moment({**state, **values}, frozenset(map(str, active)))
