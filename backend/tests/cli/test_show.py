@@ -12,7 +12,7 @@ def test_one_ability_and_its_effects() -> None:
     assert code == 0
     assert (
         out
-        == """
+        == """\
 Operator with watch (operator)
 
   ability operator.place_bolt: place bolt
@@ -22,10 +22,10 @@ Operator with watch (operator)
     finish      operator.place_bolt.executing and operator.acknowledged
     finish      operator.task := false
     finish      bolts := placed
-    effect operator.place_bolt.operator_acknowledges (executing, 0.5 to 0.5 s)
+    effect operator.place_bolt.operator_acknowledges (executing, 0.5 s)
       when        operator.task and not operator.acknowledged
       do          operator.acknowledged := true
-    effect operator.place_bolt.operator_is_free (finishing, 0.5 to 0.5 s)
+    effect operator.place_bolt.operator_is_free (finishing, 0.5 s)
       when        not operator.task and operator.acknowledged
       do          operator.acknowledged := false
 
@@ -73,7 +73,7 @@ def test_a_plain_automaton(tmp_path: Path) -> None:
     assert code == 0
     assert (
         out
-        == """
+        == """\
 controllable grab
     guard       user == waits and free
     set         user := has

@@ -36,7 +36,7 @@ def test_a_start_that_the_supervisor_forbids() -> None:
     code, document = as_json("tick", EXAMPLE, "--state", "-", "--start", "robot.move(bolt_pair)", given=given)
     assert code == 1
     assert document["starts"][0]["waits_for"] == [
-        "the supervisor: specification no_standing_tool_on_placed_bolts forbids the state after it"
+        "specification no_standing_tool_on_placed_bolts forbids the state after it"
     ]
 
 

@@ -40,8 +40,7 @@ def show(
     if json:
         print_json(described_automaton(automaton, lambda name: _chosen(name, wanted)))
         return
-    for line in _lines(automaton, wanted):
-        typer.echo(line)
+    typer.echo("\n".join(_lines(automaton, wanted)).strip("\n"))
 
 
 def _names(automaton: Automaton) -> list[str]:
@@ -139,12 +138,12 @@ def _ability(ability: Ability) -> Lines:
         if seconds is not None:
             yield f"    {name} within {seconds:g} s"
     if ability.duration is not None:
-        yield f"    duration    {ability.duration[0]:g} to {ability.duration[1]:g} s"
+        yield f"    duration    {_seconds(*ability.duration)}"
 
 
 def _effect(effect: Effect) -> Lines:
     fault = ", a fault" if effect.fault else ""
-    yield f"    effect {effect.name} ({effect.kind}{fault}, {effect.shortest:g} to {effect.longest:g} s)"
+    yield f"    effect {effect.name} ({effect.kind}{fault}, {_seconds(effect.shortest, effect.longest)})"
     yield f"      {'when':10}  {print_expression(effect.guard)}"
     yield from _actions("do", effect.actions, "      ")
 
@@ -180,3 +179,7 @@ def _condition(name: str, condition: Expression, usual: Expression | None) -> Li
 def _actions(name: str, actions: Iterable[Assignment], margin: str = "  ") -> Lines:
     for action in actions:
         yield f"{margin}{name:10}  {print_assignment(action)}"
+
+
+def _seconds(fewest: float, most: float) -> str:
+    return f"{fewest:g} s" if fewest == most else f"{fewest:g} to {most:g} s"

@@ -147,4 +147,4 @@ def _waits_for(
             why = f"specification {', '.join(broken)} forbids the state after it"
         if not supervisor.safe.includes(state):
             why = "the state is not a safe one"
-        yield f"the supervisor: {why}"
+        yield why
