@@ -13,6 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from sequence_planner.automaton.grounding.station import ground
+from sequence_planner.cli.check import checked_model
+from sequence_planner.cli.loading import load_model
 from sequence_planner.model.composing import compose, compose_slowly
 from sequence_planner.model.loading import load_station
 from sequence_planner.pipelines.building import load_messages
@@ -41,6 +43,14 @@ ABILITY = """
         when: run_{number} and not busy_{number} and stage_{number} < 3
         do: [busy_{number} := true]
         takes: [0.1, 0.3]
+      ends:
+        kind: executing
+        when: run_{number} and busy_{number}
+        do: [busy_{number} := false, stage_{number} := 3]
+      clears:
+        kind: finishing
+        when: not run_{number} and stage_{number} == 3
+        do: [stage_{number} := 0]
 """
 
 # The same, for each place that the device can be sent to.
@@ -120,7 +130,10 @@ def measure(name: str, folder: Path) -> None:
     print(f"  compose the YAML   {ours:7.3f} s   ruamel.yaml alone {reference:.3f} s, ratio {reference / ours:.1f}")
     print(f"  load               {seconds(lambda: load_station(folder)):7.3f} s")
     print(f"  ground             {seconds(lambda: ground(inferred)):7.3f} s")
-    print(f"  load and check all {seconds(lambda: prepare_station(folder)):7.3f} s")
+    print(f"  ready to run       {seconds(lambda: prepare_station(folder)):7.3f} s")
+    checked = checked_model(folder, load_model(folder))
+    whole = seconds(lambda: checked_model(folder, load_model(folder)))
+    print(f"  load and check all {whole:7.3f} s   {len(checked.warnings)} warnings")
 
 
 def read_each(read: Callable[[str], object], texts: list[str]) -> None:

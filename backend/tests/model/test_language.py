@@ -342,3 +342,22 @@ def test_a_file_that_is_never_read_is_said(tmp_path: Path) -> None:
     [place] = write(station, "operation.yaml", "‹fetch: {}\n")
     message = "this file is not read; did you mean `operations.yaml`?"
     assert findings(station) == [f"{place}: {message}"]
+
+
+@pytest.mark.parametrize(("parameter", "hidden"), [("moving", "arm.moving"), ("goto", "arm.goto"), ("count", "count")])
+def test_a_parameter_must_not_hide_a_variable(tmp_path: Path, parameter: str, hidden: str) -> None:
+    station = copy_of_cell(tmp_path)
+    replace(station, STATION, "estimated:\n  parts:", COUNTER)
+    file = station / ARM
+    text = file.read_text(encoding="utf-8").replace("position", parameter)
+    [place] = write(station, ARM, text.replace(f"parameters: {{{parameter}:", f"parameters: {{‹{parameter}:"))
+    assert f"{place}: the parameter `{parameter}` hides the variable `{hidden}`: rename one of them" in findings(
+        station
+    )
+
+
+def test_a_parameter_must_not_hide_a_variable_of_the_station(tmp_path: Path) -> None:
+    station = copy_of_cell(tmp_path)
+    replace(station, STATION, "estimated:\n  parts:", COUNTER)
+    [place] = write(station, SPECIFICATIONS, "s:\n  parameters: {‹count: part}\n  forbidden: arm.moving\n")
+    assert findings(station) == [f"{place}: the parameter `count` hides the variable `count`: rename one of them"]

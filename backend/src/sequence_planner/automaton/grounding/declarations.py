@@ -67,10 +67,15 @@ class Declarations:
             message = f"`{name}` is no name: use letters, digits and `_`, and none of the words of the language"
             self._findings.add(name, message)
 
-    def check_parameters(self, parameters: Parameters) -> None:
-        """Note parameters that are none."""
+    def check_parameters(self, parameters: Parameters, *prefixes: str) -> None:
+        """Note parameters that are none, and those that would hide a variable of the station or under `prefixes`."""
         for name, enumeration in parameters.items():
             self.check_name(name)
+            for hidden in (f"{prefix}{name}" for prefix in (*prefixes, "")):
+                if hidden in self.types or hidden in self.broken:
+                    self._findings.add(
+                        name, f"the parameter `{name}` hides the variable `{hidden}`: rename one of them"
+                    )
             if enumeration not in self.enumerations:
                 near = suggestion(enumeration, self.enumerations)
                 self._findings.add(enumeration, f"unknown enumeration `{enumeration}`{near}")
@@ -171,7 +176,7 @@ class Declarations:
         for resource, document in self._station.resources.items():
             for name, ability in document.abilities.items():
                 self.check_name(name)
-                self.check_parameters(ability.parameters)
+                self.check_parameters(ability.parameters, f"{resource}.")
                 if self._declare(f"{resource}.{name}", name) and not self.bindings(ability.parameters):
                     self.broken.add(f"{resource}.{name}")
         for resource, name, _, binding in self.abilities():
