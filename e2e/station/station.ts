@@ -22,6 +22,17 @@ export interface Options {
 	readonly logs: string;
 }
 
+let stations = 0;
+
+/**
+ * A DDS domain that keeps a station apart from all others of this run, and most likely from those of other runs on this
+ * machine. Above 100 its ports are those that the system hands out to anybody.
+ */
+function nextDomain(): number {
+	stations += 1;
+	return 1 + ((process.pid + stations) % 100);
+}
+
 export class Station {
 	readonly #env: NodeJS.ProcessEnv;
 	readonly #logs: string;
@@ -32,9 +43,7 @@ export class Station {
 		readonly port: number,
 		options: Options
 	) {
-		// A DDS domain of its own keeps a station apart from others on this machine. Above 100 its ports are those that the
-		// system hands out to anybody.
-		this.#env = { ...process.env, ROS_DOMAIN_ID: String(1 + (port % 100)) };
+		this.#env = { ...process.env, ROS_DOMAIN_ID: String(nextDomain()) };
 		this.#logs = options.logs;
 		const alone = options.byItself ? ['--emulator', '--start', '--emulator-speed', '4'] : [];
 		this.server = this.#start('server', ['run', MODEL, '--port', String(port), ...alone]);
