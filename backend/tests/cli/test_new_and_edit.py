@@ -16,6 +16,7 @@ from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
 from cli.commands import as_json, command
+from running.stations import DOMAIN
 
 
 @pytest.fixture
@@ -54,7 +55,7 @@ def test_a_new_station_runs(gate: Path) -> None:
         listener.bind(("127.0.0.1", 0))
         port = listener.getsockname()[1]
     program = [sys.executable, "-m", "sequence_planner.cli", "run", str(gate), "--emulator", "--start"]
-    environment = {**os.environ, "ROS_DOMAIN_ID": str(20 + os.getpid() % 180)}
+    environment = {**os.environ, "ROS_DOMAIN_ID": str(DOMAIN)}
     with (gate / "log").open("wb") as log:
         running = subprocess.Popen([*program, "--port", str(port)], stdout=log, stderr=log, env=environment)
     try:
