@@ -54,3 +54,24 @@ def test_a_local_specification_that_reads_nothing(tmp_path: Path) -> None:
 def test_a_local_specification_about_the_run(tmp_path: Path) -> None:
     operations = 'o: {precondition: not part, goal: part, local: "F device.command"}'
     assert found(device(tmp_path, operations=operations)) == [NOT_PLANNED]
+
+
+def test_a_task_that_is_never_open(tmp_path: Path) -> None:
+    assert found(station(tmp_path, {"person": PERSON % "false"}, station=SIDES)) == [
+        f"person.yaml:10:16: the task of `person.put({side})` is never open: a task is open while its ability executes, "
+        "and this one never does. Write `executing`, such as that the request is there and the acknowledgement is not "
+        "[task-never-open]"
+        for side in ("left", "right")
+    ]
+
+
+def test_a_specification_that_forbids_nothing(tmp_path: Path) -> None:
+    folder = device(tmp_path, operations="{}")
+    file = folder / "specifications.yaml"
+    file.write_text("never: {forbidden: device.command and not device.command}\n", encoding="utf-8")
+    assert found(folder) == [
+        "specifications.yaml:1:1: `never` forbids nothing: no state, reachable or not, is as it says (see `show`). An "
+        "ability without `executing` never executes, so it excludes nothing either [forbids-nothing]"
+    ]
+    file.write_text("never: {forbidden: device.command}\n", encoding="utf-8")
+    assert "forbids-nothing" not in "".join(found(folder))

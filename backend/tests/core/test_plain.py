@@ -10,7 +10,6 @@ from hypothesis import given
 
 from sequence_planner.automaton.plain.meaning import event_of, plain_automaton
 from sequence_planner.automaton.plain.steps import plain_transitions, step
-from sequence_planner.automaton.plain.writing import write_plain
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.model.plain_documents import read_plain
@@ -115,11 +114,3 @@ def test_a_goal_has_a_plan_when_breadth_first_search_finds_one(written: dict[str
             assert not reached
         else:
             assert not reached or min(reached) > LONGEST
-
-
-@examples(200)
-@given(made_by(document))
-def test_what_is_written_reads_as_the_same_automaton(written: dict[str, Any]) -> None:
-    _, automaton = meant(written)
-    if automaton is not None:
-        assert plain_automaton(read_plain(write_plain(automaton), "again")) == automaton

@@ -77,9 +77,11 @@ def test_exclusive_abilities_never_execute_at_once(tmp_path: Path) -> None:
 
 
 def test_exclusive_abilities_with_parameters(tmp_path: Path) -> None:
-    text = "one:\n  parameters: {where: target}\n  exclusive: [arm.move(where), arm.move(home)]\n"
-    assert forbidden(with_file(tmp_path, SPECIFICATIONS, text))["one(out): arm.move(where) and arm.move(home)"] == (
-        "arm.move(out).executing and arm.move(home).executing"
+    station = copy_of_cell(tmp_path)
+    write(station, "resources/door.yaml", "abilities:\n  open: {executing: arm.moving}\n")
+    write(station, SPECIFICATIONS, "one:\n  parameters: {where: target}\n  exclusive: [arm.move(where), door.open]\n")
+    assert forbidden(prepare_station(station).automaton)["one(out): arm.move(where) and door.open"] == (
+        "arm.move(out).executing and door.open.executing"
     )
 
 
@@ -117,6 +119,10 @@ def test_an_order_of_conditions(tmp_path: Path) -> None:
             "there is no ability `arm.move(hom)`; did you mean `arm.move(home)`?",
         ),
         ("a:\n  exclusive: [arm.move, ‹not arm.move]\n", "expected the name of an ability, such as `robot.move`"),
+        (
+            "a:\n  exclusive: [arm.move, ‹arm.move(out)]\n",
+            "`arm.move(out)` is in `arm.move` as well: no ability excludes itself",
+        ),
         ("a:\n  exclusive: ‹[arm.move]\n", "expected at least 2 entries, found a list"),
         ("a:\n  zone: {arm: moving, ‹am: moving}\n", "there is no resource `am`; did you mean `arm`?"),
         (

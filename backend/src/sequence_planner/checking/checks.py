@@ -11,6 +11,7 @@ from sequence_planner.checking.executing import check_executing
 from sequence_planner.checking.guards import check_guards
 from sequence_planner.checking.operations import check_operations
 from sequence_planner.checking.people import check_people
+from sequence_planner.checking.specifications import check_specifications
 from sequence_planner.checking.warning import ModelWarning
 
 CHECKS: tuple[Callable[[Automaton], Iterable[ModelWarning]], ...] = (
@@ -19,6 +20,7 @@ CHECKS: tuple[Callable[[Automaton], Iterable[ModelWarning]], ...] = (
     check_guards,
     check_operations,
     check_people,
+    check_specifications,
 )
 
 

@@ -106,7 +106,7 @@ def _confirmed(
     cone = cone_of_influence(automaton, [*own, Variable(variable, automaton.variables[variable].type)])
     effects = sum(any(target(action) in cone for action in effect.actions) for effect in automaton.effects)
     if prod(len(automaton.variables[name].type.domain) for name in cone) * 2**effects > MOST_STEPS:
-        how, seen = "can meet (not shown to be unreachable: too many states to enumerate)", witness
+        how, seen = "might meet (there are too many states to say whether such a one can be reached)", witness
     else:
         plant, reached = reachable_states(automaton, cone)
         found = plant.conflicting_finishes(one, other, variable, reached)

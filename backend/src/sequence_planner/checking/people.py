@@ -1,4 +1,4 @@
-"""Tasks of people who could not tell which of them they acknowledge."""
+"""Tasks that nobody is ever asked for, and tasks of which a person could not tell which one is acknowledged."""
 
 from __future__ import annotations
 
@@ -9,13 +9,14 @@ from itertools import combinations
 from sequence_planner.automaton.structure import Ability, Automaton
 from sequence_planner.checking.satisfiability import can_be_asked, satisfying
 from sequence_planner.checking.warning import ModelWarning, described, place
-from sequence_planner.expressions.syntax import conjunction, variables
+from sequence_planner.expressions.syntax import FALSE, conjunction, variables
 
 MOST_REPORTED = 3  # pairs for each acknowledgement
 
 
 def check_people(automaton: Automaton) -> Iterator[ModelWarning]:
-    """Pairs of human abilities with one acknowledgement that can be open at once: one answer would be for both."""
+    """Human abilities whose task is never open, and pairs with one acknowledgement that can be open at once."""
+    yield from _never_open(automaton)
     sharing: dict[str, list[Ability]] = defaultdict(list)
     for ability in automaton.abilities.values():
         if ability.human is not None:
@@ -37,3 +38,13 @@ def check_people(automaton: Automaton) -> Iterator[ModelWarning]:
             yield ModelWarning(
                 place(automaton, f"{other.name}.executing", other.name), "shared-acknowledgement", message
             )
+
+
+def _never_open(automaton: Automaton) -> Iterator[ModelWarning]:
+    for ability in automaton.abilities.values():
+        if ability.human is not None and ability.executing == FALSE:
+            message = (
+                f"the task of `{ability.name}` is never open: a task is open while its ability executes, and this one "
+                "never does. Write `executing`, such as that the request is there and the acknowledgement is not"
+            )
+            yield ModelWarning(place(automaton, f"{ability.name}.executing", ability.name), "task-never-open", message)

@@ -5,6 +5,9 @@ Exit codes: 0 fine, 1 findings, 2 unusable input or surroundings, which are said
 
 from __future__ import annotations
 
+import io
+import sys
+
 import typer
 
 from sequence_planner.cli import running
@@ -26,5 +29,8 @@ app.command(hidden=True)(running.server)
 
 
 def main() -> None:
-    """Run the command line."""
+    """Run the command line. What a terminal cannot show is written as its escape."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
     app()

@@ -9,13 +9,12 @@ from tempfile import TemporaryDirectory
 from typing import Annotated
 
 import typer
-from ruamel.yaml import YAML
-from ruamel.yaml.error import YAMLError
 
 from sequence_planner.cli.loading import load_model
 from sequence_planner.cli.options import UNUSABLE, StationFolder, refuse
 from sequence_planner.model.editing import replace
 from sequence_planner.model.paths import EditError, parse_path
+from sequence_planner.model.reading import read_text
 from sequence_planner.model.saving import digest, edit_file
 from sequence_planner.model.source import ModelError
 
@@ -31,34 +30,46 @@ def edit(
 
     A change after which the station could not be used is not made, and what would be wrong is said; --force makes it.
     """
-    target = model / file
-    if not target.resolve().is_relative_to(model.resolve()):
+    target = (model / file).resolve()
+    if not target.is_relative_to(model.resolve()):
         refuse(f"{file} is not in {model}")
+    inside = target.relative_to(model.resolve())
+    target = model / inside
     if not target.is_file():
         refuse(f"{target}: there is no such file")
-    try:
-        content = YAML(typ="safe").load(value)
-    except YAMLError:
-        refuse(f"`{value}` is not YAML: quote what has a meaning there")
+    content = _content(value)
     try:
         expected = digest(target)
-        wrong = _wrong_after(model, file, lambda text: replace(text, parse_path(path), content))
+        wrong = _wrong_after(model, inside, lambda text: replace(text, parse_path(path), content))
         if wrong:
             typer.echo(wrong, err=True)
         if wrong and not force:
             refuse("the station could not be used after this change, so it was not made (--force makes it)")
         difference = edit_file(target, lambda text: replace(text, parse_path(path), content), expected=expected)
-    except EditError as error:
+    except (EditError, OSError) as error:
         refuse(str(error))
     typer.echo(difference, nl=False)
     if wrong:
         raise typer.Exit(UNUSABLE)
 
 
+def _content(value: str) -> object:
+    """The value as the documents would have it."""
+    try:
+        document = read_text(f"value: {value}\n", "VALUE").content
+    except ModelError:
+        document = None
+    if not isinstance(document, dict) or len(document) != 1:
+        refuse(f"`{value}` is not a value in YAML: quote what has a meaning there")
+    if document["value"] is None:
+        refuse("an entry without a value means nothing: give it one")
+    return document["value"]
+
+
 def _wrong_after(model: Path, file: Path, change: Callable[[str], str]) -> str:
     """What is wrong with the station after a change, tried on a copy; empty if nothing is."""
     with TemporaryDirectory() as scratch:
-        copy = copytree(model, Path(scratch) / "station")
+        copy = copytree(model, Path(scratch) / "station", ignore_dangling_symlinks=True)
         edit_file(copy / file, change)
         try:
             load_model(copy)

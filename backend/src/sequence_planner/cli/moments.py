@@ -11,8 +11,8 @@ from typing import Annotated, TypeVar
 
 import typer
 
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.automaton.structure import Automaton, Kind, State
+from sequence_planner.automaton.tick import initial_state, record_activity, synchronise
 from sequence_planner.cli.options import refuse
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.types import contains
@@ -48,7 +48,7 @@ def moment(automaton: Automaton, file: str | None) -> Moment:
     try:
         text = sys.stdin.read() if file == "-" else Path(file).read_text(encoding="utf-8")
         document = json.loads(text)
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         refuse(f"{file} holds no state: {error}")
     values = document.get("state") if isinstance(document, dict) else None
     active = document.get("active", []) if isinstance(document, dict) else None
@@ -57,9 +57,12 @@ def moment(automaton: Automaton, file: str | None) -> Moment:
     for name, value in values.items():
         if name not in automaton.types:
             refuse(f"{file}: there is no variable `{name}`{suggestion(name, automaton.types)}")
+        if value is None and name in automaton.variables and automaton.variables[name].kind is not Kind.MEASURED:
+            refuse(f"{file}: `{name}` is no measured variable: its value is always known")
         if value is not None and not contains(automaton.types[name], value):
             refuse(f"{file}: `{value}` is no value of `{name}`, which ranges over {automaton.types[name]}")
     for name in active:
         named(automaton.operations, str(name), "operation")
-    state = synchronise(automaton, {**automaton.initial_valuation, **values})
-    return Moment({**state, **values}, frozenset(map(str, active)))
+    now = frozenset(map(str, active))
+    state = record_activity(automaton, synchronise(automaton, {**automaton.initial_valuation, **values}), now)
+    return Moment({**state, **values}, now)

@@ -9,20 +9,22 @@ import typer
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.automaton.tick import update_operations
+from sequence_planner.automaton.tick import record_activity, update_operations
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.moments import Moment, StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
+from sequence_planner.model.source import ModelError
 from sequence_planner.planning.plain import PlainAnswer, plan_transitions
 from sequence_planner.planning.plan import PlanAnswer, PlanRequest, Verdict
 from sequence_planner.planning.planner import Planner
+from sequence_planner.station import require_runnable
 from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
 
 Goals = Annotated[
     list[str] | None,
     typer.Argument(metavar="[OPERATION]...", help="Whose goals to reach; else those that are active then."),
 ]
-Deadline = Annotated[float, typer.Option(min=0.01, help="Seconds to look for a plan.")]
+Deadline = Annotated[float, typer.Option(min=0.01, max=86_400, help="Seconds to look for a plan.")]
 
 
 def plan(
@@ -33,11 +35,14 @@ def plan(
     Of a plan, each tick shows the effects that are expected and the starts. The goals of a plain automaton are goal_1,
     goal_2 and so on; one of them is planned. The exit code is 1 when there is no plan for all of the goals.
     """
-    automaton = usable_model(model).automaton
+    found_model = usable_model(model)
+    automaton = found_model.automaton
     before = moment(automaton, state)
     try:
+        if found_model.station is not None:
+            require_runnable(found_model.station)
         supervisor = synthesise(automaton)
-    except SynthesisError as error:
+    except (SynthesisError, ModelError) as error:
         refuse(str(error))
     if automaton.one_at_a_time:
         found = _of_plain(automaton, supervisor, before, goals or list(automaton.operations)[:1], deadline, json)
@@ -54,7 +59,9 @@ def _of_station(
     wanted = chosen or update_operations(automaton, before.state, before.active)
     if not wanted:
         refuse("no operation is active in this state: name one whose goal to plan")
-    request = PlanRequest(before.state, tuple(sorted(wanted)), deadline)
+    # What has just become active is, as in step 4 of a tick.
+    state = record_activity(automaton, before.state, before.active | wanted)
+    request = PlanRequest(state, tuple(sorted(wanted)), deadline)
     answer = Planner(automaton, supervisor).answer(request)
     ticks = () if answer.plan is None else answer.plan.ticks
     if json:

@@ -87,8 +87,11 @@ def messages(
         load_messages(station)
     except ModelError as error:
         refuse(str(error))
-    for package in write_ament_package(station.messages, ament):
-        typer.echo(package)
+    try:
+        for package in write_ament_package(station.messages, ament):
+            typer.echo(package)
+    except OSError as error:
+        refuse(f"{ament} cannot be written to: {error.strerror}")
 
 
 def controller(

@@ -90,10 +90,9 @@ class Alarms:
     def _state(self) -> Iterator[Cause]:
         execution = self._execution
         known = all(execution.state[name] is not None for name in execution.supervisor.safe.names)
-        if known and not execution.safe:
-            broken = [
-                s.title for s in execution.automaton.specifications.values() if holds(s.forbidden, execution.state)
-            ]
+        broken = [s.title for s in execution.automaton.specifications.values() if holds(s.forbidden, execution.state)]
+        # What is only possible with values that are unknown has an alarm of its own: the topic is silent.
+        if broken or (known and not execution.safe):
             what = f"broken: {', '.join(broken)}" if broken else "a specification could be broken by the devices alone"
             yield Cause(
                 "unsafe-state",

@@ -95,10 +95,12 @@ class Execution:
     def tick(self, measured: Mapping[str, Value | None], now: Moment) -> TickOutcome:
         """One tick with the given measured values. One that raises has not happened: all is as it was before."""
         kept = (self.state, self.published, self.active, self.order.copy(), self.plan_status, self.plan_reason)
+        started = self._started_since_asked
         try:
             outcome = self._tick(measured, now)
         except BaseException:
             self.state, self.published, self.active, self.order, self.plan_status, self.plan_reason = kept
+            self._started_since_asked = started
             raise
         self.ticks += 1
         return outcome
@@ -230,8 +232,8 @@ class Execution:
 
     def startable(self, name: str) -> State | None:
         """The state after the start of the ability, if its guards and the supervisor allow it now."""
-        if name not in self._run.startable():
-            return None
+        if name not in self._run.startable() or self.automaton.abilities[name].restart:
+            return None  # there is no mode yet in which a restart ability may start
         after = self._run.after_start(name)
         if after is None or reverts(self.automaton, self.published, self.state, after):
             return None

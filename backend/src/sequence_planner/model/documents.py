@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
@@ -13,8 +13,22 @@ from sequence_planner.model.source import SourceText
 class DocumentPart(BaseModel):
     """Base of all parts: nothing beside what is declared."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True)
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, strict=True, use_attribute_docstrings=True
+    )
 
+
+T = TypeVar("T")
+
+
+def _given(value: object) -> object:
+    if value is None:
+        raise ValueError("there is nothing here: write a value, or leave the key out")
+    return value
+
+
+# What may be left out, and is not left empty: a key without a value says nothing.
+Given = Annotated[T | None, BeforeValidator(_given)]
 
 # A predicate is a text of the guard language; YAML itself reads a bare `true` as a truth value.
 Predicate = SourceText | bool
@@ -24,7 +38,7 @@ Parameters = dict[SourceText, SourceText]
 
 def _interval(value: object) -> object:
     if isinstance(value, list) and len(value) == 2:
-        return value
+        return tuple(value)
     if isinstance(value, int | float) and not isinstance(value, bool):
         return (value, value)
     raise ValueError("expected seconds, or the fewest and the most as in `[0.5, 1.5]`")
@@ -49,9 +63,9 @@ class VariableDocument(DocumentPart):
     A measured or output variable without one has the type of the message field that it belongs to.
     """
 
-    type: SourceText | None = None
+    type: Given[SourceText] = None
     """`bool`, an enumeration, or a range such as `0..3`. May be left out where a message field tells it."""
-    initial: bool | int | SourceText | None = None
+    initial: Given[bool | int | SourceText] = None
     """The first value; without it the first of the type."""
     each: Parameters = Field(default_factory=dict, alias="for")
     """One variable per value of an enumeration: `{where: side}` makes `name[left]` and `name[right]`."""
@@ -109,26 +123,26 @@ class CancelDocument(DocumentPart):
 class TimeoutsDocument(DocumentPart):
     """Seconds after the start until an alarm is raised: by when it must have reacted, and have finished."""
 
-    react: Seconds | None = None
+    react: Given[Seconds] = None
     """By when it must have been seen executing, or have finished."""
-    finish: Seconds | None = None
+    finish: Given[Seconds] = None
     """By when it must have finished."""
 
 
 class AbilityDocument(DocumentPart):
     """An ability of a resource. `duration` estimates in seconds how long a run takes."""
 
-    title: SourceText | None = None
+    title: Given[SourceText] = None
     """For people; `{parameter}` is replaced by the value."""
     parameters: Parameters = Field(default_factory=dict)
     """`{name: enumeration}`: one ability per value."""
     restart: bool = False
     """Only for getting back to work after trouble."""
-    human: HumanDocument | None = None
+    human: Given[HumanDocument] = None
     """A person does it."""
     timeouts: TimeoutsDocument = TimeoutsDocument()
     """Seconds after a start until an alarm is raised."""
-    duration: Duration | None = None
+    duration: Given[Duration] = None
     """Seconds that a run is estimated to take, or the fewest and the most."""
     enabled: Predicate = True
     """The ability can be used now."""
@@ -138,12 +152,18 @@ class AbilityDocument(DocumentPart):
     """It is under way."""
     finished: Predicate = False
     """It is done; for use in other conditions."""
-    finish: FinishDocument | None = None
+    finish: Given[FinishDocument] = None
     """The finish. An ability without one is done with its start."""
-    cancel: CancelDocument | None = None
+    cancel: Given[CancelDocument] = None
     """What calls a running ability off."""
     effects: dict[SourceText, EffectDocument] = Field(default_factory=dict)
     """How the device is expected to react."""
+
+    @model_validator(mode="after")
+    def _has_an_end(self) -> AbilityDocument:
+        if self.finish is None and self.timeouts != TimeoutsDocument():
+            raise ValueError("`timeouts` need a `finish`: without one the ability is done with its start")
+        return self
 
 
 Coordinates = dict[SourceText, Annotated[list[float], Field(min_length=1)]]
@@ -189,15 +209,15 @@ class UndiscretiseDocument(DocumentPart):
 class StageDocument(DocumentPart):
     """One stage of a pipeline: exactly one kind. Fields and variables of one name are mapped without being asked."""
 
-    discretise: DiscretiseDocument | None = None
+    discretise: Given[DiscretiseDocument] = None
     """From numbers to the name of a point; for incoming topics."""
-    remember: RememberDocument | None = None
+    remember: Given[RememberDocument] = None
     """Keep the last value of another variable; for incoming topics."""
-    undiscretise: UndiscretiseDocument | None = None
+    undiscretise: Given[UndiscretiseDocument] = None
     """From the name of a point to its numbers; for outgoing topics."""
-    constant: Mapping[SourceText, Any] | None = None
+    constant: Given[Mapping[SourceText, Any]] = None
     """Fields with a fixed value; for outgoing topics."""
-    rename: dict[SourceText, SourceText] | None = None
+    rename: Given[dict[SourceText, SourceText]] = None
     """Which field is which variable, where their names differ: `{field: variable}`."""
 
     @model_validator(mode="after")
@@ -215,9 +235,9 @@ class TopicDocument(DocumentPart):
     """The message type, `package/msg/Name`."""
     direction: Literal["in", "out"]
     """`in`: from a device; `out`: to a device."""
-    deadline: Annotated[float, Field(gt=0)] | None = None
+    deadline: Given[Annotated[float, Field(gt=0)]] = None
     """Seconds without a message after which the topic's variables are unknown; incoming topics only."""
-    every: Annotated[float, Field(gt=0)] | None = None
+    every: Given[Annotated[float, Field(gt=0)]] = None
     """Seconds after which the message is repeated; outgoing topics only."""
     quality: Literal["reliable", "sensor_data", "latched"] = "reliable"
     """The topic's quality of service."""
@@ -238,7 +258,7 @@ class TopicDocument(DocumentPart):
 class ResourceDocument(DocumentPart):
     """A resource: its topics, its variables by who writes them, and what it can do."""
 
-    title: SourceText | None = None
+    title: Given[SourceText] = None
     """For people."""
     topics: dict[SourceText, TopicDocument] = Field(default_factory=dict)
     """The ROS 2 topics that the resource is reached by."""
@@ -257,9 +277,9 @@ class StationDocument(DocumentPart):
 
     name: SourceText
     """The station's name."""
-    title: SourceText | None = None
+    title: Given[SourceText] = None
     """For people."""
-    description: SourceText | None = None
+    description: Given[SourceText] = None
     """For people."""
     enumerations: dict[SourceText, Annotated[list[SourceText], Field(min_length=1)]] = Field(default_factory=dict)
     """Named values, in order."""
@@ -275,7 +295,7 @@ class OperationDocument(DocumentPart):
     `local` is a formula of linear temporal logic over the run from activation to goal.
     """
 
-    title: SourceText | None = None
+    title: Given[SourceText] = None
     """For people; `{parameter}` is replaced by the value."""
     parameters: Parameters = Field(default_factory=dict)
     """`{name: enumeration}`: one operation per value."""
@@ -283,7 +303,7 @@ class OperationDocument(DocumentPart):
     """It becomes active when this holds, and the goal does not."""
     goal: Predicate
     """It is completed when this holds."""
-    local: Predicate | None = None
+    local: Given[Predicate] = None
     """A formula that holds from its activation to its goal, such as `not bad U good`."""
     priority: int = 0
     """When not all active operations can be planned together, the lowest are left out first."""
@@ -294,21 +314,21 @@ class SpecificationDocument(DocumentPart):
     `exclusive`; a `zone` that resources share; an `order` of conditions.
     """
 
-    title: SourceText | None = None
+    title: Given[SourceText] = None
     """For people; `{parameter}` is replaced by the value."""
     parameters: Parameters = Field(default_factory=dict)
     """`{name: enumeration}`: one specification per value."""
-    forbidden: Predicate | None = None
+    forbidden: Given[Predicate] = None
     """States that must never be."""
-    never: Predicate | None = None
+    never: Given[Predicate] = None
     """What must not be `while` something else holds."""
-    during: Predicate | None = Field(default=None, alias="while")
+    during: Given[Predicate] = Field(default=None, alias="while")
     """While what `never` must not be."""
-    exclusive: list[SourceText] | None = Field(default=None, min_length=2)
+    exclusive: Given[list[SourceText]] = Field(default=None, min_length=2)
     """Abilities of which no two execute at once."""
-    zone: dict[SourceText, Predicate] | None = Field(default=None, min_length=2)
+    zone: Given[dict[SourceText, Predicate]] = Field(default=None, min_length=2)
     """Resources that share a space, each with the condition under which it is inside."""
-    order: list[Predicate] | None = Field(default=None, min_length=2)
+    order: Given[list[Predicate]] = Field(default=None, min_length=2)
     """Conditions none of which holds without the one before."""
 
     @model_validator(mode="after")
@@ -331,7 +351,7 @@ class WorkStepDocument(DocumentPart):
 class WorkMasterDocument(DocumentPart):
     """What a job consists of: its operations with their order, and the estimated values a new product `brings`."""
 
-    title: SourceText | None = None
+    title: Given[SourceText] = None
     """For people."""
     brings: list[SourceText] = Field(default_factory=list)
     """The estimated values of a new product, such as `part := absent`."""

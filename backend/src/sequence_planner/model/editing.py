@@ -14,6 +14,8 @@ from sequence_planner.model.paths import EditError, missing, shown_path
 from sequence_planner.model.reading import EntryPath, read_text
 from sequence_planner.model.source import ModelError
 
+_NOT_HERE = "this cannot be edited here without rewriting what is around it: edit it by hand; nothing was changed"
+
 # Texts, numbers, truth values, lists and dicts of them, or nothing.
 Content = Any
 
@@ -152,9 +154,9 @@ def _verified(text: str, new: str, change: Callable[[Content], Content]) -> str:
     try:
         found = read_text(new, "line").content
     except ModelError as error:
-        raise AssertionError(f"this edit would have made a text that cannot be read: {error}") from error
+        raise EditError(f"{_NOT_HERE} (it could not be read afterwards: {error.findings[0].message})") from error
     if not same(expected, found):
-        raise AssertionError("this edit would have changed something else, too; nothing was changed")
+        raise EditError(f"{_NOT_HERE} (something else would change with it)")
     return new
 
 

@@ -25,6 +25,7 @@ from sequence_planner.model.validation import findings_of, shown
 
 D = TypeVar("D", bound=BaseModel)
 
+FOLDERS = ("resources", "messages")
 # The documents of a station beside its resources.
 FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml")
 
@@ -88,6 +89,17 @@ class _FolderReader:
         """Note files whose name is almost right: they would be left out without a word."""
         for path in sorted((*self._folder.glob("*.yml"), *self._folder.glob("resources/*.yml"))):
             self.findings.append(Finding(Place(str(path), 1, 1), f"rename it to {path.stem}.yaml: this is not read"))
+        for path in sorted((self._folder / "resources").glob("*")):
+            if path.suffix not in (".yaml", ".yml") and not path.name.startswith("."):
+                message = "this is not read: each resource is a file <name>.yaml in this folder"
+                self.findings.append(Finding(Place(str(path), 1, 1), message))
+        for path in sorted((self._folder / "messages").rglob("*.msg")):
+            if len(path.relative_to(self._folder).parts) != 4 or path.parent.name != "msg":
+                message = "this is not read: message definitions are files messages/<package>/msg/<Name>.msg"
+                self.findings.append(Finding(Place(str(path), 1, 1), message))
+        for path in sorted(each for each in self._folder.glob("*") if each.is_dir() and each.name not in FOLDERS):
+            if near := suggestion(path.name, FOLDERS, likeness=0.75):
+                self.findings.append(Finding(Place(str(path), 1, 1), f"this folder is not read{near}"))
         for path in sorted(self._folder.glob("*.yaml")):
             if path.name not in FILES:
                 message = f"this file is not read{suggestion(path.name, FILES)}"

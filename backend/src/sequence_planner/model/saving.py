@@ -5,6 +5,7 @@ from __future__ import annotations
 import difflib
 import hashlib
 import os
+import re
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -12,6 +13,7 @@ from pathlib import Path
 from sequence_planner.model.paths import EditError
 
 BYTE_ORDER_MARK = "\ufeff"
+_LINE = re.compile(r"[^\n]*\n|[^\n]+")
 
 
 def digest(path: Path) -> str:
@@ -32,10 +34,7 @@ def edit_file(path: Path, change: Callable[[str], str], *, expected: str | None 
         reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
         raise EditError(f"{path} cannot be read: {reason}") from error
     if expected is not None and hashlib.sha256(written).hexdigest() != expected:
-        raise EditError(
-            f"{path} was changed by somebody else in the meantime. Nothing is lost: the file is as they left it, and"
-            " your change was not made. Look at it again and repeat your change"
-        )
+        raise _changed(path)
     mark = BYTE_ORDER_MARK if text.startswith(BYTE_ORDER_MARK) else ""
     plain = text.removeprefix(mark).replace("\r\n", "\n")
     has_windows_ends = "\r\n" in text
@@ -45,7 +44,7 @@ def edit_file(path: Path, change: Callable[[str], str], *, expected: str | None 
     if new != plain:
         content = mark + (new.replace("\n", "\r\n") if has_windows_ends else new)
         try:
-            _write(path, content.encode("utf-8"))
+            _write(path, content.encode("utf-8"), instead_of=written)
         except OSError as error:
             raise EditError(f"{path} cannot be written: {error.strerror}") from error
     return _difference(path, plain, new)
@@ -53,13 +52,23 @@ def edit_file(path: Path, change: Callable[[str], str], *, expected: str | None 
 
 def _difference(path: Path, old: str, new: str) -> str:
     lines: list[str] = []
-    for line in difflib.unified_diff(old.splitlines(True), new.splitlines(True), str(path), str(path)):
+    for line in difflib.unified_diff(_LINE.findall(old), _LINE.findall(new), str(path), str(path)):
         lines.append(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n")
     return "".join(lines)
 
 
-def _write(path: Path, content: bytes) -> None:
-    """Put `content` in the place of the file in one step: whoever reads it finds the old or the new, never a part."""
+def _changed(path: Path) -> EditError:
+    return EditError(
+        f"{path} was changed by somebody else in the meantime. Nothing is lost: the file is as they left it, and"
+        " your change was not made. Look at it again and repeat your change"
+    )
+
+
+def _write(path: Path, content: bytes, instead_of: bytes) -> None:
+    """Put `content` in the place of the file in one step: whoever reads it finds the old or the new, never a part.
+
+    Raises `EditError` when the file no longer holds `instead_of`.
+    """
     target = path.resolve()  # a link stays a link
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
     temporary = Path(name)
@@ -69,6 +78,8 @@ def _write(path: Path, content: bytes) -> None:
             file.flush()
             os.fsync(file.fileno())
         temporary.chmod(target.stat().st_mode & 0o7777)
+        if target.read_bytes() != instead_of:
+            raise _changed(path)
         temporary.replace(target)
     except BaseException:
         temporary.unlink(missing_ok=True)

@@ -45,6 +45,23 @@ class _Generator(GenerateJsonSchema):
         """A key says it."""
         return False
 
+    def function_before_schema(self, schema: core_schema.BeforeValidatorFunctionSchema) -> JsonSchemaValue:
+        """What may be left out is not left empty."""
+        inner = schema["schema"]
+        return (
+            self.generate_inner(inner["schema"])
+            if inner["type"] == "nullable"
+            else super().function_before_schema(schema)
+        )
+
+    def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
+        """Without the defaults of what may be left out."""
+        return (
+            self.generate_inner(schema["schema"])
+            if schema.get("default", 0) is None
+            else super().default_schema(schema)
+        )
+
     def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
         """A document part; its title in words, and how many keys it has where that is more than their names say."""
         made = super().model_schema(schema)

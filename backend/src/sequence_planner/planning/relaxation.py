@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from itertools import product
 from math import prod
 
-from sequence_planner.automaton.structure import Automaton, Flag, State, target
+from sequence_planner.automaton.structure import Automaton, Flag, Kind, State, target
 from sequence_planner.automaton.transitions import Transition, transitions
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import (
@@ -38,7 +38,10 @@ _MOST_COMBINATIONS = 4096
 def unreachable_goals(automaton: Automaton, state: State, goals: Iterable[str]) -> frozenset[str]:
     """Those of the operations `goals` whose goal no run from `state` can ever reach."""
     counted = [transition for transition in transitions(automaton) if not (transition.fault or transition.restart)]
-    reached = Relaxation(automaton, {name: {value} for name, value in state.items()}, counted)
+    first: dict[str, set[Value | None]] = {name: {value} for name, value in state.items()}
+    # Plans take what is active as it is, but a run may change it: only without that is there a proof.
+    first |= {name: {False, True} for name in automaton.names(Kind.ACTIVITY)}
+    reached = Relaxation(automaton, first, counted)
     return frozenset(goal for goal in goals if not reached.may(automaton.operations[goal].goal))
 
 

@@ -29,7 +29,8 @@ def ground_abilities(meaning: Meaning) -> tuple[dict[str, Ability], tuple[Effect
         _note_places(meaning, ability.name, name, document)
         for effect_name, effect_document in document.effects.items():
             effect = _effect(meaning, f"{ability.name}.{effect_name}", resource, effect_document, scope)
-            if effects.setdefault((effect.guard, effect.actions, effect.kind, effect.fault), effect) is effect:
+            written = (resource, str(name), str(effect_name))
+            if effects.setdefault((written, effect.guard, effect.actions), effect) is effect:
                 meaning.declarations.places[effect.name] = effect_name.place
     return abilities, tuple(effects.values())
 

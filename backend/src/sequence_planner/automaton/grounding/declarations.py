@@ -68,9 +68,17 @@ class Declarations:
             self._findings.add(name, message)
 
     def check_parameters(self, parameters: Parameters, *prefixes: str) -> None:
-        """Note parameters that are none, and those that would hide a variable of the station or under `prefixes`."""
+        """Note parameters that are none, and those that would hide something: a variable of the station or under
+        `prefixes`, a flag, or a value of an enumeration.
+        """
+        values = {value: each for each, type_ in self.enumerations.items() for value in type_.values}
         for name, enumeration in parameters.items():
             self.check_name(name)
+            if name in FLAGS:
+                self._findings.add(name, f"`{name}` is a flag of every ability: give the parameter another name")
+            if name in values:
+                message = f"the parameter `{name}` hides the value `{name}` of `{values[name]}`: rename one of them"
+                self._findings.add(name, message)
             for hidden in (f"{prefix}{name}" for prefix in (*prefixes, "")):
                 if hidden in self.types or hidden in self.broken:
                     self._findings.add(

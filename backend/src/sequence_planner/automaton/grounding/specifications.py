@@ -29,6 +29,7 @@ from sequence_planner.expressions.syntax import (
     Or,
     Variable,
     conjunction,
+    variables,
 )
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.model.documents import Predicate, SpecificationDocument
@@ -45,7 +46,7 @@ def ground_specifications(
     known = list(resources)
     for name, document in documents.items():
         meaning.declarations.check_name(name)
-        meaning.declarations.check_parameters(document.parameters)
+        meaning.declarations.check_parameters(document.parameters, *(f"{name}." for name in document.zone or ()))
         for binding in meaning.declarations.bindings(document.parameters):
             full = instance_name(name, binding)
             title = readable(document.title, name, binding)
@@ -64,6 +65,10 @@ def _parts(meaning: Meaning, document: SpecificationDocument, binding: Binding, 
         yield "", conjunction(meaning.predicate(document.never, scope), meaning.predicate(document.during, scope))
     elif document.exclusive is not None:
         executing = [(str(text), _executing(meaning, text, scope)) for text in document.exclusive]
+        for (one, (_, flags)), (other, (_, others)) in combinations(zip(document.exclusive, executing, strict=True), 2):
+            if shared := sorted(set(variables(flags)) & set(variables(others))):
+                ability = shared[0].removesuffix(".executing")
+                meaning.findings.add(other, f"`{ability}` is in `{one}` as well: no ability excludes itself")
         yield from _at_most_one(executing)
     elif document.zone is not None:
         yield from _at_most_one([_inside(meaning, *entry, binding, resources) for entry in document.zone.items()])
@@ -108,5 +113,5 @@ def _executing(meaning: Meaning, text: SourceText, scope: Scope) -> Expression:
         if without_arguments(str(text)) not in meaning.declarations.broken:
             meaning.findings.add(text.at(error.span), error.message)
         return FALSE
-    variables = tuple(Variable(flag, BOOLEAN) for flag in found)
-    return variables[0] if len(variables) == 1 else Or(variables)
+    flags_read = tuple(Variable(flag, BOOLEAN) for flag in found)
+    return flags_read[0] if len(flags_read) == 1 else Or(flags_read)
