@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from checking.small import device, found, station
+from checking.small import DEVICE, device, found, station
 
 PERSON = """
 measured: {done: {type: bool}}
@@ -58,7 +58,7 @@ def test_a_local_specification_about_the_run(tmp_path: Path) -> None:
 
 def test_a_task_that_is_never_open(tmp_path: Path) -> None:
     assert found(station(tmp_path, {"person": PERSON % "false"}, station=SIDES)) == [
-        f"person.yaml:10:16: the task of `person.put({side})` is never open: a task is open while its ability executes, "
+        f"person.yaml:5:3: the task of `person.put({side})` is never open: a task is open while its ability executes, "
         "and this one never does. Write `executing`, such as that the request is there and the acknowledgement is not "
         "[task-never-open]"
         for side in ("left", "right")
@@ -66,12 +66,19 @@ def test_a_task_that_is_never_open(tmp_path: Path) -> None:
 
 
 def test_a_specification_that_forbids_nothing(tmp_path: Path) -> None:
-    folder = device(tmp_path, operations="{}")
-    file = folder / "specifications.yaml"
-    file.write_text("never: {forbidden: device.command and not device.command}\n", encoding="utf-8")
-    assert found(folder) == [
+    nothing = "never: {forbidden: device.command and not device.command}"
+    assert found(device(tmp_path, specifications=nothing)) == [
         "specifications.yaml:1:1: `never` forbids nothing: no state, reachable or not, is as it says (see `show`). An "
         "ability without `executing` never executes, so it excludes nothing either [forbids-nothing]"
     ]
-    file.write_text("never: {forbidden: device.command}\n", encoding="utf-8")
-    assert "forbids-nothing" not in "".join(found(folder))
+
+
+def test_of_an_exclusion_some_pairs_may_exclude_each_other_anyway(tmp_path: Path) -> None:
+    pairs = "one: {exclusive: [device.go, device.back]}"
+    assert "forbids-nothing" in "".join(found(device(tmp_path, specifications=pairs)))
+    three = "one: {exclusive: [device.go, device.back, lamp.shine]}"
+    folder = tmp_path / "three"
+    folder.mkdir()
+    lamp = "output: {lit: {type: bool}}\nabilities: {shine: {executing: lit, start: {do: [lit := true]}}}"
+    made = station(folder, {"device": DEVICE, "lamp": lamp}, specifications=three)
+    assert "forbids-nothing" not in "".join(found(made))

@@ -112,3 +112,22 @@ def test_edits_of_what_is_not_there(gate: Path) -> None:
     code, _, err = command("edit", gate, "resources/gate.yaml", "abilities.open_gat.title", "x")
     assert code == 2
     assert "open_gat" in err
+
+
+def test_a_bad_edit_by_an_absolute_path_is_not_made_either(gate: Path) -> None:
+    file = gate / "station.yaml"
+    before = file.read_text(encoding="utf-8")
+    for named in (file, Path("..") / gate.name / "station.yaml"):
+        code, _, err = command("edit", gate, named, "rest", "nonsense == 3")
+        assert code == 2
+        assert "unknown variable `nonsense`" in err
+        assert file.read_text(encoding="utf-8") == before
+
+
+@pytest.mark.parametrize("value", ["2020-12-05", "!!int foo", "a: b: c", "", "[1", "!!python/none x"])
+def test_a_value_that_is_none(gate: Path, value: str) -> None:
+    before = (gate / "station.yaml").read_text(encoding="utf-8")
+    code, _, err = command("edit", gate, "station.yaml", "title", value)
+    assert (code, "Traceback" in err) in ((0, False), (2, False))
+    if code == 2:
+        assert (gate / "station.yaml").read_text(encoding="utf-8") == before

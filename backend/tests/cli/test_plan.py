@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 from pathlib import Path
 
 from cli.commands import EXAMPLE, as_json, command, plain
@@ -62,3 +63,33 @@ def test_a_plain_automaton(tmp_path: Path) -> None:
     code, document = as_json("plan", file)
     assert (code, document["verdict"], document["goal"]) == (0, "found", "goal_1")
     assert document["transitions"] == ["ask", "grab"]
+
+
+def asking(folder: Path, condition: str) -> Path:
+    """The worked example, in which a bolt is placed only on a condition about operations."""
+    copy = Path(shutil.copytree(EXAMPLE, folder / "example"))
+    (copy / "operations.yaml").write_text("place: {precondition: bolts == empty, goal: bolts == placed}\n")
+    file = copy / "resources" / "operator.yaml"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("enabled: bolts == empty", f"enabled: {condition} and bolts == empty"))
+    return copy
+
+
+def test_what_is_planned_for_is_active(tmp_path: Path) -> None:
+    code, document = as_json("plan", asking(tmp_path, "operation.place.active"))
+    assert (code, document["verdict"]) == (0, "found")
+
+
+def test_that_a_run_could_change_what_is_active_is_no_proof(tmp_path: Path) -> None:
+    code, document = as_json("plan", asking(tmp_path, "not operation.place.active"), "--deadline", "2")
+    assert (code, document["verdict"]) == (1, "none up to")
+
+
+def test_formulas_that_plans_do_not_keep_to(tmp_path: Path) -> None:
+    copy = asking(tmp_path, "true")
+    (copy / "operations.yaml").write_text(
+        "place: {precondition: true, goal: bolts == placed, local: G bolts == empty}\n"
+    )
+    code, _, err = command("plan", copy)
+    assert code == 2
+    assert "plans do not keep to `local` formulas yet" in err

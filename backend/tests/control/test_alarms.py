@@ -83,3 +83,14 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     assert unseen not in shown.current(None, late)
     overdue = shown.current(None, Moment(rig.now + 40, rig.now + 40))
     assert {"overdue:nutrunner.run_nut"} == {key for key in overdue if key.endswith("run_nut")}  # one cause, one alarm
+
+
+def test_a_specification_that_is_broken_for_certain_is_an_alarm_whatever_else_is_unknown() -> None:
+    rig = Rig()
+    shown = alarms(rig)
+    assert rig.execution.blind
+    now = Moment(1000, 10)
+    assert "unsafe-state" not in shown.current(None, now)  # for all that is known it may be safe
+    broken = {"bolts[bolt_pair_1]": "placed", "robot.target_pose": "bolt_pair_1", "nutrunner.run_nut.executing": False}
+    rig.execution.state = {**rig.execution.state, **broken}
+    assert "The tool must turn before it meets placed bolts" in shown.current(None, now)["unsafe-state"].text

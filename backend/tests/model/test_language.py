@@ -367,3 +367,80 @@ def test_a_parameter_must_not_hide_a_variable_of_the_station(tmp_path: Path) -> 
     replace(station, STATION, "estimated:\n  parts:", COUNTER)
     [place] = write(station, SPECIFICATIONS, "s:\n  parameters: {‹count: part}\n  forbidden: arm.moving\n")
     assert findings(station) == [f"{place}: the parameter `count` hides the variable `count`: rename one of them"]
+
+
+@pytest.mark.parametrize(
+    ("parameter", "message"),
+    [
+        ("executing", "`executing` is a flag of every ability: give the parameter another name"),
+        ("home", "the parameter `home` hides the value `home` of `target`: rename one of them"),
+    ],
+)
+def test_a_parameter_must_not_hide_a_flag_or_a_value(tmp_path: Path, parameter: str, message: str) -> None:
+    station = copy_of_cell(tmp_path)
+    [place] = replace(station, ARM, "    parameters: {position: target}", f"    parameters: {{‹{parameter}: target}}")
+    assert f"{place}: {message}" in findings(station)
+
+
+def test_a_parameter_must_not_hide_a_variable_in_a_zone(tmp_path: Path) -> None:
+    station = copy_of_cell(tmp_path)
+    write(station, "resources/door.yaml", "estimated: {inside: {type: bool}}\n")
+    zone = "s:\n  parameters: {‹goto: target}\n  zone: {arm: goto == out, door: inside}\n"
+    [place] = write(station, SPECIFICATIONS, zone)
+    message = "the parameter `goto` hides the variable `arm.goto`: rename one of them"
+    assert findings(station) == [f"{place}: {message}"]
+
+
+def test_reactions_of_different_devices_stay_apart(tmp_path: Path) -> None:
+    station = copy_of_cell(tmp_path)
+    effect = "effects: {e: {kind: executing, when: moving, do: [moving := false], takes: %s}}"
+    both = f"  a: {{{effect % '1'}}}\n  b: {{{effect % '[5, 9]'}}}\n"
+    replace(station, ARM, "abilities:\n", f"abilities:\n{both}")
+    effects = {effect.name: effect.longest for effect in prepare_station(station).automaton.effects}
+    assert (effects["arm.a.e"], effects["arm.b.e"]) == (1, 9)
+
+
+@pytest.mark.parametrize("key", ["finish", "human", "duration", "cancel", "title"])
+def test_a_key_without_a_value_is_not_left_out(tmp_path: Path, key: str) -> None:
+    station = copy_of_cell(tmp_path)
+    [place] = replace(station, ARM, "    executing: goto", f"    ‹{key}:\n    executing: goto")
+    if key == "finish":
+        text = (station / ARM).read_text(encoding="utf-8")
+        (station / ARM).write_text(text.replace("    finish:\n" + FINISH, ""), encoding="utf-8")
+    assert f"{place}: there is nothing here: write a value, or leave the key out" in findings(station)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("    deadline: 1.0", "    deadline: true"),
+        ("    deadline: 1.0", '    deadline: "1.0"'),
+        ("        takes: 1\n", "        takes: 1\n        fault: 1\n"),
+        ("{type: bool, initial: false}", "{type: bool, initial: 0.0}"),
+    ],
+)
+def test_a_value_of_another_type_is_refused(tmp_path: Path, old: str, new: str) -> None:
+    station = copy_of_cell(tmp_path)
+    replace(station, ARM, old, new)
+    assert any("expected" in line for line in findings(station))
+
+
+def test_timeouts_need_a_finish(tmp_path: Path) -> None:
+    station = copy_of_cell(tmp_path)
+    write(station, "resources/door.yaml", "abilities:\n  open:\n    timeouts: {finish: 3}\n")
+    message = "`timeouts` need a `finish`: without one the ability is done with its start"
+    assert any(line.endswith(message) for line in findings(station))
+
+
+@pytest.mark.parametrize(
+    ("file", "message"),
+    [
+        ("resources/notes.txt", "this is not read: each resource is a file <name>.yaml in this folder"),
+        ("messages/Foo.msg", "this is not read: message definitions are files messages/<package>/msg/<Name>.msg"),
+        ("resource/door.yaml", "this folder is not read; did you mean `resources`?"),
+    ],
+)
+def test_what_stands_in_the_wrong_place_is_said(tmp_path: Path, file: str, message: str) -> None:
+    station = copy_of_cell(tmp_path)
+    write(station, file, "bool x\n")
+    assert any(line.endswith(f": {message}") for line in findings(station))
