@@ -91,6 +91,10 @@ def test_a_specification_that_is_broken_for_certain_is_an_alarm_whatever_else_is
     assert rig.execution.blind
     now = Moment(1000, 10)
     assert "unsafe-state" not in shown.current(None, now)  # for all that is known it may be safe
-    broken = {"bolts[bolt_pair_1]": "placed", "robot.target_pose": "bolt_pair_1", "nutrunner.run_nut.executing": False}
-    rig.execution.state = {**rig.execution.state, **broken}
+    rig.execution.state = {
+        **rig.execution.state,
+        "bolts[bolt_pair_1]": "placed",
+        "robot.target_pose": "bolt_pair_1",
+        "nutrunner.run_nut.executing": False,
+    }
     assert "The tool must turn before it meets placed bolts" in shown.current(None, now)["unsafe-state"].text
