@@ -237,3 +237,8 @@ def parts(tree: Expression) -> Iterator[Expression]:
     yield tree
     for child in children(tree):
         yield from parts(child)
+
+
+def test_the_deepest_formula_prints_as_one_that_can_be_read() -> None:
+    formula = parse_formula("F " * 30 + "a == b")
+    assert parse_formula(print_expression(formula)) == formula

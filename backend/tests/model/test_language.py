@@ -444,3 +444,24 @@ def test_what_stands_in_the_wrong_place_is_said(tmp_path: Path, file: str, messa
     station = copy_of_cell(tmp_path)
     write(station, file, "bool x\n")
     assert any(line.endswith(f": {message}") for line in findings(station))
+
+
+@pytest.mark.parametrize(
+    ("file", "field", "clash"),
+    [
+        (STATE, "enabled", "that is a flag of every ability"),
+        (STATE, "move", "an ability has that name"),
+        (COMMAND, "moving_too", "a field of a topic in the other direction is one already"),
+    ],
+)
+def test_a_field_that_clashes_can_be_left_out(tmp_path: Path, file: str, field: str, clash: str) -> None:
+    station = copy_of_cell(tmp_path)
+    (station / STATE).write_text((station / STATE).read_text(encoding="utf-8") + "bool moving_too\n", encoding="utf-8")
+    text = (station / file).read_text(encoding="utf-8")
+    (station / file).write_text(f"{text}bool {field}\n", encoding="utf-8")
+    kind = Path(file).stem
+    message = (
+        f"the field `{field}` of `cell_msgs/msg/{kind}` would be a variable `{field}`, and {clash}: "
+        f"leave it out with `ignore: [{field}]`, or `rename` it"
+    )
+    assert any(line.endswith(f": {message}") for line in findings(station))

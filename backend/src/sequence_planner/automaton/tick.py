@@ -16,6 +16,7 @@ from sequence_planner.expressions.syntax import Assignment, conjunction
 from sequence_planner.expressions.types import Value
 
 Writes = dict[str, Value]
+Conflicts = tuple[tuple[str, str, str], ...]  # two abilities and the variable
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,7 @@ class Finishing:
 
     state: State
     finished: tuple[str, ...]
-    conflicts: tuple[tuple[str, str, str], ...]  # two abilities and the variable
+    conflicts: Conflicts
 
 
 def initial_state(automaton: Automaton) -> State:
@@ -86,7 +87,18 @@ def finish(automaton: Automaton, state: State) -> Finishing:
             written = writes(ability.finish_actions, state)
             if written is not None:
                 candidates[ability.name] = written
-    conflicts = tuple(
+    conflicts = conflicts_of(candidates)
+    refused = {ability for one, other, _ in conflicts for ability in (one, other)}
+    finished = tuple(name for name in candidates if name not in refused)
+    after = dict(state)
+    for name in finished:
+        after |= candidates[name]
+    return Finishing(after, finished, conflicts)
+
+
+def conflicts_of(candidates: Mapping[str, Writes]) -> Conflicts:
+    """Each two that would write different values to a variable, with the variable."""
+    return tuple(
         (one, other, name)
         for one, first in candidates.items()
         for other, second in candidates.items()
@@ -94,12 +106,6 @@ def finish(automaton: Automaton, state: State) -> Finishing:
         for name in sorted(first.keys() & second.keys())
         if first[name] != second[name]
     )
-    refused = {ability for one, other, _ in conflicts for ability in (one, other)}
-    finished = tuple(name for name in candidates if name not in refused)
-    after = dict(state)
-    for name in finished:
-        after |= candidates[name]
-    return Finishing(after, finished, conflicts)
 
 
 def synchronise(automaton: Automaton, state: State) -> State:

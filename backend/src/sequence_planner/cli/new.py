@@ -43,4 +43,4 @@ def new(
 def _named_after(folder: Path) -> str:
     """A name made from that of the folder, if it can be."""
     name = re.sub(r"\W+", "_", folder.resolve().name, flags=re.ASCII).strip("_").lower()
-    return name if re.match(r"[a-z_]", name) and name not in KEYWORDS else _NAME
+    return name if re.match(r"[a-z_]", name) and name not in KEYWORDS | {"null"} else _NAME

@@ -145,6 +145,8 @@ def _waits_for(
         why = "after it a specification could be broken, or rest not be reached any more"
         if broken:
             why = f"specification {', '.join(broken)} forbids the state after it"
-        if not supervisor.safe.includes(state):
+        if unknown := [name for name in supervisor.safe.names if state[name] is None]:
+            why = f"{', '.join(unknown)} is unknown, and with some value of it a specification could be broken"
+        elif not supervisor.safe.includes(state):
             why = "the state is not a safe one"
         yield why

@@ -69,7 +69,7 @@ def misfit(action: Assignment, guard: Expression) -> Misfit | None:
     conditions = [*conjuncts(guard), *(() if action.condition is None else conjuncts(action.condition))]
     read = {part: frozenset(variables(part)) for part in conditions}
     types = {v.name: v.type for part in (action.value, *conditions) for v in occurrences(part)}
-    domains = {name: _narrowed(name, type_, read) for name, type_ in types.items()}
+    domains = {name: narrowed(name, type_, read) for name, type_ in types.items()}
     chosen = dict.fromkeys(variables(action.value))
     if isinstance(action.value, Arithmetic) and _combinations(chosen, domains) > MOST_COMBINATIONS:
         bounds = _bounds(action.value, domains)
@@ -146,7 +146,7 @@ def _bounds(value: Expression, domains: _Domains) -> tuple[int, int]:
             raise TypeError(f"{value} is no integer")
 
 
-def _narrowed(name: str, type_: Type, read: Mapping[Expression, frozenset[str]]) -> tuple[Value, ...]:
+def narrowed(name: str, type_: Type, read: Mapping[Expression, frozenset[str]]) -> tuple[Value, ...]:
     """The values of a variable that the conditions on it alone admit."""
     alone = [part for part, names in read.items() if names == {name}]
     return tuple(value for value in type_.domain if all(holds(part, {name: value}) for part in alone))

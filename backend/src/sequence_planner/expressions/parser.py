@@ -153,7 +153,8 @@ class _Parser:
 
     def _nested(self, rule: Callable[[], Expression], opening: Token) -> Expression:
         self._depth += 1
-        if self._depth > MOST_NESTED:
+        # Canonical text has a pair of brackets more than its tree is deep, around what stands under a letter.
+        if self._depth > MOST_NESTED + (opening.kind == "("):
             raise ExpressionError(f"nested more than {MOST_NESTED} deep: split it up", opening.span)
         result = rule()
         self._depth -= 1

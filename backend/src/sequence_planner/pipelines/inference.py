@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
+from sequence_planner.automaton.grounding.declarations import FLAGS
 from sequence_planner.model.documents import ResourceDocument, TopicDocument, VariableDocument
 from sequence_planner.model.loading import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
@@ -31,9 +32,8 @@ def with_inferred_variables(station: Station, registry: MessageRegistry) -> Stat
 
 def _completed(document: ResourceDocument, registry: MessageRegistry, findings: list[Finding]) -> ResourceDocument:
     sections = {"measured": dict(document.measured), "output": dict(document.output)}
-    elsewhere = {"measured": document.output, "output": document.measured}
     for name, topic in document.topics.items():
-        kind = "measured" if topic.direction == "in" else "output"
+        kind, other = ("measured", "output") if topic.direction == "in" else ("output", "measured")
         section = sections[kind]
         try:
             fields = registry.fields(topic.type)
@@ -41,22 +41,37 @@ def _completed(document: ResourceDocument, registry: MessageRegistry, findings: 
             near = f"; did you mean `{error.suggestion}`?" if error.suggestion else ""
             findings.append(Finding(topic.type.place, f"no message type `{topic.type}` is known{near}"))
             continue
-        for variable, field in _mapped(name, topic, fields):
-            type_ = _type(field, variable)
+        for field, variable, type_ in _mapped(name, topic, fields):
+            text = _type(type_, variable)
             declared = section.get(variable)
-            if type_ is None or variable in elsewhere[kind] or variable in document.estimated:
-                continue
-            if declared is None:
-                section[variable] = VariableDocument(type=type_)
-            elif declared.type is None:
-                section[variable] = declared.model_copy(update={"type": type_})
+            if declared is not None:
+                if declared.type is None:
+                    section[variable] = declared.model_copy(update={"type": text})
+            elif text is not None and variable not in document.estimated and variable not in getattr(document, other):
+                if clash := _clash(document, variable, sections[other]):
+                    remedy = f"leave it out with `ignore: [{field}]`, or `rename` it"
+                    message = (
+                        f"the field `{field}` of `{topic.type}` would be a variable `{variable}`, and {clash}: {remedy}"
+                    )
+                    findings.append(Finding(variable.place, message))
+                else:
+                    section[variable] = VariableDocument(type=text)
     return document.model_copy(update=sections)
+
+
+def _clash(document: ResourceDocument, name: SourceText, other: Mapping[SourceText, VariableDocument]) -> str | None:
+    """What bears the name already that a field would give to a variable."""
+    if name in FLAGS:
+        return "that is a flag of every ability"
+    if name in document.abilities:
+        return "an ability has that name"
+    return "a field of a topic in the other direction is one already" if name in other else None
 
 
 def _mapped(
     topic: SourceText, document: TopicDocument, fields: Mapping[str, FieldType]
-) -> Iterator[tuple[SourceText, FieldType]]:
-    """The fields that no stage uses and none is to be ignored, each under the name of its variable."""
+) -> Iterator[tuple[str, SourceText, FieldType]]:
+    """The fields that no stage uses and none is to be ignored, each with the name of its variable."""
     names: dict[str, SourceText] = {}
     used = set(map(str, document.ignore))
     for stage in document.pipeline:
@@ -65,7 +80,7 @@ def _mapped(
         used |= {str(each.field) for each in (stage.discretise, stage.undiscretise) if each is not None}
     for field, type_ in fields.items():
         if field not in used:
-            yield names.get(field) or SourceText(field, topic.place, field), type_
+            yield field, names.get(field) or SourceText(field, topic.place, field), type_
 
 
 def _type(field: FieldType, variable: SourceText) -> SourceText | None:

@@ -13,10 +13,8 @@ from heapq import heappop, heappush
 
 from sequence_planner.automaton.compiled.tables import CompiledTick
 from sequence_planner.automaton.structure import State
-from sequence_planner.automaton.tick import Writes
+from sequence_planner.automaton.tick import Conflicts, Writes, conflicts_of
 from sequence_planner.expressions.types import Value
-
-Conflicts = tuple[tuple[str, str, str], ...]
 
 
 @dataclass(frozen=True)
@@ -183,15 +181,7 @@ def _keep(names: set[str], name: str, belongs: bool) -> None:
 
 
 def _conflicts(due: Mapping[str, Writes]) -> Conflicts:
-    """Pairs that differ about a variable, in the order of the reference."""
+    """The conflicts among those that finish, of which there are mostly none."""
     first: Writes = {}
-    if all(first.setdefault(name, value) == value for writes in due.values() for name, value in writes.items()):
-        return ()
-    return tuple(
-        (one, other, name)
-        for one, writes in due.items()
-        for other, others in due.items()
-        if one < other
-        for name in sorted(writes.keys() & others.keys())
-        if writes[name] != others[name]
-    )
+    agree = all(first.setdefault(name, value) == value for writes in due.values() for name, value in writes.items())
+    return () if agree else conflicts_of(due)

@@ -9,7 +9,7 @@ from typing import TypeVar
 
 from sequence_planner.automaton.plain.declarations import declared_types
 from sequence_planner.automaton.plain.updates import enabling_guard
-from sequence_planner.automaton.plain.valuations import TooEntangledError, satisfying
+from sequence_planner.automaton.plain.valuations import TooEntangledError, valuations_of
 from sequence_planner.automaton.structure import (
     Ability,
     Automaton,
@@ -204,7 +204,7 @@ class _Meaning:
         initial = simplify(described)
         place = self._model.source.place_of_value(("initial",))
         try:
-            found = list(islice(satisfying(initial, self._types), 2))
+            found = list(islice(valuations_of(initial, self._types), 2))
         except TooEntangledError:
             message = "no initial state was found in reasonable time: write more of it as `variable == value and ...`"
             self._findings.append(Finding(place, message))

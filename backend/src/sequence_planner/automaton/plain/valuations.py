@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from sequence_planner.expressions.evaluation import Valuation, evaluate, holds
+from sequence_planner.expressions.evaluation import Valuation, evaluate
+from sequence_planner.expressions.fitting import narrowed
 from sequence_planner.expressions.syntax import Expression, conjuncts, variables
 from sequence_planner.expressions.types import Type, Value
 
@@ -19,13 +20,13 @@ class TooEntangledError(Exception):
     """The search was given up: the predicate relates too many variables."""
 
 
-def satisfying(predicate: Expression, types: Mapping[str, Type]) -> Iterator[dict[str, Value]]:
+def valuations_of(predicate: Expression, types: Mapping[str, Type]) -> Iterator[dict[str, Value]]:
     """The valuations of all variables of `types` that satisfy `predicate`, each once, earlier values first.
 
     Raises `TooEntangledError` after `MOST_CHOICES` choices since the last valuation.
     """
     read = {part: frozenset(variables(part)) for part in conjuncts(predicate)}
-    domains = {name: _narrowed(name, type_, read) for name, type_ in types.items()}
+    domains = {name: narrowed(name, type_, read) for name, type_ in types.items()}
     if not all(domains.values()):
         return
     open_ = [name for name, domain in domains.items() if len(domain) > 1]
@@ -48,9 +49,3 @@ def satisfying(predicate: Expression, types: Mapping[str, Type]) -> Iterator[dic
             continue
         choices = 0
         yield {name: given[name] for name in types}
-
-
-def _narrowed(name: str, type_: Type, read: Mapping[Expression, frozenset[str]]) -> tuple[Value, ...]:
-    """The values of a variable that the conjuncts on it alone admit."""
-    alone = [part for part, names in read.items() if names == {name}]
-    return tuple(value for value in type_.domain if all(holds(part, {name: value}) for part in alone))
