@@ -45,6 +45,14 @@ def test_its_files_name_schemas_that_they_satisfy(gate: Path) -> None:
         Draft202012Validator(YAML(typ="safe").load(schema)).validate(content)
 
 
+def test_what_was_written_for_programs(tmp_path: Path) -> None:
+    code, document = as_json("new", tmp_path / "gate")
+    assert code == 0
+    assert document["folder"] == str(tmp_path / "gate")
+    assert str(tmp_path / "gate" / "station.yaml") in document["files"]
+    assert all(Path(file).is_file() for file in document["files"])
+
+
 def test_nothing_is_overwritten(gate: Path) -> None:
     assert command("new", gate) == (2, "", f"{gate} is not empty: name a folder that is new or empty\n")
     assert command("new", gate / "station.yaml")[0] == 2

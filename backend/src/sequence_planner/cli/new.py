@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from sequence_planner.cli.options import refuse
+from sequence_planner.cli.options import AsJson, print_json, refuse
 from sequence_planner.expressions.lexer import KEYWORDS
 from sequence_planner.model.schemas import write_schemas
 
@@ -19,6 +19,7 @@ _NAME = "my_station"
 
 def new(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where to write it: a new folder, or an empty one.")],
+    json: AsJson = False,
 ) -> None:
     """Write a small station that can be checked and run at once, with comments that say what is what.
 
@@ -35,8 +36,12 @@ def new(
         write_schemas(folder / ".schemas")
     except OSError as error:
         refuse(f"{folder} cannot be written: {error.strerror}")
-    for written in sorted(path for path in folder.rglob("*") if path.is_file() and ".schemas" not in path.parts):
-        typer.echo(str(written))
+    written = sorted(path for path in folder.rglob("*") if path.is_file() and ".schemas" not in path.parts)
+    if json:
+        print_json({"folder": str(folder), "files": [str(path) for path in written]})
+        return
+    for path in written:
+        typer.echo(str(path))
     typer.echo(f"\nNow: sequence-planner check {folder}\n     sequence-planner run {folder} --emulator")
 
 
