@@ -153,8 +153,7 @@ class _Parser:
 
     def _nested(self, rule: Callable[[], Expression], opening: Token) -> Expression:
         self._depth += 1
-        # Canonical text has a pair of brackets more than its tree is deep, around what stands under a letter.
-        if self._depth > MOST_NESTED + (opening.kind == "("):
+        if self._depth > MOST_NESTED:
             raise ExpressionError(f"nested more than {MOST_NESTED} deep: split it up", opening.span)
         result = rule()
         self._depth -= 1
@@ -251,7 +250,9 @@ class _Parser:
         if token.kind == "not":
             return Not(self._nested(self.negation, self._advance()), self._since(token.start))
         if self._temporal and token.text in PREFIX_LETTERS and self._is_prefix():
-            operand = self._nested(self.negation, self._advance())
+            letter = self._advance()
+            # Brackets right behind a letter count in its place: canonical text has them, where its tree is no deeper.
+            operand = self.negation() if self._token.kind == "(" else self._nested(self.negation, letter)
             return UnaryTemporal(token.text, operand, self._since(token.start))
         return self.relation()
 
