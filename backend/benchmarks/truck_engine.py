@@ -18,7 +18,7 @@ from sequence_planner.planning.replay import Replay
 from sequence_planner.planning.search import Search
 from sequence_planner.planning.sweep import sweep_order
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.enumeration import synthesise
+from sequence_planner.synthesis.supervision import synthesise
 
 MODEL = Path(__file__).parents[2] / "models" / "truck_engine_station"
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")

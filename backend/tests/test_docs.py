@@ -26,7 +26,7 @@ from sequence_planner.model.documents import (
 )
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.enumeration import synthesise
+from sequence_planner.synthesis.supervision import synthesise
 
 REPOSITORY = Path(__file__).parents[2]
 TEXT = "".join((REPOSITORY / "docs" / page).read_text(encoding="utf-8") for page in ("model.md", "expressions.md"))

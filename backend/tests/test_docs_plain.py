@@ -12,7 +12,7 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.model.documents import DocumentPart
 from sequence_planner.model.plain_documents import PlainDocument, TransitionDocument, read_plain
 from sequence_planner.planning.plain import plan_transitions
-from sequence_planner.synthesis.enumeration import synthesise
+from sequence_planner.synthesis.supervision import synthesise
 
 TEXT = (Path(__file__).parents[2] / "docs" / "plain-automata.md").read_text(encoding="utf-8")
 

@@ -16,7 +16,8 @@ from sequence_planner.control.view import PlanStatus
 from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis.enumeration import enumerate_states, synthesise
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision, synthesise
 
 REPOSITORY = Path(__file__).parents[2]
 MODELS = REPOSITORY / "models"
@@ -70,15 +71,13 @@ def check(station: Path) -> tuple[int, str]:
 def assert_guards(station: Path, guards: list[Block]) -> None:
     """Wherever the station can come to, and the ability could start as written, it may where its guard shown holds."""
     automaton = prepare_station(station).automaton
-    found = enumerate_states(automaton)
-    reached = found.reachable(supervised=True)
+    supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
+    reached = supervision.reachable(supervised=True)
     for guard in guards:
-        shown = found.plant.where(resolve_predicate(parse(guard.content.strip()), Scope(automaton.types)))
-        start = found.starts[guard.label]
-        here = reached[start.source]
-        allowed = found.safe[start.target][here]
-        assert here.any(), f"{guard.label} never has a choice"
-        assert (allowed == shown[start.source][here]).all(), guard.label
+        shown = supervision.plant.where(resolve_predicate(parse(guard.content.strip()), Scope(automaton.types)))
+        allowed, disallowed = (reached & states for states in supervision.guard(guard.label))
+        assert (allowed | disallowed).satisfiable(), f"{guard.label} never has a choice"
+        assert allowed == (allowed | disallowed) & shown, guard.label
 
 
 def test_there_is_something_to_try() -> None:
@@ -162,11 +161,10 @@ def test_the_guard_of_the_first_robot_alone_goes_with_the_second(tmp_path: Path)
 
 
 def test_without_the_specification_both_robots_come_to_the_buffer(tmp_path: Path) -> None:
-    found = enumerate_states(prepare_station(station_after(4, tmp_path)).automaton)
-    plant = found.plant
-    scope = Scope(plant.automaton.types)
-    meeting = plant.where(resolve_predicate(parse("robot_1.at == buffer and robot_2.at == buffer"), scope))
-    assert (found.reachable(supervised=True) & meeting).any()
+    automaton = prepare_station(station_after(4, tmp_path)).automaton
+    supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
+    both = resolve_predicate(parse("robot_1.at == buffer and robot_2.at == buffer"), Scope(automaton.types))
+    assert (supervision.reachable(supervised=True) & supervision.plant.where(both)).satisfiable()
 
 
 def test_a_fault_without_a_way_out_forbids_the_beginning(tmp_path: Path) -> None:

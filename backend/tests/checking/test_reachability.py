@@ -14,7 +14,8 @@ from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.model.loading import load_station
-from sequence_planner.synthesis.enumeration import reachable_states
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision
 
 STATIONS = Path(__file__).parents[1] / "stations"
 
@@ -26,9 +27,9 @@ def predicate(automaton: Automaton, text: str) -> Expression:
 def test_what_is_reached_is_never_said_to_be_impossible() -> None:
     """For every pair of values of every two variables of the worked example."""
     automaton = ground(load_station(STATIONS / "worked_example"))
-    plant, reached = reachable_states(automaton, tuple(automaton.variables))
-    states = [plant.state(int(index)) for index in reached.nonzero()[0]]
-    full = [synchronise(automaton, {**automaton.initial_valuation, **state}) for state in states]
+    supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
+    members = supervision.plant.diagrams.exported(supervision.reachable(supervised=False)).members()
+    full = [synchronise(automaton, {**automaton.initial_valuation, **member}) for member in members]
     growth = Growth(automaton, any_measurement=False)
     texts = [f"bolts == {bolts}" for bolts in ("empty", "placed", "tightened")]
     texts += [f"robot.target_pose == {pose}" for pose in ("home", "above", "bolt_pair")]
@@ -43,12 +44,3 @@ def test_what_is_reached_is_never_said_to_be_impossible() -> None:
             else:
                 impossible += cannot_be(automaton, [both])
     assert impossible > 0
-
-
-def test_of_the_reachable_states_none_is_forbidden_and_all_allowed_ones_are_there() -> None:
-    """180 states are reachable without the specification (see the worked example), 24 of them forbidden."""
-    automaton = ground(load_station(STATIONS / "worked_example"))
-    plant, reached = reachable_states(automaton, tuple(automaton.variables))
-    (specification,) = automaton.specifications.values()
-    assert not (reached & plant.where(specification.forbidden)).any()
-    assert 148 <= int(reached.sum()) <= 180 - 24

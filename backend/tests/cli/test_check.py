@@ -5,10 +5,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-import pytest
-
 from cli.commands import CELL, EXAMPLE, TRUCK, as_json, command, plain
-from sequence_planner.synthesis import enumeration
 
 
 def test_a_fine_station() -> None:
@@ -55,13 +52,6 @@ def test_unusable_input_for_programs(tmp_path: Path) -> None:
         "column": 1,
         "message": "`nam` is not known here; did you mean `name`?",
     }
-
-
-def test_a_supervisor_that_is_not_computed_is_a_finding(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(enumeration, "MOST_STATES", 10)
-    code, document = as_json("check", TRUCK)
-    assert (code, document["summary"]["guarded_abilities"]) == (1, None)
-    assert [each["kind"] for each in document["findings"]] == ["supervisor-not-computed"]
 
 
 def test_a_plain_automaton(tmp_path: Path) -> None:

@@ -21,7 +21,7 @@ from sequence_planner.control.view import StationIdentity
 from sequence_planner.ros.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.ros.transport import QualityOfService, Sample
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.synthesis.enumeration import synthesise
+from sequence_planner.synthesis.supervision import synthesise
 
 CELL = Path(__file__).parents[1] / "stations" / "cell"
 STATE, COMMAND = "/arm/state", "/arm/command"

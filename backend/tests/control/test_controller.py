@@ -8,7 +8,6 @@ import time
 from collections.abc import Awaitable, Callable
 from typing import NoReturn
 
-import numpy as np
 import pytest
 
 from control.bench import COMMAND, COMMAND_TYPE, IDENTITY, Arm, Bench, bench, cell, until
@@ -273,7 +272,7 @@ def test_a_station_that_never_comes_to_rest_is_said_and_paced() -> None:
         {"blink": Does(start=(), finish="true", finally_=("on := false if on", "on := true if not on"))},
         estimated={"on": (BOOLEAN, False)},
     )
-    everything_is_safe = Supervisor(StateSet((), (), np.array(True)), {})
+    everything_is_safe = Supervisor(StateSet((), ()), {})
 
     async def scenario() -> None:
         registry = cell()[0].registry

@@ -14,7 +14,7 @@ from control.rig import truck_engine
 from core.building import automaton
 from sequence_planner.control.synthesis_process import synthesised
 from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.synthesis.enumeration import SynthesisError
+from sequence_planner.synthesis.supervision import SynthesisError
 
 
 def processes() -> list[BaseProcess]:
@@ -24,7 +24,7 @@ def processes() -> list[BaseProcess]:
 def test_it_is_that_of_the_synthesis() -> None:
     station, supervisor = cell()
     found = asyncio.run(synthesised(station.automaton))
-    assert (found.safe.names, found.safe.table.tolist()) == (supervisor.safe.names, supervisor.safe.table.tolist())
+    assert found == supervisor
 
 
 def test_that_there_is_none_is_said() -> None:

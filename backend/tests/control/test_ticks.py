@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import NoReturn
 
-import numpy as np
 import pytest
 
 from control.rig import PAIRS, Rig, never
@@ -16,7 +15,7 @@ from sequence_planner.control.view import PlanStatus, Production
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.planning.plan import Plan, PlanAnswer, PlanTick, Verdict
 
-EVERYTHING_IS_SAFE = Supervisor(StateSet((), (), np.array(True)), {})
+EVERYTHING_IS_SAFE = Supervisor(StateSet((), ()), {})
 NOW = Moment(1000.0, 10.0)
 
 LAMP = automaton(

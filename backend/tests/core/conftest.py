@@ -8,7 +8,8 @@ from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.model.loading import load_station
-from sequence_planner.synthesis.enumeration import Enumeration, enumerate_states, synthesise
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision, relevant, synthesise
 
 STATIONS = Path(__file__).parent.parent / "stations"
 
@@ -20,9 +21,9 @@ def worked_example() -> Automaton:
 
 
 @pytest.fixture(scope="session")
-def enumeration(worked_example: Automaton) -> Enumeration:
-    """All states of the worked example."""
-    return enumerate_states(worked_example)
+def supervision(worked_example: Automaton) -> Supervision:
+    """The safe states of the worked example."""
+    return Supervision(Plant(worked_example, relevant(worked_example)))
 
 
 @pytest.fixture(scope="session")

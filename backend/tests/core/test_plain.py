@@ -16,7 +16,9 @@ from sequence_planner.model.plain_documents import read_plain
 from sequence_planner.model.source import ModelError
 from sequence_planner.planning.plain import plan_transitions
 from sequence_planner.planning.plan import Verdict
-from sequence_planner.synthesis.enumeration import Enumeration, SynthesisError, enumerate_states, synthesise
+from sequence_planner.synthesis.diagrams import Function
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
 
 from .budget import examples
 from .choices import made_by
@@ -38,11 +40,6 @@ def meant(written: dict[str, Any]) -> tuple[ExplicitPlain, Automaton | None]:
     with pytest.raises(ModelError, match="there is nowhere to begin"):
         read(written)
     return explicit, None
-
-
-def index(explicit: ExplicitPlain, found: Enumeration, key: Key) -> int:
-    values = explicit.valuation(key)
-    return found.plant.index({name: values[name] for name in found.plant.names})
 
 
 @examples(200)
@@ -83,12 +80,21 @@ def test_safe_and_reachable_states_are_those_of_the_definition(written: dict[str
     explicit, automaton = meant(written)
     if automaton is None:
         return
-    found = enumerate_states(automaton)
+    supervision = Supervision(Plant(automaton, relevant(automaton)))
+    diagrams = supervision.plant.diagrams
+
+    def projected(key: Key) -> Key:
+        return tuple(explicit.valuation(key)[name] for name in diagrams.names)
+
+    def members(states: Function) -> set[Key]:
+        return {tuple(member.values()) for member in diagrams.exported(states, diagrams.names).members()}
+
+    safe = members(supervision.safe)
     for key in explicit.states:
-        assert bool(found.safe[index(explicit, found, key)]) == (key in explicit.safe)
+        assert (projected(key) in safe) == (key in explicit.safe)
     for supervised in (False, True):
-        expected = {index(explicit, found, key) for key in explicit.distances(explicit.initial, supervised)}
-        assert set(found.reachable(supervised).nonzero()[0].tolist()) == expected
+        reached = members(supervision.reachable(supervised))
+        assert reached == set(map(projected, explicit.distances(explicit.initial, supervised)))
     if explicit.initial <= explicit.safe:
         assert synthesise(automaton).safe.includes(automaton.initial_valuation)
     else:

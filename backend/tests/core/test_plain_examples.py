@@ -15,7 +15,8 @@ from sequence_planner.expressions.printing import print_expression
 from sequence_planner.model.plain_documents import read_plain
 from sequence_planner.planning.plain import plan_transitions
 from sequence_planner.planning.plan import Verdict
-from sequence_planner.synthesis.enumeration import SynthesisError, enumerate_states, synthesise
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
 
 Transition = dict[str, Any]
 
@@ -26,6 +27,10 @@ def event(name: str, guard: str, updates: dict[str, object], controllable: bool 
 
 def read(**entries: object) -> Automaton:
     return plain_automaton(read_plain(json.dumps({"name": "example", **entries}, indent=1), "example.efa.json"))
+
+
+def supervised(automaton: Automaton) -> Supervision:
+    return Supervision(Plant(automaton, relevant(automaton)))
 
 
 def two_users() -> Automaton:
@@ -87,7 +92,8 @@ def test_an_update_out_of_range_disables_its_transition() -> None:
         marked="n == 0",
         transitions=[event("up", "true", {"n": "n + 1"}), event("down", "true", {"n": "n - 1"}, False)],
     )
-    assert enumerate_states(counter).reachable(supervised=True).sum() == 4
+    supervision = supervised(counter)
+    assert supervision.plant.diagrams.count(supervision.reachable(supervised=True)) == 4
 
 
 def test_plans_are_sequences_of_events_in_which_the_environment_helps() -> None:
@@ -119,10 +125,9 @@ def test_a_goal_that_holds_needs_no_transition_and_outside_the_safe_set_nothing_
 def test_philosophers_never_each_hold_one_fork(number: int) -> None:
     """Then nobody could go on. All else stays possible: the supervisor removes exactly that state."""
     automaton = philosophers(number)
-    found = enumerate_states(automaton)
-    free, supervised = found.reachable(supervised=False), found.reachable(supervised=True)
-    [removed] = (free & ~supervised).nonzero()[0].tolist()
-    state = found.plant.state(removed)
+    found = supervised(automaton)
+    removed = found.reachable(supervised=False) & ~found.reachable(supervised=True)
+    [state] = found.plant.diagrams.exported(removed, automaton.variables).members()
     assert {state[f"p{i}"] for i in range(number)} == {"L"}
     assert plan_transitions(automaton, synthesise(automaton), "goal_1").events == ("left1", "right1")
 
@@ -138,7 +143,8 @@ def test_of_two_transitions_that_exclude_each_other_only_one_happens() -> None:
     )
     supervisor = synthesise(automaton)
     assert supervisor.safe.includes(automaton.initial_valuation)
-    assert enumerate_states(automaton).reachable(supervised=True).sum() == 3
+    found = supervised(automaton)
+    assert found.plant.diagrams.count(found.reachable(supervised=True)) == 3
     free = read(
         variables={"a": "bool", "b": "bool"},
         initial="not a and not b",
@@ -175,11 +181,18 @@ def test_initial_states_are_found_among_more_than_could_be_enumerated() -> None:
     assert holds(several.initial, several.initial_valuation)
 
 
-def test_what_has_too_many_states_to_enumerate_says_so() -> None:
+def test_many_states_are_no_obstacle() -> None:
     names = [f"x{i}" for i in range(60)]
-    automaton = read(variables=dict.fromkeys(names, "bool"), initial="true", forbidden=[" and ".join(names)])
-    with pytest.raises(SynthesisError, match="60 variables with 1152921504606846976 states together"):
-        synthesise(automaton)
+    transitions = [event(f"sets_{name}", f"not {name}", {name: True}) for name in names]
+    automaton = read(
+        variables=dict.fromkeys(names, "bool"),
+        initial=f"not ({' and '.join(names)})",
+        transitions=transitions,
+        forbidden=[" and ".join(names)],
+    )
+    found = supervised(automaton)
+    assert found.plant.diagrams.count(found.reachable(supervised=True)) == 2**60 - 1
+    assert set(synthesise(automaton).guards) == {f"sets_{name}" for name in names}
 
 
 @pytest.mark.parametrize("value", [4, "4", "n + 9", "n - 4", "m + 2"])

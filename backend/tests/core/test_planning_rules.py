@@ -11,7 +11,7 @@ from sequence_planner.planning.plan import PlanAnswer, PlanRequest, Verdict
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.relaxation import unreachable_goals
 from sequence_planner.planning.sweep import sweep_order
-from sequence_planner.synthesis.enumeration import synthesise
+from sequence_planner.synthesis.supervision import synthesise
 
 from .building import Does, automaton
 

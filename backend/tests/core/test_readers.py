@@ -1,17 +1,16 @@
-"""One language, three readers: evaluation is the reference for the planner's circuits and the supervisor's columns."""
+"""One language, three readers: evaluation is the reference for the planner's circuits and the supervisor's diagrams."""
 
 from __future__ import annotations
 
-import numpy as np
 from hypothesis import given
 from pysat.solvers import Solver
 
 from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import Assignment, Expression, Variable, variables
+from sequence_planner.expressions.syntax import Assignment, Expression, Variable
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 from sequence_planner.planning.circuit import Circuit
 from sequence_planner.planning.symbolic import Reading, Symbol
-from sequence_planner.synthesis.vectorised import Numbering
+from sequence_planner.synthesis.diagrams import Diagrams, Reader
 
 from .budget import examples
 from .choices import Choices, made_by
@@ -85,12 +84,9 @@ def a_predicate_and_states(choices: Choices) -> tuple[Expression, list[Values]]:
 
 @examples(400)
 @given(made_by(a_predicate_and_states))
-def test_columns_hold_what_evaluation_gives_for_each_state(given_: tuple[Expression, list[Values]]) -> None:
+def test_a_diagram_holds_where_evaluation_says_so(given_: tuple[Expression, list[Values]]) -> None:
     expression, states = given_
-    numbering = Numbering()
-    columns = {
-        name: np.array([numbering.number(value) for state in states if (value := state[name]) is not None], np.int32)
-        for name in dict.fromkeys(variables(expression))
-    }
-    found = numbering.mask((expression,), columns, len(states))
-    assert found.tolist() == [evaluate(expression, state) for state in states]
+    diagrams = Diagrams({variable.name: variable.type.domain for variable in SCOPE})
+    holds = Reader(diagrams, diagrams.values).predicate(expression)
+    for state in states:
+        assert (diagrams.states(state) & holds).satisfiable() == evaluate(expression, state)

@@ -21,7 +21,7 @@ from sequence_planner.expressions.types import BOOLEAN, EnumerationType
 from sequence_planner.planning.plan import Plan, PlanRequest, PlanTick
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.replay import Replay
-from sequence_planner.synthesis.enumeration import synthesise
+from sequence_planner.synthesis.supervision import synthesise
 
 from .breadth_first import shortest
 from .budget import examples

@@ -9,7 +9,9 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import initial_state, sense, start_guard_holds, synchronise
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType
-from sequence_planner.synthesis.enumeration import SynthesisError, enumerate_states, synthesise
+from sequence_planner.synthesis.diagrams import Function
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
 
 from .budget import examples
 from .building import Does, automaton
@@ -29,17 +31,24 @@ def any_station(choices: Choices) -> Automaton:
 @given(made_by(any_station))
 def test_safe_and_reachable_states_are_those_of_the_definition(station: Automaton) -> None:
     """Over the variables that matter, they are the projections of those over all variables."""
-    explicit, found = Explicit(station), enumerate_states(station)
+    explicit = Explicit(station)
+    supervision = Supervision(Plant(station, relevant(station)))
+    diagrams = supervision.plant.diagrams
 
-    def index(key: Key) -> int:
+    def projected(key: Key) -> Key:
         values = dict(zip(station.variables, key, strict=True))
-        return found.plant.index({name: values[name] for name in found.plant.names})
+        return tuple(values[name] for name in diagrams.names)
 
+    def members(states: Function) -> set[Key]:
+        return {tuple(member.values()) for member in diagrams.exported(states, diagrams.names).members()}
+
+    safe = members(supervision.safe)
     for key in explicit.states:
-        assert bool(found.safe[index(key)]) == (key in explicit.safe)
+        assert (projected(key) in safe) == (key in explicit.safe)
     for supervised in (False, True):
-        expected = {index(key) for key in explicit.reachable(supervised)}
-        assert set(found.reachable(supervised).nonzero()[0].tolist()) == expected
+        reached = supervision.reachable(supervised)
+        assert members(reached) == set(map(projected, explicit.reachable(supervised)))
+        assert diagrams.count(reached) == len(members(reached))
 
 
 @examples(200)
@@ -114,7 +123,7 @@ def test_without_a_way_to_rest_there_is_no_supervisor_and_faults_and_restart_abi
             rest="there",
         )
 
-    assert synthesise(station(restart=False, faults=())).safe.table.all()
+    assert synthesise(station(restart=False, faults=())).safe.everything
     for without in (station(restart=True, faults=()), station(restart=False, faults=("arrives",))):
         with pytest.raises(SynthesisError, match="rest"):
             synthesise(without)

@@ -20,7 +20,7 @@ from sequence_planner.automaton.tick import (
     writes,
 )
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange
-from sequence_planner.synthesis.enumeration import synthesise
+from sequence_planner.synthesis.supervision import synthesise
 
 from .building import Does, automaton
 

@@ -22,7 +22,8 @@ from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.planning.plan import Plan, PlanRequest, Verdict
 from sequence_planner.planning.planner import Planner
-from sequence_planner.synthesis.enumeration import Enumeration
+from sequence_planner.synthesis.diagrams import Function
+from sequence_planner.synthesis.supervision import Supervision
 
 from .explicit import Explicit
 
@@ -34,16 +35,13 @@ def predicate(automaton: Automaton, text: str) -> Expression:
     return resolve_predicate(parse(text), Scope(automaton.types))
 
 
-def supervised_states(automaton: Automaton, enumeration: Enumeration) -> list[State]:
-    """The states that the station can reach under its supervisor."""
-    indices = enumeration.reachable(supervised=True).nonzero()[0].tolist()
-    blank = automaton.initial_valuation
-    return [synchronise(automaton, {**blank, **enumeration.plant.state(index)}) for index in indices]
-
-
 @pytest.fixture(scope="module")
-def reached(worked_example: Automaton, enumeration: Enumeration) -> list[State]:
-    return supervised_states(worked_example, enumeration)
+def reached(worked_example: Automaton, supervision: Supervision) -> list[State]:
+    """The states that the station can reach under its supervisor."""
+    diagrams = supervision.plant.diagrams
+    members = diagrams.exported(supervision.reachable(supervised=True), worked_example.variables).members()
+    blank = worked_example.initial_valuation
+    return [synchronise(worked_example, {**blank, **member}) for member in members]
 
 
 @pytest.fixture(scope="module")
@@ -84,15 +82,20 @@ def test_the_initial_state(worked_example: Automaton) -> None:
 
 
 def test_180_states_are_reachable_without_the_specification_and_24_of_them_are_forbidden(
-    enumeration: Enumeration,
+    supervision: Supervision,
 ) -> None:
-    reachable = enumeration.reachable(supervised=False)
-    assert int(reachable.sum()) == 180
-    assert int((reachable & enumeration.forbidden).sum()) == 24
+    reached = supervision.reachable(supervised=False)
+    assert count(supervision, reached) == 180
+    (forbidden,) = supervision.forbidden.values()
+    assert count(supervision, reached & forbidden) == 24
 
 
-def test_148_states_are_reachable_with_the_supervisor(enumeration: Enumeration) -> None:
-    assert int(enumeration.reachable(supervised=True).sum()) == 148
+def test_148_states_are_reachable_with_the_supervisor(supervision: Supervision) -> None:
+    assert count(supervision, supervision.reachable(supervised=True)) == 148
+
+
+def count(supervision: Supervision, states: Function) -> int:
+    return supervision.plant.diagrams.count(states)
 
 
 def test_the_plain_enumeration_of_the_definition_gives_the_same_figures(worked_example: Automaton) -> None:

@@ -1,69 +1,189 @@
-"""A set of states as a table over the few variables it depends on.
+"""A set of states as a decision diagram over the variables it depends on, and the supervisor made of such sets.
 
-This is how a supervisor is handed on: the controller looks states up in it, the planner turns it into clauses.
+This is how a supervisor is handed on: the controller looks states up in it, the planner turns it into clauses. It is
+plain data, so that it goes from process to process and into files.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
+from functools import cached_property
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.types import Value
 
-Table = NDArray[np.bool_]
+# References to nodes: the two sets that test no variable, and then the nodes in their order.
+NOTHING, EVERYTHING = 0, 1
+_FIRST = 2
+
+Node = tuple[int, tuple[int, ...]]  # the position of the variable in `names`; a reference for each value of its domain
 
 
 @dataclass(frozen=True)
 class StateSet:
-    """`table` has one axis for each of `names`, in that order; an axis is indexed by the position in the domain."""
+    """`nodes` is a reduced, ordered decision diagram with a branch for each value of a variable (Kam et al. 1998).
+
+    Every way from `root` tests variables in the order of `names`, and a node comes after those it refers to. Two equal
+    sets over the same names, in the same order, have equal diagrams.
+    """
 
     names: tuple[str, ...]
     domains: tuple[tuple[Value, ...], ...]
-    table: Table
+    nodes: tuple[Node, ...] = ()
+    root: int = EVERYTHING
 
     def includes(self, state: State) -> bool:
         """Whether the set holds `state` for every value that its unknown variables could have."""
-        index: list[Any] = []
-        for name, domain in zip(self.names, self.domains, strict=True):
-            value = state[name]
-            index.append(slice(None) if value is None else domain.index(value))
-        return bool(np.all(self.table[tuple(index)]))
+        pending = [self.root]
+        seen: set[int] = set()
+        while pending:
+            reference = pending.pop()
+            if reference == NOTHING:
+                return False
+            if reference == EVERYTHING or reference in seen:
+                continue
+            seen.add(reference)
+            axis, children = self.nodes[reference - _FIRST]
+            value = state[self.names[axis]]
+            if value is None:
+                pending.extend(children)
+            else:
+                pending.append(children[self._positions[axis][value]])
+        return True
 
     def for_all(self, unknown: frozenset[str]) -> StateSet:
         """The set over the other variables of what is included for every value of `unknown`."""
-        axes = tuple(axis for axis, name in enumerate(self.names) if name in unknown)
-        kept = [axis for axis in range(len(self.names)) if axis not in axes]
-        return StateSet(
-            tuple(self.names[axis] for axis in kept),
-            tuple(self.domains[axis] for axis in kept),
-            np.asarray(self.table.all(axis=axes)),
-        )
+        kept = [axis for axis, name in enumerate(self.names) if name not in unknown]
+        number = {axis: position for position, axis in enumerate(kept)}
+        builder = Builder()
+        memo: dict[frozenset[int], int] = {}
 
-    def reduced(self, care: Table) -> StateSet:
-        """A set over fewer variables that agrees with this one wherever `care` is true.
+        def all_of(references: frozenset[int]) -> int:
+            """The intersection of several sets, without the unknown variables."""
+            references -= {EVERYTHING}
+            if not references:
+                return EVERYTHING
+            if NOTHING in references:
+                return NOTHING
+            if references not in memo:
+                axis = min(self.nodes[reference - _FIRST][0] for reference in references)
+                branches = [
+                    frozenset(self._branch(reference, axis, position) for reference in references)
+                    for position in range(len(self.domains[axis]))
+                ]
+                if axis in number:
+                    memo[references] = builder.node(number[axis], tuple(map(all_of, branches)))
+                else:
+                    memo[references] = all_of(frozenset().union(*branches))
+            return memo[references]
 
-        Variables are dropped greedily, the last declared first, as long as no two states that matter come to differ.
+        root = all_of(frozenset({self.root}))
+        names = tuple(self.names[axis] for axis in kept)
+        return builder.built(names, tuple(self.domains[axis] for axis in kept), root)
+
+    def nearest(self, state: State) -> dict[str, Value] | None:
+        """The values of a member that differ from `state`, in as few variables as possible; None if there is no member.
+
+        An unknown variable differs from no value.
         """
-        yes, no = self.table & care, ~self.table & care
-        names, domains = list(self.names), list(self.domains)
-        for axis in reversed(range(len(names))):
-            some_yes, some_no = yes.any(axis=axis), no.any(axis=axis)
-            if not (some_yes & some_no).any():
-                yes, no = np.asarray(some_yes), np.asarray(some_no)
-                del names[axis], domains[axis]
-        return StateSet(tuple(names), tuple(domains), np.asarray(~no))
+        if self.root == NOTHING:
+            return None
+        costs: list[float] = [float("inf"), 0]
+        best: list[int] = [0, 0]
+        for axis, children in self.nodes:
+            value = state[self.names[axis]]
+            priced = [
+                costs[child] + (value is not None and value != other)
+                for child, other in zip(children, self.domains[axis], strict=True)
+            ]
+            costs.append(min(priced))
+            best.append(priced.index(costs[-1]))
+        changes: dict[str, Value] = {}
+        reference = self.root
+        while reference >= _FIRST:
+            axis, children = self.nodes[reference - _FIRST]
+            other = self.domains[axis][best[reference]]
+            if state[self.names[axis]] not in (None, other):
+                changes[self.names[axis]] = other
+            reference = children[best[reference]]
+        return changes
 
-    def members(self) -> list[Mapping[str, Value]]:
+    def members(self) -> Iterator[Mapping[str, Value]]:
         """Every state of the set, over its own variables."""
-        return [
-            {name: domain[i] for name, domain, i in zip(self.names, self.domains, index, strict=True)}
-            for index in np.argwhere(self.table).tolist()
-        ]
+
+        def completed(axis: int, reference: int) -> Iterator[tuple[Value, ...]]:
+            if reference == NOTHING:
+                return
+            if axis == len(self.names):
+                yield ()
+                return
+            for position, value in enumerate(self.domains[axis]):
+                for rest in completed(axis + 1, self._branch(reference, axis, position)):
+                    yield (value, *rest)
+
+        return (dict(zip(self.names, values, strict=True)) for values in completed(0, self.root))
+
+    @property
+    def count(self) -> int:
+        """How many states it has, over its own variables."""
+        size = [1]  # of the domains from each variable on
+        for domain in reversed(self.domains):
+            size.append(size[-1] * len(domain))
+        size.reverse()
+        axes = [len(self.names), len(self.names), *(axis for axis, _ in self.nodes)]
+        counts = [0, 1]
+        for axis, children in self.nodes:
+            counts.append(sum(counts[child] * size[axis + 1] // size[axes[child]] for child in children))
+        return counts[self.root] * size[0] // size[axes[self.root]]
+
+    @property
+    def everything(self) -> bool:
+        """Whether it is the set of all states."""
+        return self.root == EVERYTHING
+
+    def _branch(self, reference: int, axis: int, position: int) -> int:
+        """The set of `reference` where the variable at `axis`, none later than the next tested, has that value."""
+        if reference < _FIRST or self.nodes[reference - _FIRST][0] != axis:
+            return reference
+        return self.nodes[reference - _FIRST][1][position]
+
+    @cached_property
+    def _positions(self) -> tuple[dict[Value, int], ...]:
+        return tuple({value: position for position, value in enumerate(domain)} for domain in self.domains)
+
+
+class Builder:
+    """Makes the nodes of a set, from the last variable to the first; equal ones are one."""
+
+    def __init__(self) -> None:
+        self._references: dict[Node, int] = {}
+
+    def node(self, axis: int, children: tuple[int, ...]) -> int:
+        """The reference to what tests the variable at `axis`, and goes on in `children`."""
+        if len(set(children)) == 1:
+            return children[0]
+        return self._references.setdefault((axis, children), len(self._references) + _FIRST)
+
+    def built(self, names: tuple[str, ...], domains: tuple[tuple[Value, ...], ...], root: int) -> StateSet:
+        """The set that begins at `root`, with the nodes that it needs and no others."""
+        nodes = list(self._references)
+        number = {NOTHING: NOTHING, EVERYTHING: EVERYTHING}
+        kept: list[Node] = []
+        pending = [root]
+        while pending:
+            reference = pending[-1]
+            if reference in number:
+                pending.pop()
+                continue
+            axis, children = nodes[reference - _FIRST]
+            if missing := [child for child in dict.fromkeys(children) if child not in number]:
+                pending.extend(reversed(missing))
+                continue
+            number[reference] = len(kept) + _FIRST
+            kept.append((axis, tuple(number[child] for child in children)))
+            pending.pop()
+        return StateSet(names, domains, tuple(kept), number[root])
 
 
 @dataclass(frozen=True)

@@ -20,7 +20,7 @@ from sequence_planner.checking.satisfiability import Question, can_be_asked
 from sequence_planner.checking.warning import ModelWarning, described, place
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import Assignment, Constant, Variable, variables
-from sequence_planner.synthesis.enumeration import reachable_states
+from sequence_planner.synthesis.conflicts import conflicting_finishes
 
 MOST_STEPS = 1_000_000  # states times sets of effects, to enumerate
 MOST_REPORTED = 3  # pairs for each variable
@@ -108,8 +108,7 @@ def _confirmed(
     if prod(len(automaton.variables[name].type.domain) for name in cone) * 2**effects > MOST_STEPS:
         how, seen = "might meet (there are too many states to say whether such a one can be reached)", witness
     else:
-        plant, reached = reachable_states(automaton, cone)
-        found = plant.conflicting_finishes(one, other, variable, reached)
+        found = conflicting_finishes(automaton, cone, (one.name, other.name), variable)
         if found is None:
             return None
         how, seen = "meet in a reachable state", found

@@ -15,7 +15,7 @@ from sequence_planner.cli.loading import Model, load_model
 from sequence_planner.cli.options import FINDINGS, UNUSABLE, AnyModel, AsJson, print_json
 from sequence_planner.collection import collection_put_off
 from sequence_planner.model.source import ModelError, Place
-from sequence_planner.synthesis.enumeration import SynthesisError, TooManyStatesError, synthesise
+from sequence_planner.synthesis.supervision import SynthesisError, synthesise
 
 
 @dataclass(frozen=True)
@@ -60,8 +60,6 @@ def checked_model(path: Path, model: Model) -> Checked:
     supervisor = None
     try:
         supervisor = synthesise(model.automaton)
-    except TooManyStatesError as error:
-        warnings.append(ModelWarning(_specifications(path), "supervisor-not-computed", str(error)))
     except SynthesisError as error:
         warnings.append(ModelWarning(_specifications(path), "specification-cannot-be-met", str(error)))
     return Checked(model, warnings, supervisor)

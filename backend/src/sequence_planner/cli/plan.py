@@ -18,7 +18,7 @@ from sequence_planner.planning.plain import PlainAnswer, plan_transitions
 from sequence_planner.planning.plan import PlanAnswer, PlanRequest, Verdict
 from sequence_planner.planning.planner import Planner
 from sequence_planner.station import require_runnable
-from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
+from sequence_planner.synthesis.supervision import SynthesisError, synthesise
 
 Goals = Annotated[
     list[str] | None,

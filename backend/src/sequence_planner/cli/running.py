@@ -26,7 +26,7 @@ from sequence_planner.ros.exclusivity import DISCOVERY
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import QualityOfService, Transport, TransportError
 from sequence_planner.station import ReadyStation, prepare_station, require_runnable
-from sequence_planner.synthesis.enumeration import SynthesisError
+from sequence_planner.synthesis.supervision import SynthesisError
 from sequence_planner.web.settings import Settings, SettingsError
 
 TransportOption = Annotated[

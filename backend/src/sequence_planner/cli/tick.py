@@ -21,7 +21,7 @@ from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.resolution import Scope, resolve_assignment, suggestion
 from sequence_planner.expressions.syntax import ExpressionError
 from sequence_planner.expressions.types import Value, contains
-from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
+from sequence_planner.synthesis.supervision import SynthesisError, synthesise
 
 T = TypeVar("T")
 Sets = Annotated[

@@ -116,7 +116,7 @@ async def _prepared(running: Running) -> Supervisor:
         raise failed.exceptions[0] from None
     supervisor = synthesis.result()
     seconds = round(time.monotonic() - began, 2)
-    LOG.info("safe states computed", seconds=seconds, states=int(supervisor.safe.table.sum()))
+    LOG.info("safe states computed", seconds=seconds, states=supervisor.safe.count)
     return supervisor
 
 

@@ -13,7 +13,7 @@ from multiprocessing.connection import Connection
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.lifeline import end_without_parent
-from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
+from sequence_planner.synthesis.supervision import SynthesisError, synthesise
 
 
 async def synthesised(automaton: Automaton) -> Supervisor:

@@ -11,7 +11,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass
 from itertools import product
 
-from sequence_planner.automaton.state_set import StateSet, Table
+from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.expressions.evaluation import RELATIONS
 from sequence_planner.expressions.syntax import (
     And,
@@ -123,27 +123,16 @@ class Reading:
 
     def member(self, states: StateSet, state: SymbolicState) -> int:
         """The literal that is true when `state` is in `states`, none of whose variables is unknown."""
-        memo: dict[tuple[int, bytes], int] = {}
-
-        def gate(axis: int, table: Table) -> int:
-            if table.all():
-                return Circuit.TRUE
-            if not table.any():
-                return Circuit.FALSE
-            key = (axis, table.tobytes())
-            if key not in memo:
-                symbol = state[states.names[axis]]
-                branches = [gate(axis + 1, table[i]) for i in range(len(states.domains[axis]))]
-                if len(set(branches)) == 1:
-                    memo[key] = branches[0]
-                else:
-                    pairs = zip(states.domains[axis], branches, strict=True)
-                    memo[key] = self._circuit.disjunction(
-                        self._circuit.conjunction((symbol.literal(value), branch)) for value, branch in pairs
-                    )
-            return memo[key]
-
-        return gate(0, states.table)
+        literals = [Circuit.FALSE, Circuit.TRUE]
+        for axis, children in states.nodes:
+            symbol = state[states.names[axis]]
+            pairs = zip(states.domains[axis], children, strict=True)
+            literals.append(
+                self._circuit.disjunction(
+                    self._circuit.conjunction((symbol.literal(value), literals[child])) for value, child in pairs
+                )
+            )
+        return literals[states.root]
 
     def _all(self, truths: list[Truth]) -> Truth:
         yes = self._circuit.conjunction(truth.yes for truth in truths)

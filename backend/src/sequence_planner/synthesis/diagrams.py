@@ -1,0 +1,303 @@
+"""Sets of states as binary decision diagrams (Bryant 1986), and expressions over them.
+
+A variable is a group of bits that number the values of its domain, most significant first. Beside the bits of its value
+now it can have bits for its value afterwards. Bits that number no value are kept out by whoever makes a set: `valid`
+says which states exist, and is not part of any guard, which would spread it over all levels.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from functools import cached_property
+from itertools import product
+
+from oxidd.bcdd import BCDDFunction, BCDDManager
+
+from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, Builder, StateSet
+from sequence_planner.automaton.structure import State
+from sequence_planner.expressions.evaluation import RELATIONS
+from sequence_planner.expressions.syntax import (
+    And,
+    Arithmetic,
+    Comparison,
+    Constant,
+    Expression,
+    Implies,
+    Membership,
+    Not,
+    Or,
+    Variable,
+)
+from sequence_planner.expressions.types import Value
+
+Function = BCDDFunction
+Values = Mapping[Value, Function]  # for each value, where it is the one
+Lookup = Callable[[str], Values]
+
+# Room for nodes and for results already computed; memory is taken as they are filled.
+_MOST_NODES = 1 << 25
+_CACHE = 1 << 20
+
+
+class Diagrams:
+    """The bits of `domains`, in the order given; those of `afterwards` have bits for a value afterwards as well."""
+
+    def __init__(self, domains: Mapping[str, Sequence[Value]], afterwards: Collection[str] = ()) -> None:
+        self.domains = {name: tuple(domain) for name, domain in domains.items()}
+        self.names = tuple(self.domains)
+        self._manager = BCDDManager(_MOST_NODES, _CACHE, 1)
+        self.bits: dict[str, tuple[int, ...]] = {}
+        self.bits_after: dict[str, tuple[int, ...]] = {}
+        self.marks: dict[str, int] = {}
+        self._name_of: dict[int, str] = {}
+        count = 0
+        for name, domain in self.domains.items():
+            width = (len(domain) - 1).bit_length()
+            step = 2 if name in afterwards else 1
+            first = count + (step - 1)
+            self.bits[name] = tuple(range(first, first + step * width, step))
+            if name in afterwards:
+                self.marks[name] = count
+                self.bits_after[name] = tuple(bit + 1 for bit in self.bits[name])
+            count = first + step * width
+            self._name_of |= dict.fromkeys(self.bits[name], name)
+        self._manager.add_vars(count)
+        self._count = count
+        self._values: dict[tuple[str, bool], Values] = {}
+
+    @property
+    def true(self) -> Function:
+        """Every state."""
+        return self._manager.true()
+
+    @property
+    def false(self) -> Function:
+        """No state."""
+        return self._manager.false()
+
+    @property
+    def nodes(self) -> int:
+        """How many nodes there are now."""
+        return self._manager.approx_num_inner_nodes()
+
+    def bit(self, number: int) -> Function:
+        """Where a bit is set."""
+        return self._manager.var(number)
+
+    def values(self, name: str) -> Values:
+        """Where the variable has each of its values."""
+        return self._numbered(name, after=False)
+
+    def values_after(self, name: str) -> Values:
+        """The same of its value afterwards."""
+        return self._numbered(name, after=True)
+
+    def _numbered(self, name: str, after: bool) -> Values:
+        if (name, after) not in self._values:
+            bits = (self.bits_after if after else self.bits)[name]
+            self._values[name, after] = {
+                value: self.conjunction(
+                    self._manager.var(bit) if self.digit(bits, bit, position) else self._manager.not_var(bit)
+                    for bit in bits
+                )
+                for position, value in enumerate(self.domains[name])
+            }
+        return self._values[name, after]
+
+    @staticmethod
+    def digit(bits: Sequence[int], bit: int, position: int) -> bool:
+        """Whether `bit` of `bits` is set in the number `position`."""
+        return bool(position >> (len(bits) - 1 - bits.index(bit)) & 1)
+
+    def conjunction(self, functions: Iterable[Function]) -> Function:
+        """Where all of them hold."""
+        together = self.true
+        for function in functions:
+            together &= function
+        return together
+
+    def disjunction(self, functions: Iterable[Function]) -> Function:
+        """Where one of them holds."""
+        together = self.false
+        for function in functions:
+            together |= function
+        return together
+
+    def cube(self, bits: Iterable[int]) -> Function:
+        """The set of bits, as quantification wants it."""
+        return self.conjunction(map(self._manager.var, sorted(bits, reverse=True)))
+
+    def bits_of(self, names: Iterable[str]) -> Function:
+        """The bits of these variables."""
+        return self.cube(bit for name in names for bit in self.bits[name])
+
+    def exists(self, function: Function, names: Iterable[str]) -> Function:
+        """Where `function` holds for some values of these variables."""
+        quantified = self.bits_of(names)
+        return function.exists(quantified) if quantified != self.true else function
+
+    @cached_property
+    def valid(self) -> Function:
+        """Where every variable has one of its values."""
+        return self.valid_of(reversed(self.names))
+
+    def valid_of(self, names: Iterable[str]) -> Function:
+        """Where these have one of their values."""
+        return self.conjunction(self.disjunction(self.values(name).values()) for name in names)
+
+    def count(self, states: Function) -> int:
+        """The exact number of states, of which all must be valid."""
+        held = sum(map(len, self.bits.values()))
+        return states.sat_count(self._count) >> (self._count - held)
+
+    def states(self, state: State) -> Function:
+        """The states that agree with `state`; what is unknown can have any value."""
+        known = ((name, value) for name in reversed(self.names) if (value := state[name]) is not None)
+        return self.conjunction(self.values(name)[value] for name, value in known) & self.valid
+
+    def pick(self, states: Function) -> dict[str, Value] | None:
+        """One of the states; None if there is none."""
+        cube = (states & self.valid).pick_cube()
+        return None if cube is None else self._read(cube, self.bits)
+
+    def pick_step(self, steps: Function) -> tuple[dict[str, Value], dict[str, Value]] | None:
+        """One of the steps: a state, and the values afterwards of what has bits for them; None if there is none.
+
+        What `steps` leaves open afterwards must have a value of its own already.
+        """
+        cube = (steps & self.valid).pick_cube()
+        return None if cube is None else (self._read(cube, self.bits), self._read(cube, self.bits_after))
+
+    def _read(self, cube: Sequence[bool | None], numbers: Mapping[str, Sequence[int]]) -> dict[str, Value]:
+        found: dict[str, Value] = {}
+        for name, bits in numbers.items():
+            position = 0
+            for bit in bits:
+                position = 2 * position + (cube[bit] is True)
+            found[name] = self.domains[name][position]
+        return found
+
+    def support(self, function: Function) -> frozenset[str]:
+        """The variables that `function`, which is about values now only, depends on."""
+        return frozenset(self._name_of[bit] for bit in self.support_bits(function))
+
+    def support_bits(self, function: Function) -> frozenset[int]:
+        """The bits that `function` depends on."""
+        found: set[int] = set()
+        seen: set[Function] = set()
+        pending = [function]
+        while pending:
+            node = pending.pop()
+            if node in seen or (cofactors := node.cofactors()) is None:
+                continue
+            seen.add(node)
+            bit = node.node_var()
+            assert bit is not None
+            found.add(bit)
+            pending.extend(cofactors)
+        return frozenset(found)
+
+    def top(self, functions: Iterable[Function], bits: Iterable[int] = ()) -> int:
+        """The first level that any of `functions` or `bits` stands on; the number of levels if there is none."""
+        levels = [level for function in functions if (level := function.node_level()) is not None]
+        return min([*levels, *bits, self._count])
+
+    # Sets of states for others, and from them.
+
+    def exported(self, states: Function, names: Iterable[str] | None = None) -> StateSet:
+        """The set over `names`, or else over what it depends on; in the order of the bits."""
+        wanted = set(self.support(states) if names is None else names)
+        over = tuple(name for name in self.names if name in wanted)
+        axis = {name: position for position, name in enumerate(over)}
+        builder = Builder()
+        memo: dict[Function, int] = {}
+
+        def reference(node: Function) -> int:
+            bit = node.node_var()
+            if bit is None:
+                return EVERYTHING if node.valid() else NOTHING
+            if node not in memo:
+                name = self._name_of[bit]
+                children = tuple(
+                    reference(self._branch(node, self.bits[name], position))
+                    for position in range(len(self.domains[name]))
+                )
+                memo[node] = builder.node(axis[name], children)
+            return memo[node]
+
+        return builder.built(over, tuple(self.domains[name] for name in over), reference(states))
+
+    def imported(self, states: StateSet) -> Function:
+        """The set that `states` says, all of whose variables are among these; not only of valid states."""
+        functions = [self.false, self.true]
+        for axis, children in states.nodes:
+            values = self.values(states.names[axis])
+            pairs = zip(states.domains[axis], children, strict=True)
+            functions.append(self.disjunction(values[value] & functions[child] for value, child in pairs))
+        return functions[states.root]
+
+    def _branch(self, node: Function, bits: Sequence[int], position: int) -> Function:
+        for bit in bits:
+            if node.node_var() == bit:
+                cofactors = node.cofactors()
+                assert cofactors is not None
+                node = cofactors[0] if self.digit(bits, bit, position) else cofactors[1]
+        return node
+
+
+class Reader:
+    """Reads resolved expressions; `lookup` says where each variable or flag has which value."""
+
+    def __init__(self, diagrams: Diagrams, lookup: Lookup) -> None:
+        self._diagrams = diagrams
+        self.lookup = lookup
+
+    def predicate(self, expression: Expression) -> Function:
+        """Where a predicate holds."""
+        diagrams = self._diagrams
+        match expression:
+            case Constant(value):
+                return diagrams.true if value else diagrams.false
+            case Variable(name):
+                return self.lookup(name).get(True, diagrams.false)
+            case Not(operand):
+                return ~self.predicate(operand)
+            case And(operands):
+                return diagrams.conjunction(map(self.predicate, operands))
+            case Or(operands):
+                return diagrams.disjunction(map(self.predicate, operands))
+            case Implies(left, right):
+                return self.predicate(left).imp(self.predicate(right))
+            case Comparison(relation, left, right):
+                return self._compared(RELATIONS[relation], self.values(left), self.values(right))
+            case Membership(left, options):
+                subject = self.values(left)
+                return diagrams.disjunction(
+                    self._compared(RELATIONS["=="], subject, self.values(option)) for option in options
+                )
+            case _:
+                raise TypeError(f"{expression} is no predicate of a state")
+
+    def values(self, expression: Expression) -> Values:
+        """Where an expression has each of the values that it can have."""
+        match expression:
+            case Constant(value):
+                return {value: self._diagrams.true}
+            case Variable(name):
+                return self.lookup(name)
+            case Arithmetic(sign, left, right):
+                totals: dict[Value, Function] = {}
+                for (a, where), (b, and_where) in product(self.values(left).items(), self.values(right).items()):
+                    total = int(a) + int(b) if sign == "+" else int(a) - int(b)
+                    totals[total] = totals.get(total, self._diagrams.false) | (where & and_where)
+                return totals
+            case _:
+                holds = self.predicate(expression)
+                return {True: holds, False: ~holds}
+
+    def _compared(self, holds: Callable[[Value, Value], bool], left: Values, right: Values) -> Function:
+        return self._diagrams.disjunction(
+            where & and_where
+            for (one, where), (other, and_where) in product(left.items(), right.items())
+            if holds(one, other)
+        )

@@ -1,0 +1,125 @@
+"""The safe set by fixpoints on decision diagrams, and the supervisor that it makes.
+
+The safe set is the greatest set without forbidden states that nothing uncontrollable leaves, and from each state of
+which a state of rest can be reached inside it, without faults and without restart abilities.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sequence_planner.automaton.cone import cone_of_influence
+from sequence_planner.automaton.state_set import StateSet, Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.expressions.syntax import TRUE, Expression, conjuncts, variables
+from sequence_planner.synthesis.diagrams import Function
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.saturation import reachable, reaching
+from sequence_planner.synthesis.steps import Step
+
+
+class SynthesisError(Exception):
+    """There is no supervisor; the text says why and what to do."""
+
+
+class Supervision:
+    """The safe states of a plant, with and without which it is asked what can be reached."""
+
+    def __init__(self, plant: Plant) -> None:
+        self.plant = plant
+        self.forbidden = {
+            specification.name: plant.where(specification.forbidden)
+            for specification in plant.automaton.specifications.values()
+            if plant.says((specification.forbidden,))
+        }
+        self.safe = self._greatest_safe()
+
+    @property
+    def possible(self) -> bool:
+        """Whether there is a supervisor: all initial states are safe."""
+        return self.plant.initial & self.safe == self.plant.initial
+
+    def reachable(self, supervised: bool) -> Function:
+        """The states that the initial ones lead to, with or without the supervisor."""
+        plant = self.plant
+        starts = [step for steps in plant.starts.values() for step in steps]
+        if not supervised:
+            return reachable(plant.diagrams, plant.initial, [*plant.uncontrollable, *starts])
+        reached, before = plant.initial, None
+        while reached != before:
+            before = reached
+            # From outside the safe states nothing is started; inside, nothing leads out of them.
+            reached = reachable(plant.diagrams, reached, plant.uncontrollable)
+            reached |= reachable(plant.diagrams, reached & self.safe, [*plant.uncontrollable, *starts], self.safe)
+        return reached
+
+    def guard(self, name: str) -> tuple[Function, Function]:
+        """The safe states in which the start `name` may be taken, and those in which only the supervisor forbids it."""
+        allowed = disallowed = self.plant.diagrams.false
+        for step in self.plant.starts[name]:
+            allowed |= step.before(self.safe)
+            disallowed |= step.before(self.plant.diagrams.valid & ~self.safe)
+        return allowed & self.safe, disallowed & self.safe
+
+    def _greatest_safe(self) -> Function:
+        plant, diagrams = self.plant, self.plant.diagrams
+        safe = diagrams.valid & ~diagrams.disjunction(self.forbidden.values())
+        starts = [step for steps in plant.starts.values() for step in steps]
+        helpful: Sequence[Step] = [*plant.helpful, *starts]
+        while True:
+            unsafe = reaching(diagrams, diagrams.valid & ~safe, plant.uncontrollable)
+            inside = diagrams.valid & ~unsafe
+            after = reaching(diagrams, plant.rest & inside, helpful, inside)
+            if after == safe:
+                return safe
+            safe = after
+
+
+def synthesise(automaton: Automaton) -> Supervisor:
+    """The maximally permissive supervisor of `automaton`. Raises `SynthesisError` if there is none."""
+    supervision = Supervision(Plant(automaton, relevant(automaton)))
+    if not supervision.possible:
+        raise SynthesisError("the specifications cannot be met")
+    return supervisor(supervision)
+
+
+def supervisor(supervision: Supervision) -> Supervisor:
+    """What is handed on: the safe set, and for each ability where it allows its start."""
+    diagrams = supervision.plant.diagrams
+    guards: dict[str, StateSet] = {}
+    for name in supervision.plant.starts:
+        allowed, disallowed = supervision.guard(name)
+        if disallowed.satisfiable():
+            guards[name] = diagrams.exported(separated(supervision.plant, allowed, disallowed))
+    return Supervisor(diagrams.exported(supervision.safe), guards)
+
+
+def separated(plant: Plant, yes: Function, no: Function) -> Function:
+    """A set over few variables that has all of `yes`, and nothing of `no`, which is apart from it.
+
+    Variables are left out greedily, the last declared first.
+    """
+    diagrams = plant.diagrams
+    needed = diagrams.support(yes) | diagrams.support(no)
+    for name in reversed(list(plant.automaton.variables)):
+        if name in needed:
+            some_yes, some_no = diagrams.exists(yes, (name,)), diagrams.exists(no, (name,))
+            if not (some_yes & some_no).satisfiable():
+                yes, no = some_yes, some_no
+    return min(yes, diagrams.valid_of(diagrams.support(no)) & ~no, ~no, key=lambda f: f.node_count())
+
+
+def relevant(automaton: Automaton) -> tuple[str, ...]:
+    """The variables that the safe states depend on."""
+    rest = automaton.rest if automaton.rest is not None else TRUE
+    return with_initial(automaton, [*(s.forbidden for s in automaton.specifications.values()), rest])
+
+
+def with_initial(automaton: Automaton, questions: list[Expression]) -> tuple[str, ...]:
+    """The variables that can influence `questions`, and those that several initial states relate them to."""
+    names = cone_of_influence(automaton, questions)
+    for part in conjuncts(automaton.initial or TRUE):
+        read = frozenset(variables(part))
+        if not read <= set(names) and not read.isdisjoint(names):
+            return with_initial(automaton, [*questions, part])
+    return names
