@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from itertools import combinations, product
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
 
 from sequence_planner.automaton.structure import Automaton, reads, target
 from sequence_planner.automaton.transitions import Phase, Transition, transitions
@@ -50,10 +50,10 @@ def cone_of_influence(automaton: Automaton, questions: Iterable[Expression]) -> 
                 continue  # no two are ever taken together
             if phase is Phase.SENSE:
                 # Without an effect from outside the one inside can still happen, so only these can stand in its way.
-                relevant |= _disputed(automaton, combinations(inside, 2), relevant)
+                relevant |= _disputed(automaton, _sharing(inside, inside), relevant)
             elif phase is Phase.FINISH:
                 # A finish is refused by any other that it conflicts with, also by one that writes nothing relevant.
-                relevant |= _disputed(automaton, product(inside, members), relevant)
+                relevant |= _disputed(automaton, _sharing(inside, members), relevant)
         if len(relevant) == before:
             return tuple(name for name in automaton.variables if name in relevant)
 
@@ -61,6 +61,15 @@ def cone_of_influence(automaton: Automaton, questions: Iterable[Expression]) -> 
 def _read_by(automaton: Automaton, action: Assignment) -> frozenset[str]:
     condition = () if action.condition is None else (action.condition,)
     return read_variables(automaton, (action.value, *condition))
+
+
+def _sharing(some: Iterable[Transition], others: Iterable[Transition]) -> Iterator[tuple[Transition, Transition]]:
+    """The pairs of one of `some` and one of `others` that write common variables."""
+    writers: dict[str, list[Transition]] = defaultdict(list)
+    for other in others:
+        for name in other.writes:
+            writers[name].append(other)
+    return ((one, other) for one in some for name in one.writes for other in writers[name])
 
 
 def _disputed(

@@ -7,6 +7,7 @@ says which states exist, and is not part of any guard, which would spread it ove
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cached_property
 from itertools import product
@@ -36,16 +37,30 @@ Lookup = Callable[[str], Values]
 
 # Room for nodes and for results already computed; memory is taken as they are filled.
 _MOST_NODES = 1 << 25
-_CACHE = 1 << 20
+_CACHE = 1 << 16
+
+
+# Diagrams are walked from level to level, some calls deep for each of them.
+_CALLS = 4
+_ROOM = 1000
 
 
 class Diagrams:
-    """The bits of `domains`, in the order given; those of `afterwards` have bits for a value afterwards as well."""
+    """The bits of `domains`, in the order given; those of `afterwards` have bits for a value afterwards as well.
 
-    def __init__(self, domains: Mapping[str, Sequence[Value]], afterwards: Collection[str] = ()) -> None:
+    `cache` is how many results are kept; a small one is quicker to make. More than `most_nodes` are a `MemoryError`.
+    """
+
+    def __init__(
+        self,
+        domains: Mapping[str, Sequence[Value]],
+        afterwards: Collection[str] = (),
+        cache: int = _CACHE,
+        most_nodes: int = _MOST_NODES,
+    ) -> None:
         self.domains = {name: tuple(domain) for name, domain in domains.items()}
         self.names = tuple(self.domains)
-        self._manager = BCDDManager(_MOST_NODES, _CACHE, 1)
+        self._manager = BCDDManager(most_nodes, cache, 1)
         self.bits: dict[str, tuple[int, ...]] = {}
         self.bits_after: dict[str, tuple[int, ...]] = {}
         self.marks: dict[str, int] = {}
@@ -62,6 +77,7 @@ class Diagrams:
             count = first + step * width
             self._name_of |= dict.fromkeys(self.bits[name], name)
         self._manager.add_vars(count)
+        sys.setrecursionlimit(max(sys.getrecursionlimit(), _ROOM + _CALLS * count))
         self._count = count
         self._values: dict[tuple[str, bool], Values] = {}
 
@@ -218,11 +234,9 @@ class Diagrams:
                 return EVERYTHING if node.valid() else NOTHING
             if node not in memo:
                 name = self._name_of[bit]
-                children = tuple(
-                    reference(self._branch(node, self.bits[name], position))
-                    for position in range(len(self.domains[name]))
-                )
-                memo[node] = builder.node(axis[name], children)
+                positions = range(len(self.domains[name]))
+                children = [reference(self._branch(node, self.bits[name], position)) for position in positions]
+                memo[node] = builder.node(axis[name], tuple(children))
             return memo[node]
 
         return builder.built(over, tuple(self.domains[name] for name in over), reference(states))

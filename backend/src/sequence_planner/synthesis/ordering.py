@@ -14,6 +14,7 @@ from itertools import permutations
 _MOST_ROUNDS = 50
 _WINDOW = 4
 _MOST_PASSES = 10
+_FAR_MORE = 2  # times as often as the median
 
 Groups = Mapping[tuple[int, ...], int]  # positions of variables in order of declaration, and how often they occur
 
@@ -31,6 +32,18 @@ def ordered(names: Sequence[str], groups: Iterable[Collection[str]]) -> tuple[st
             counted[members] += 1
     order = _force(list(range(len(names))), counted)
     return tuple(names[position] for position in _slid(order, counted))
+
+
+def hubs_first(order: Sequence[str], groups: Iterable[Collection[str]]) -> tuple[str, ...]:
+    """`order` with the variables first that occur in far more groups than most do.
+
+    They say which of many others something is about: a pose, of the bolts there. Below all of these, they would have to
+    be told apart by every combination of their values.
+    """
+    occurs = Counter(name for group in set(map(frozenset, groups)) for name in group)
+    usual = sorted(occurs[name] for name in order)[len(order) // 2] if order else 0
+    hubs = [name for name in order if occurs[name] > _FAR_MORE * usual]
+    return (*hubs, *(name for name in order if name not in hubs))
 
 
 def _span(order: Sequence[int], groups: Groups) -> int:

@@ -8,10 +8,31 @@ from functools import cached_property
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, target
 from sequence_planner.automaton.transitions import Phase, transitions
-from sequence_planner.expressions.syntax import TRUE, Expression, conjunction, conjuncts, variables
+from sequence_planner.expressions.syntax import TRUE, Expression, Not, conjunction, conjuncts, variables
 from sequence_planner.synthesis.diagrams import Diagrams, Function, Reader, Values
-from sequence_planner.synthesis.ordering import ordered
+from sequence_planner.synthesis.ordering import hubs_first, ordered
 from sequence_planner.synthesis.steps import Flip, Reaction, Step, updates
+
+
+_MOST_TRIED = 1 << 16  # nodes, to find out whether an order is a good one
+
+
+class _FlagReader(Reader):
+    """Reads predicates of an automaton; a flag is what its predicate says."""
+
+    def __init__(self, automaton: Automaton, diagrams: Diagrams) -> None:
+        super().__init__(diagrams, self._values)
+        self._automaton = automaton
+        self._variables = diagrams
+        self._flags: dict[str, Values] = {}
+
+    def _values(self, name: str) -> Values:
+        if name in self._variables.bits:
+            return self._variables.values(name)
+        if name not in self._flags:
+            holds = self.predicate(self._automaton.flag_predicates[name])
+            self._flags[name] = {True: holds, False: ~holds}
+        return self._flags[name]
 
 
 class Plant:
@@ -22,11 +43,10 @@ class Plant:
 
     def __init__(self, automaton: Automaton, names: Sequence[str]) -> None:
         self.automaton = automaton
-        order = ordered(names, _together(automaton))
+        order = _ordered(automaton, names)
         afterwards = () if automaton.one_at_a_time else set(_written_by_reactions(automaton))
         self.diagrams = Diagrams({name: automaton.variables[name].type.domain for name in order}, afterwards)
-        self._flags: dict[str, Values] = {}
-        self.reader = Reader(self.diagrams, self._values)
+        self.reader = _FlagReader(automaton, self.diagrams)
 
     def where(self, predicate: Expression) -> Function:
         """The states in which `predicate` holds; all of them exist."""
@@ -95,13 +115,25 @@ class Plant:
                 (number,) = self.diagrams.bits[name]
                 yield Flip(self.diagrams.bit(number), number, number)
 
-    def _values(self, name: str) -> Values:
-        if name in self.diagrams.bits:
-            return self.diagrams.values(name)
-        if name not in self._flags:
-            holds = self.reader.predicate(self.automaton.flag_predicates[name])
-            self._flags[name] = {True: holds, False: ~holds}
-        return self._flags[name]
+
+def _ordered(automaton: Automaton, names: Sequence[str]) -> tuple[str, ...]:
+    """The better of two orders: the one in which what is forbidden and what is rest take fewer nodes."""
+    groups = list(_together(automaton))
+    order = ordered(names, groups)
+    other = hubs_first(order, groups)
+    return order if other == order else min((order, other), key=lambda each: _size(automaton, each))
+
+
+def _size(automaton: Automaton, order: Sequence[str]) -> float:
+    diagrams = Diagrams({name: automaton.variables[name].type.domain for name in order}, most_nodes=_MOST_TRIED)
+    reader = _FlagReader(automaton, diagrams)
+    forbidden = [each.forbidden for each in automaton.specifications.values()]
+    asked = [forbidden, [] if automaton.rest is None else [automaton.rest]]
+    inside = [[p for p in each if read_variables(automaton, (p,)) <= diagrams.bits.keys()] for each in asked]
+    try:
+        return sum(diagrams.disjunction(map(reader.predicate, each)).node_count() for each in inside)
+    except MemoryError:
+        return float("inf")
 
 
 def _written_by_reactions(automaton: Automaton) -> Iterator[str]:
