@@ -1,0 +1,143 @@
+"""Cubes, which say for some variables what values they may have, and the largest of those that miss a set of states.
+
+They are found by expansion, or all of them by cutting off what must be missed, as the minimisation of logic knows it
+(Brayton et al. 1984), over variables of many values (Rudell & Sangiovanni-Vincentelli 1987).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from sequence_planner.synthesis.diagrams import Diagrams, Function
+
+# For each variable of the diagrams, the positions in its domain of the values it may have, as bits of a number.
+Cube = tuple[int, ...]
+
+_MOST_PIECES = 4_000  # of cubes while something is cut off from them
+
+
+class Primes:
+    """The largest cubes that hold nothing of `off`."""
+
+    def __init__(self, diagrams: Diagrams, off: Function) -> None:
+        self._diagrams = diagrams
+        self._off = off
+        self._literals: dict[tuple[int, int], Function] = {}
+        self.whole = tuple((1 << len(domain)) - 1 for domain in diagrams.domains.values())
+        self.axes = range(len(self.whole))
+
+    def function(self, cube: Cube) -> Function:
+        """The states that a cube holds, and perhaps some that do not exist."""
+        return self._diagrams.conjunction(self._literal(axis, cube[axis]) for axis in reversed(self.restricted(cube)))
+
+    def restricted(self, cube: Cube) -> list[int]:
+        """The variables that have a literal in it."""
+        return [axis for axis in self.axes if cube[axis] != self.whole[axis]]
+
+    def holding(self, states: Function, most: int) -> dict[Cube, Function] | None:
+        """Cubes that together hold `states`; None if that takes more than `most`."""
+        found: dict[Cube, Function] = {}
+        while states.satisfiable():
+            if len(found) == most:
+                return None
+            cube = self.expanded(self.around(states, one=True), self.axes, states)
+            found[cube] = self.function(cube)
+            states &= ~found[cube]
+        return found
+
+    def around(self, states: Function, one: bool = False) -> Cube:
+        """The smallest cube that holds all of the states, or else one of them."""
+        if one:
+            state = self._diagrams.pick(states)
+            assert state is not None
+            return tuple(1 << domain.index(state[name]) for name, domain in self._diagrams.domains.items())
+        return tuple(
+            sum(
+                1 << position
+                for position, where in enumerate(self._diagrams.values(name).values())
+                if (states & where).satisfiable()
+            )
+            for name in self._diagrams.names
+        )
+
+    def expanded(self, cube: Cube, order: Iterable[int], wanted: Function | None = None) -> Cube:
+        """A largest cube that holds `cube`: literals are left out in `order`, then the others widened.
+
+        With `wanted`, the literal without which it holds most of that goes first.
+        """
+        axes = list(order)
+        left = list(axes)
+        while left:
+            axis = left[0] if wanted is None else max(left, key=lambda each: self._gain(cube, each, wanted))
+            left.remove(axis)
+            freed = _with(cube, axis, self.whole[axis])
+            if self._fits(freed):
+                cube = freed
+        for axis in axes:
+            for position in range(self.whole[axis].bit_length()):
+                wider = _with(cube, axis, cube[axis] | 1 << position)
+                if wider != cube and self._fits(wider):
+                    cube = wider
+        return cube
+
+    def every(self, most: int) -> list[Cube] | None:
+        """All of them; None if they are too many."""
+        excluded = Primes(self._diagrams, self._diagrams.valid & ~self._off).holding(self._off, most)
+        return None if excluded is None else _missing(self.whole, excluded, most)
+
+    def _gain(self, cube: Cube, axis: int, wanted: Function) -> int:
+        """How much of `wanted` it holds without the literal; less than nothing if it must not be left out."""
+        freed = self.function(_with(cube, axis, self.whole[axis]))
+        return -1 if (freed & self._off).satisfiable() else self._diagrams.count(freed & wanted)
+
+    def _fits(self, cube: Cube) -> bool:
+        return not (self.function(cube) & self._off).satisfiable()
+
+    def _literal(self, axis: int, mask: int) -> Function:
+        if (axis, mask) not in self._literals:
+            values = self._diagrams.values(self._diagrams.names[axis]).values()
+            allowed = (where for position, where in enumerate(values) if mask >> position & 1)
+            self._literals[axis, mask] = self._diagrams.disjunction(allowed)
+        return self._literals[axis, mask]
+
+
+def _with(cube: Cube, axis: int, mask: int) -> Cube:
+    return (*cube[:axis], mask, *cube[axis + 1 :])
+
+
+def _missing(whole: Cube, excluded: Iterable[Cube], most: int) -> list[Cube] | None:
+    """The largest cubes within `whole` that have nothing in common with any of `excluded`; None if they are too many.
+
+    Each excluded cube is cut off by taking its values from one variable.
+    """
+    widths = [mask.bit_length() for mask in whole]
+    found = [whole]
+    for cut in excluded:
+        met = {cube for cube in found if all(a & b for a, b in zip(cube, cut, strict=True))}
+        pieces = {
+            _with(cube, axis, left) for cube in met for axis, mask in enumerate(cut) if (left := cube[axis] & ~mask)
+        }
+        if len(pieces) > _MOST_PIECES:
+            return None
+        found = _largest([cube for cube in found if cube not in met], pieces, widths)
+        if len(found) > most:
+            return None
+    return found
+
+
+def _largest(apart: Sequence[Cube], pieces: Iterable[Cube], widths: Sequence[int]) -> list[Cube]:
+    """`apart`, and those of `pieces` that are within no other cube."""
+    kept = {cube: _packed(cube, widths) for cube in apart}
+    for piece in sorted(pieces, key=lambda cube: (-sum(mask.bit_count() for mask in cube), cube)):
+        values = _packed(piece, widths)
+        if all(values | other != other for other in kept.values()):
+            kept[piece] = values
+    return list(kept)
+
+
+def _packed(cube: Cube, widths: Sequence[int]) -> int:
+    """The values of all variables as bits of one number."""
+    packed = 0
+    for mask, width in zip(cube, widths, strict=True):
+        packed = packed << width | mask
+    return packed

@@ -1,0 +1,122 @@
+"""Over which variables and flags two sets of states can be told apart, and what the sets are over them alone."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from functools import cached_property
+
+from sequence_planner.synthesis.diagrams import Diagrams, Function
+from sequence_planner.synthesis.hitting import least_hitting
+from sequence_planner.synthesis.plant import Plant
+
+# Variables that tell two sets apart without any flag; beyond them, flags would cut the sets into too many parts.
+_MOST_VARIABLES = 12
+
+
+class Separation:
+    """Two sets of states of a plant, apart from one another and neither of them empty."""
+
+    def __init__(self, plant: Plant, on: Function, off: Function) -> None:
+        self._plant = plant
+        self._diagrams = plant.diagrams
+        self._on = on
+        self._off = off
+
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The fewest variables and flags that tell the sets apart: few flags, and the earliest declared."""
+        variables = [name for name in self._candidates if name in self._diagrams.bits]
+        known = self._without_needless(variables)
+        candidates = variables if len(known) > _MOST_VARIABLES else self._candidates
+        number = {name: position for position, name in enumerate(candidates)}
+        flags = [int(name not in self._diagrams.bits) for name in candidates]
+
+        def missed(chosen: frozenset[int]) -> list[int] | None:
+            differing = self._differing([candidates[each] for each in sorted(chosen)], candidates)
+            return None if differing is None else [number[name] for name in differing]
+
+        start = frozenset(number[name] for name in known)
+        chosen = least_hitting(start, ([1] * len(candidates), flags), missed, earliest=True)
+        return tuple(candidates[each] for each in sorted(chosen))
+
+    def over(self, diagrams: Diagrams, states: Function) -> Function:
+        """Which values the variables and flags of `diagrams` have in `states`."""
+        bits = self._diagrams.bits.keys()
+        flags = [name for name in diagrams.names if name not in bits]
+        kept = [name for name in diagrams.names if name in bits]
+        found = diagrams.false
+        for values, part in self._by_flags(states, flags):
+            projected = self._diagrams.exported(self._projected(part, kept))
+            held = diagrams.conjunction(diagrams.values(flag)[value] for flag, value in zip(flags, values, strict=True))
+            found |= diagrams.imported(projected) & diagrams.valid_of(kept) & held
+        return found
+
+    @cached_property
+    def _candidates(self) -> tuple[str, ...]:
+        """What can tell states apart, in order of declaration: variables, then flags."""
+        automaton, diagrams = self._plant.automaton, self._diagrams
+        support = diagrams.support(self._on) | diagrams.support(self._off)
+        either = self._on | self._off
+        flags = (
+            flag.name
+            for flag in automaton.flags
+            if self._plant.says((flag.predicate,))
+            and (either & self._plant.reader.lookup(flag.name)[True]).satisfiable()
+            and (either & self._plant.reader.lookup(flag.name)[False]).satisfiable()
+        )
+        return (*(name for name in automaton.variables if name in support), *flags)
+
+    def _without_needless(self, names: Sequence[str]) -> list[str]:
+        """`names` but what is not needed, left out greedily from the last."""
+        kept = list(names)
+        for name in reversed(names):
+            fewer = [each for each in kept if each != name]
+            if self._confused(fewer) is None:
+                kept = fewer
+        return kept
+
+    def _confused(self, names: Sequence[str]) -> Function | None:
+        """States of the first set with which some of the second agree in `names`; None if there are none."""
+        bits = self._diagrams.bits.keys()
+        variables, flags = [name for name in names if name in bits], [name for name in names if name not in bits]
+        on_parts = dict(self._by_flags(self._on, flags))
+        for values, off in self._by_flags(self._off, flags):
+            if values in on_parts:
+                common = self._projected(on_parts[values], variables) & self._projected(off, variables)
+                if common.satisfiable():
+                    return on_parts[values] & common
+        return None
+
+    def _differing(self, names: Sequence[str], candidates: Sequence[str]) -> list[str] | None:
+        """The candidates in which two states, one of each set, differ that agree in `names`; None if no two do."""
+        confused = self._confused(names)
+        if confused is None:
+            return None
+        state = self._diagrams.pick(confused)
+        assert state is not None
+        one = self._diagrams.states(state)
+        others = self._off
+        differing: list[str] = []
+        for name in (*names, *(each for each in reversed(candidates) if each not in names)):
+            where = next(where for where in self._plant.reader.lookup(name).values() if (where & one).satisfiable())
+            agreeing = others & where
+            if agreeing.satisfiable():
+                others = agreeing
+            else:
+                differing.append(name)
+        return differing
+
+    def _by_flags(self, states: Function, flags: Sequence[str]) -> Iterator[tuple[tuple[bool, ...], Function]]:
+        """The parts of `states` in which the flags have the same values, with these."""
+        if not states.satisfiable():
+            return
+        if not flags:
+            yield (), states
+            return
+        holds = self._plant.reader.lookup(flags[0])[True]
+        for value, part in ((False, states & ~holds), (True, states & holds)):
+            for values, inner in self._by_flags(part, flags[1:]):
+                yield (value, *values), inner
+
+    def _projected(self, states: Function, names: Collection[str]) -> Function:
+        return self._diagrams.exists(states, [name for name in self._diagrams.names if name not in names])
