@@ -7,7 +7,10 @@ from pathlib import Path
 import pytest
 
 from checking.small import STATION, found, station
+from core.replaying import replay
+from sequence_planner.automaton.tick import finish
 from sequence_planner.checking import conflicts
+from sequence_planner.checking.checks import check_automaton
 
 # Two devices that each say what they did to the one part.
 DEVICE = """
@@ -45,6 +48,21 @@ def test_a_conflict_is_reported_with_a_reachable_state(tmp_path: Path) -> None:
     assert REACHED in found(station(tmp_path, two()))
 
 
+def test_a_trace_leads_to_the_tick_in_which_both_finish(tmp_path: Path) -> None:
+    automaton = station(tmp_path, two())
+    (warning,) = [each for each in check_automaton(automaton) if each.kind == "write-conflict"]
+    assert warning.trace is not None
+    assert warning.trace.lines() == [
+        "start 1: two.go: two.command := true",
+        "start 2: one.go: one.command := true",
+        "tick 3: one.on := true, two.on := true (one.go.goes, two.go.goes)",
+    ]
+    before, sensed = replay(automaton, warning.trace)[-2:]
+    seen = {**before, "one.on": True, "two.on": True}
+    assert finish(automaton, seen).conflicts == (("one.go", "two.go", "part"),)
+    assert sensed["part"] == before["part"]
+
+
 def test_the_same_value_is_no_conflict(tmp_path: Path) -> None:
     assert "write-conflict" not in "".join(found(station(tmp_path, two("true"))))
 
@@ -70,7 +88,7 @@ def test_a_specification_keeps_them_apart(tmp_path: Path) -> None:
 
 
 def test_too_many_states_are_said(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(conflicts, "MOST_STEPS", 10)
+    monkeypatch.setattr(conflicts, "MOST_EFFORT", 10)
     said = "".join(found(station(tmp_path, two())))
     assert "They might meet (there are too many states to say whether such a one can be reached): " in said
 

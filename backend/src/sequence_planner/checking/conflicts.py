@@ -1,9 +1,9 @@
 """Two finishes in one tick that would write different values to one variable: neither would be applied.
 
 First a solver looks for any values with which that happens after a state that no specification forbids, and
-`abstraction` tries to prove that they never come about. Then the states that the station can reach are enumerated over
-what matters, so that the state reported is a reachable one. Where there are too many of them, it is said that it is
-not shown to be unreachable.
+`abstraction` tries to prove that they never come about. Then it is computed over what matters which states the station
+can reach, so that the state reported is a reachable one. Where there are too many of them, it is said that it is not
+shown to be unreachable.
 """
 
 from __future__ import annotations
@@ -11,18 +11,19 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import combinations, islice
-from math import prod
 
 from sequence_planner.automaton.cone import cone_of_influence
 from sequence_planner.automaton.structure import Ability, Automaton, State, target
 from sequence_planner.checking.abstraction import cannot_be
+from sequence_planner.checking.inquiry import bits
 from sequence_planner.checking.satisfiability import Question, can_be_asked
 from sequence_planner.checking.warning import ModelWarning, described, place
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import Assignment, Constant, Variable, variables
 from sequence_planner.synthesis.conflicts import conflicting_finishes
+from sequence_planner.synthesis.effort import MOST_BITS, Effort, TooMuchError
 
-MOST_STEPS = 1_000_000  # states times sets of effects, to enumerate
+MOST_EFFORT = 5_000_000  # nodes for each pair, see `synthesis.effort`
 MOST_REPORTED = 3  # pairs for each variable
 MOST_TRIED = 50  # pairs for each variable: beyond them, conflicts of many finishes over one variable are not looked for
 
@@ -104,16 +105,18 @@ def _confirmed(
     own = [*conditions, *(action.value for action in actions)]
     read = dict.fromkeys(name for each in own for name in variables(each))
     cone = cone_of_influence(automaton, [*own, Variable(variable, automaton.variables[variable].type)])
-    effects = sum(any(target(action) in cone for action in effect.actions) for effect in automaton.effects)
-    if prod(len(automaton.variables[name].type.domain) for name in cone) * 2**effects > MOST_STEPS:
-        how, seen = "might meet (there are too many states to say whether such a one can be reached)", witness
-    else:
-        found = conflicting_finishes(automaton, cone, (one.name, other.name), variable)
+    trace = None
+    try:
+        if bits(automaton, cone) > MOST_BITS:
+            raise TooMuchError
+        found = conflicting_finishes(automaton, cone, (one.name, other.name), variable, Effort(MOST_EFFORT))
         if found is None:
             return None
-        how, seen = "meet in a reachable state", found
+        how, seen, trace = "meet in a reachable state", found.seen, found.trace
+    except TooMuchError:
+        how, seen = "might meet (there are too many states to say whether such a one can be reached)", witness
     message = (
         f"the finishes of `{one.name}` and `{other.name}` would write different values to `{variable}`, and then "
         f"neither is applied. They {how}: {described(seen, read)}. Let their finish guards exclude each other"
     )
-    return ModelWarning(place(automaton, f"{other.name}.finish", other.name), "write-conflict", message)
+    return ModelWarning(place(automaton, f"{other.name}.finish", other.name), "write-conflict", message, trace)

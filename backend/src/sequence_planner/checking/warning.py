@@ -4,23 +4,28 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from sequence_planner.automaton.grounding.findings import without_arguments
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.model.source import Place
+from sequence_planner.synthesis.traces import Trace
 
 MOST_NAMED = 4  # of several names in a message
 
 
 @dataclass(frozen=True, order=True)
 class ModelWarning:
-    """Where something is suspicious, a stable name for what it is, and what to do about it."""
+    """Where something is suspicious, a stable name for what it is, and what to do about it.
+
+    A `trace` shows how it comes about, where there is one to show.
+    """
 
     place: Place
     kind: str
     message: str
+    trace: Trace | None = field(default=None, compare=False)
 
     def __str__(self) -> str:
         return f"{self.place}: warning: {self.message} [{self.kind}]"

@@ -16,23 +16,34 @@ from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.saturation import reachable, reaching
 from sequence_planner.synthesis.steps import Step
+from sequence_planner.synthesis.unmeetable import Unmeetable, why_unmeetable
 
 
 class SynthesisError(Exception):
-    """There is no supervisor; the text says why and what to do."""
+    """There is no supervisor; the text says why and what to do, the `reason` also for programs."""
+
+    def __init__(self, reason: Unmeetable) -> None:
+        super().__init__(reason)
+        self.reason = reason
+
+    def __str__(self) -> str:
+        return "\n  ".join((self.reason.message, *self.reason.lines))
 
 
 class Supervision:
-    """The safe states of a plant, with and without which it is asked what can be reached."""
+    """The safe states of a plant, with and without which it is asked what can be reached.
 
-    def __init__(self, plant: Plant) -> None:
+    `safe` are these, where they have been computed over fewer variables already.
+    """
+
+    def __init__(self, plant: Plant, safe: StateSet | None = None) -> None:
         self.plant = plant
         self.forbidden = {
             specification.name: plant.where(specification.forbidden)
             for specification in plant.automaton.specifications.values()
             if plant.says((specification.forbidden,))
         }
-        self.safe = self._greatest_safe()
+        self.safe = self._greatest_safe() if safe is None else plant.diagrams.imported(safe) & plant.diagrams.valid
 
     @property
     def possible(self) -> bool:
@@ -77,10 +88,15 @@ class Supervision:
 
 def synthesise(automaton: Automaton) -> Supervisor:
     """The maximally permissive supervisor of `automaton`. Raises `SynthesisError` if there is none."""
+    return supervisor(supervised(automaton))
+
+
+def supervised(automaton: Automaton) -> Supervision:
+    """The safe states of `automaton`, all initial ones among them. Raises `SynthesisError` if that cannot be."""
     supervision = Supervision(Plant(automaton, relevant(automaton)))
     if not supervision.possible:
-        raise SynthesisError("the specifications cannot be met")
-    return supervisor(supervision)
+        raise SynthesisError(why_unmeetable(supervision.plant, supervision.forbidden))
+    return supervision
 
 
 def supervisor(supervision: Supervision) -> Supervisor:

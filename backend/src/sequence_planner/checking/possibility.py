@@ -1,0 +1,231 @@
+"""Whether starts and operations are possible, with the supervisor and without it.
+
+Each answer is about reachable states; a trace leads to where it can be seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from sequence_planner.automaton.grounding.findings import without_arguments
+from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.automaton.structure import Ability, Automaton, Operation
+from sequence_planner.checking.growth import Growth
+from sequence_planner.checking.inquiry import Inquiry
+from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.simplification import simplify
+from sequence_planner.expressions.syntax import Expression, conjunction
+from sequence_planner.synthesis.diagrams import Function
+from sequence_planner.synthesis.effort import Effort
+from sequence_planner.synthesis.shortest import Tracer
+from sequence_planner.synthesis.traces import Trace
+
+
+@dataclass(frozen=True)
+class Subject:
+    """Something that should be possible: the start of an ability, an event of a plain automaton, or an operation."""
+
+    name: str
+    keys: tuple[str, ...]  # of its place
+    abilities: tuple[Ability, ...] = ()
+    operation: Operation | None = None
+
+    @property
+    def expressions(self) -> list[Expression]:
+        """What is asked about it."""
+        if self.operation is not None:
+            return [self.operation.precondition, self.operation.goal]
+        return [condition for ability in self.abilities for condition in (ability.enabled, ability.start_guard)]
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What is said of a subject; instances of which the same is said are named together.
+
+    What is `relative` is said only if it is so for all instances or for few: parameters choose which instances there
+    are. `cause` names the start, or what else happens, that the supervisor prevents; a `consequence` need not be said
+    where another finding has the same cause.
+    """
+
+    kind: str
+    subject: Subject
+    message: str
+    trace: Trace | None = None
+    relative: bool = False
+    cause: tuple[str, ...] = ()
+    consequence: bool = False
+
+
+class Possibility:
+    """What is possible of `subjects` where nothing leaves the states of `safe`. Raises `TooMuchError`."""
+
+    def __init__(self, automaton: Automaton, subjects: Sequence[Subject], safe: StateSet, effort: Effort) -> None:
+        self._automaton = automaton
+        self._subjects = subjects
+        self._inquiry = Inquiry(automaton, [each for subject in subjects for each in subject.expressions], safe, effort)
+        self._growth = Growth(automaton, any_measurement=False)
+
+    def findings(self) -> Iterator[Finding]:
+        """What is not possible, subject by subject."""
+        for subject in self._subjects:
+            if subject.operation is None:
+                yield from self._start(subject)
+            else:
+                yield from self._operation(subject, subject.operation)
+
+    def _start(self, subject: Subject) -> Iterator[Finding]:
+        inquiry = self._inquiry
+        if any((inquiry.allowed(each) & inquiry.supervised).satisfiable() for each in subject.abilities):
+            return
+        if (known := self._with_guards(subject.abilities, inquiry.supervised)) is not None:
+            yield self._never_allowed(subject, *known)
+        elif (beyond := self._with_guards(subject.abilities, inquiry.unsupervised)) is not None:
+            trace = Tracer(inquiry.plant).shortest(beyond[1])
+            message = (
+                f"never starts under the supervisor: its guards hold only {self._after(trace)}. Let another way lead "
+                "there, forbid less, or leave it out"
+            )
+            cause = self._cause(trace)
+            yield Finding("never-allowed", subject, message, trace, cause=cause, consequence=True)
+        elif self._is_news(*(conjunction(each.enabled, each.start_guard) for each in subject.abilities)):
+            first = subject.abilities[0]
+            guard = print_expression(simplify(conjunction(first.enabled, first.start_guard)))
+            yield Finding("never-starts", subject, f"never starts: {_never(guard)}", relative=True)
+
+    def _with_guards(self, members: Sequence[Ability], reached: Function) -> tuple[Ability, Function] | None:
+        """One of `members` whose guards hold in some of the states, and those."""
+        for ability in members:
+            if (where := self._inquiry.may_start(ability) & reached).satisfiable():
+                return ability, where
+        return None
+
+    def _is_news(self, *conditions: Expression) -> bool:
+        """Whether none of these ever holds, by any means, and no other check says so: they look at words and values."""
+        said = not all(map(self._may_by_its_words, conditions))
+        return not said and not any(self._inquiry.may_ever(each) for each in conditions)
+
+    def _may_by_its_words(self, condition: Expression) -> bool:
+        if self._automaton.one_at_a_time:
+            return True  # no other check looks at it
+        return self._growth.may(condition) and self._inquiry.plant.where(condition).satisfiable()
+
+    def _never_allowed(self, subject: Subject, ability: Ability, where: Function) -> Finding:
+        """The way to a state in which only the supervisor keeps it from starting, the start, and what may follow."""
+        inquiry = self._inquiry
+        trace = Tracer(inquiry.plant, within=inquiry.safe).shortest(where)
+        consequence = "what is forbidden, or states from which rest cannot be reached any more"
+        if trace is not None:
+            trace = Tracer(inquiry.plant).started(trace, ability.name)
+            broken = inquiry.diagrams.disjunction(inquiry.forbidden().values())
+            trace = Tracer(inquiry.plant, starts=False).onward(trace, broken) or trace
+            consequence = self._consequence(inquiry.diagrams.states(trace.last))
+        message = (
+            f"never starts, as the supervisor forbids it wherever it could: it would lead to {consequence}. Let "
+            "something else happen before it, forbid less, or leave it out"
+        )
+        return Finding("never-allowed", subject, message, trace, cause=_causes([ability.name]))
+
+    def _consequence(self, state: Function) -> str:
+        broken = self._inquiry.broken_unasked(state)
+        return f"what {_quoted(broken)} forbids" if broken else "states from which rest cannot be reached any more"
+
+    def _after(self, trace: Trace | None) -> str:
+        """Where a trace leaves the safe states."""
+        number = self._leaving(trace)
+        if trace is None or number is None:
+            return "after states that are not safe"
+        step = trace.steps[number - 1]
+        if step.forbidden_by:
+            what = f"step {number} of the shortest way breaks {_quoted(step.forbidden_by)}"
+        elif broken := self._inquiry.broken_unasked(self._inquiry.diagrams.states(step.state)):
+            what = f"after step {number} of the shortest way {_quoted(broken)} could be broken without any start"
+        else:
+            what = f"after step {number} of the shortest way it is no longer certain that rest can be reached"
+        return f"after states that are not safe: {what}"
+
+    def _cause(self, trace: Trace | None) -> tuple[str, ...]:
+        """What leaves the safe states on it."""
+        number = self._leaving(trace)
+        return () if trace is None or number is None else _causes(trace.steps[number - 1].names)
+
+    def _leaving(self, trace: Trace | None) -> int | None:
+        """The number of the step that leaves the safe states."""
+        for number, step in enumerate(() if trace is None else trace.steps, start=1):
+            if not (self._inquiry.diagrams.states(step.state) & self._inquiry.safe).satisfiable():
+                return number
+        return None
+
+    def _operation(self, subject: Subject, operation: Operation) -> Iterator[Finding]:
+        inquiry = self._inquiry
+        active = inquiry.plant.where(operation.precondition)
+        if (active & inquiry.supervised).satisfiable():
+            yield from self._goal(subject, operation, active)
+        elif (beyond := active & inquiry.unsupervised).satisfiable():
+            trace = Tracer(inquiry.plant).shortest(beyond)
+            message = (
+                f"never becomes active under the supervisor: its precondition holds only {self._after(trace)}. Let "
+                "another way lead there, or forbid less"
+            )
+            cause = self._cause(trace)
+            yield Finding("never-active", subject, message, trace, cause=cause, consequence=True)
+        elif self._is_news(operation.precondition):
+            condition = print_expression(operation.precondition)
+            yield Finding("never-active", subject, f"never becomes active: {_never(condition)}", relative=True)
+
+    def _goal(self, subject: Subject, operation: Operation, active: Function) -> Iterator[Finding]:
+        inquiry, plain = self._inquiry, self._automaton.one_at_a_time
+        goal = inquiry.plant.where(operation.goal)
+        if (goal & inquiry.supervised_without_faults).satisfiable():
+            if plain:
+                return  # a goal of the automaton, which nobody undertakes again in each state
+        elif (lost := goal & inquiry.unsupervised_without_faults).satisfiable():
+            trace = Tracer(inquiry.plant, faults=False).shortest(lost)
+            message = (
+                f"cannot be {'reached' if plain else 'completed'} under the supervisor, though it could without it: "
+                f"{'it' if plain else 'its goal'} holds only {self._after(trace)}. Let another way lead there, or "
+                "forbid less"
+            )
+            yield Finding("goal-lost", subject, message, trace, cause=self._cause(trace))
+            return
+        elif plain:
+            message = "cannot be reached, with or without the supervisor: write what was meant, or what is missing"
+            yield Finding("goal-out-of-reach", subject, message)
+            return
+        elif not self._may_by_its_words(operation.goal):
+            return
+        bad = active & inquiry.supervised & ~inquiry.completing(goal)
+        if bad.satisfiable():
+            yield self._out_of_reach(subject, goal, bad)
+
+    def _out_of_reach(self, subject: Subject, goal: Function, bad: Function) -> Finding:
+        inquiry = self._inquiry
+        trace = Tracer(inquiry.plant, within=inquiry.safe).shortest(bad)
+        some = bad if trace is None else inquiry.diagrams.states(trace.last)
+        if (some & inquiry.reaching(goal)).satisfiable():
+            cause = "the supervisor forbids all that would lead there"
+        else:
+            cause = "no ability and no effect leads there, with or without the supervisor"
+        where = "in the initial state" if trace is not None and not trace.steps else "after some steps"
+        message = (
+            f"cannot always be completed: {where} its precondition holds, and its goal cannot be reached any more, as "
+            f"{cause}. Let the precondition exclude that, or add what is missing"
+        )
+        return Finding("goal-out-of-reach", subject, message, trace)
+
+
+def _quoted(names: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)
+
+
+def _causes(names: Iterable[str]) -> tuple[str, ...]:
+    """What happens, for all instances."""
+    return tuple(without_arguments(event_of(name)) for name in names)
+
+
+def _never(condition: str) -> str:
+    return (
+        f"`{condition}` holds in no state that can be reached, with or without the supervisor. Write what was meant, "
+        "or the action or effect that is missing"
+    )

@@ -1,0 +1,108 @@
+"""What the supervisor makes impossible, and what is impossible anyway in the states that can be reached.
+
+A supervisor may be as permissive as can be and yet leave nothing to do. So it is asked of each ability whether it can
+ever start, and of each operation whether it can become active, and then be completed (`docs/semantics.md`).
+"""
+
+from __future__ import annotations
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator, Sequence
+
+from sequence_planner.automaton.cone import read_variables
+from sequence_planner.automaton.grounding.findings import without_arguments
+from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.automaton.structure import Ability, Automaton
+from sequence_planner.checking.inquiry import bearing_on, bits
+from sequence_planner.checking.possibility import Finding, Possibility, Subject
+from sequence_planner.checking.warning import ModelWarning, listed, place
+from sequence_planner.synthesis.effort import MOST_BITS, Effort, TooMuchError
+from sequence_planner.synthesis.supervision import Supervision
+
+MOST_EFFORT = 20_000_000  # nodes, see `synthesis.effort`: a few seconds
+MOST_EFFORT_IN_PARTS = 5_000_000
+MOST_TOO_WIDE = 3  # parts with too many variables: then no further ones are looked for
+UNKNOWN = "too-many-states"
+
+
+def check_supervision(automaton: Automaton, supervision: Supervision) -> list[ModelWarning]:
+    """What can never be done in `automaton` under a `supervision` that is possible, by place, with traces.
+
+    What it would take more than `MOST_EFFORT` to find out is said not to be known.
+    """
+    safe = supervision.plant.diagrams.exported(supervision.safe)
+    subjects = list(_subjects(automaton))
+    try:
+        found = list(Possibility(automaton, subjects, safe, Effort(MOST_EFFORT)).findings())
+    except TooMuchError:
+        found = list(_in_parts(automaton, subjects, safe))
+    return sorted(_warnings(automaton, subjects, _without_consequences(found)))
+
+
+def _subjects(automaton: Automaton) -> Iterator[Subject]:
+    events: dict[str, list[Ability]] = defaultdict(list)
+    for ability in automaton.abilities.values():
+        if not ability.restart:
+            events[event_of(ability.name) if automaton.one_at_a_time else ability.name].append(ability)
+    for event, abilities in events.items():
+        first = abilities[0].name
+        yield Subject(event, (f"{first}.start", f"{first}.enabled", first), abilities=tuple(abilities))
+    for operation in automaton.operations.values():
+        yield Subject(operation.name, (f"operation.{operation.name}",), operation=operation)
+
+
+def _in_parts(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet) -> Iterator[Finding]:
+    """What is found on fewer variables at a time, where that is possible."""
+    parts: dict[frozenset[str], list[Subject]] = {}
+    too_wide = 0
+    for subject in subjects:
+        read = read_variables(automaton, subject.expressions)
+        names = next((names for names in parts if read <= names), None)
+        if names is None and too_wide < MOST_TOO_WIDE:
+            names = bearing_on(automaton, subject.expressions)
+            too_wide += bits(automaton, names) > MOST_BITS
+        parts.setdefault(names or frozenset(automaton.variables), []).append(subject)
+    effort = Effort(MOST_EFFORT_IN_PARTS)
+    for names, members in sorted(parts.items(), key=lambda part: len(part[0])):
+        try:
+            if len(parts) == 1 or bits(automaton, names) > MOST_BITS:
+                raise TooMuchError
+            yield from list(Possibility(automaton, members, safe, effort).findings())
+        except TooMuchError:
+            yield from (Finding(UNKNOWN, each, "") for each in members)
+
+
+def _without_consequences(found: Sequence[Finding]) -> list[Finding]:
+    """Of the findings with one cause only those that are no consequences; or else the one with the shortest way."""
+    causes = {each.cause for each in found if not each.consequence}
+    kept: list[Finding] = [each for each in found if not each.consequence]
+    consequences = [each for each in found if each.consequence]
+    for each in sorted(consequences, key=lambda each: 0 if each.trace is None else len(each.trace.steps)):
+        if not each.cause or each.cause not in causes:
+            kept.append(each)
+            causes.add(each.cause)
+    return kept
+
+
+def _warnings(automaton: Automaton, subjects: Sequence[Subject], found: Sequence[Finding]) -> Iterator[ModelWarning]:
+    """One for all instances of which the same is said, with the trace of the first."""
+    instances = Counter(without_arguments(subject.name) for subject in subjects)
+    alike: dict[tuple[str, str, str], list[Finding]] = defaultdict(list)
+    unknown = [each.subject for each in found if each.kind == UNKNOWN]
+    if unknown:
+        names = listed([subject.name for subject in unknown])
+        message = (
+            f"of {names} it is not known whether they are always possible: too many states bear on them to be looked "
+            "at. Check parts of the station on their own"
+        )
+        yield ModelWarning(place(automaton, *unknown[0].keys), UNKNOWN, message)
+    for each in (each for each in found if each.kind != UNKNOWN):
+        alike[each.kind, without_arguments(each.subject.name), "" if each.relative else each.message].append(each)
+    for (kind, family, _), members in alike.items():
+        first = members[0]
+        if first.relative and len(members) < instances[family] <= 2 * len(members):
+            continue
+        names = listed([each.subject.name for each in members])
+        names = f"each of {names}" if len(members) > 1 else names
+        yield ModelWarning(place(automaton, *first.subject.keys), kind, f"{names} {first.message}", first.trace)

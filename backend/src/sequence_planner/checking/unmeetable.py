@@ -1,0 +1,30 @@
+"""Specifications that cannot be met, with what is in conflict already."""
+
+from __future__ import annotations
+
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.checking.warning import ModelWarning
+from sequence_planner.model.source import Place
+from sequence_planner.synthesis.minimal_conflict import Conflict, minimal_conflict
+from sequence_planner.synthesis.unmeetable import Unmeetable
+
+
+def unmeetable(automaton: Automaton, reason: Unmeetable, place: Place) -> ModelWarning:
+    """The warning for an automaton without supervisor: `place` is that of the specifications."""
+    conflict = minimal_conflict(automaton, reason.trace)
+    message = f"{reason.message}. {_in_conflict(automaton, conflict)}"
+    return ModelWarning(place, "specification-cannot-be-met", message, reason.trace)
+
+
+def _in_conflict(automaton: Automaton, conflict: Conflict) -> str:
+    """What would already be enough, as a sentence."""
+    parts = [f"`{name}`" for name in conflict.specifications]
+    if not parts:
+        parts = [f"reaching {'a marked state' if automaton.one_at_a_time else 'rest'}"]
+    text = f"In conflict are already {', '.join(parts)}"
+    if conflict.uncontrollable:
+        names = ", ".join(f"`{name}`" for name in conflict.uncontrollable)
+        text += f" and that nobody decides about {names}"
+    else:
+        text += ", whatever is uncontrollable"
+    return text if conflict.minimal else f"{text}; perhaps fewer would be enough, as not all was tried"
