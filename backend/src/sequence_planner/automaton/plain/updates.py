@@ -67,9 +67,9 @@ def _before(expression: Expression, updates: Mapping[str, Expression]) -> Expres
         case Implies(left, right):
             return Implies(part(left), part(right))
         case Comparison(operator, left, right):
-            return _decided(Comparison(operator, part(left), part(right)))
+            return decided(Comparison(operator, part(left), part(right)))
         case Membership(left, options):
-            equal = [_decided(Comparison("==", part(left), part(option))) for option in options]
+            equal = [decided(Comparison("==", part(left), part(option))) for option in options]
             return Or(tuple(equal)) if len(equal) > 1 else equal[0]
         case Arithmetic(operator, left, right):
             return Arithmetic(operator, part(left), part(right))
@@ -77,7 +77,7 @@ def _before(expression: Expression, updates: Mapping[str, Expression]) -> Expres
             return expression
 
 
-def _decided(comparison: Comparison) -> Expression:
+def decided(comparison: Comparison) -> Expression:
     """The constant that a comparison always is; after a replacement it may be one that nobody could write down."""
     domains = {variable.name: variable.type.domain for variable in occurrences(comparison)}
     if prod(map(len, domains.values())) > _MOST_COMBINATIONS:
