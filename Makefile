@@ -44,7 +44,7 @@ vitest: frontend/node_modules/done.stamp
 e2e: install page e2e/node_modules/done.stamp chromium
 	cd e2e && PLAYWRIGHT_JUNIT_OUTPUT_FILE=../.ci/results/playwright.xml npx playwright test --reporter=list,junit
 
-bench: install-test ## Measure
+bench: install-bench ## Measure
 	cd backend && for each in benchmarks/*.py; do echo "$$each" && .venv/bin/python "$$each" || exit 1; done
 
 campaign: install-test ## The long runs themselves, resumable
@@ -59,6 +59,7 @@ lock: install ## Lock the newest Python packages that pyproject.toml allows
 	$(BIN)/pip install --quiet uv
 	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements.lock pyproject.toml requirements-build.in
 	cd backend && .venv/bin/$(LOCK) --upgrade -c requirements.lock --extra test -o requirements-test.lock pyproject.toml requirements-build.in
+	cd backend && .venv/bin/$(LOCK) --upgrade -c requirements-test.lock -o requirements-bench.lock requirements-bench.in
 	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements-node.lock requirements-node.in
 
 clean: ## Remove everything that was installed or built
@@ -69,6 +70,8 @@ clean: ## Remove everything that was installed or built
 install: $(VENV)/installed.stamp
 
 install-test: $(VENV)/installed-test.stamp
+
+install-bench: $(VENV)/installed-bench.stamp
 
 page: frontend/build/index.html
 
@@ -84,6 +87,10 @@ $(VENV)/installed.stamp: $(VENV)/made.stamp backend/requirements.lock backend/py
 
 $(VENV)/installed-test.stamp: $(VENV)/installed.stamp backend/requirements-test.lock
 	$(BIN)/pip install --quiet --require-hashes -r backend/requirements-test.lock
+	@touch $@
+
+$(VENV)/installed-bench.stamp: $(VENV)/installed-test.stamp backend/requirements-bench.lock
+	$(BIN)/pip install --quiet --require-hashes -r backend/requirements-bench.lock
 	@touch $@
 
 .node/done.stamp: backend/requirements-node.lock
@@ -117,4 +124,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test page node chromium
+.PHONY: help run emulator test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node chromium

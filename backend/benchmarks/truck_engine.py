@@ -39,7 +39,7 @@ def main() -> None:
     """Measure and print."""
     automaton = prepare_station(MODEL).automaton
     say("load and check the model", median(lambda: prepare_station(MODEL), 3))
-    say("safe states by enumeration", median(lambda: synthesise(automaton), 3))
+    say("safe states and guards", median(lambda: synthesise(automaton), 3))
     supervisor = synthesise(automaton)
     say("sweep order", median(lambda: sweep_order(automaton, supervisor), 3))
     order = sweep_order(automaton, supervisor)
