@@ -11,6 +11,7 @@ from sequence_planner.control.execution import TickOutcome
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.outside import Outside
 from sequence_planner.ros.memory import MemoryNetwork
 
 PLACE = "operator.place_bolt_pair(bolt_pair_1)"
@@ -24,7 +25,8 @@ def alarms(rig: Rig) -> Alarms:
         return Commander(station.pipelines.outgoing, station.registry, transport)
 
     feeds = Feeds(station.pipelines.incoming, station.registry)
-    return Alarms(rig.execution, feeds, NetworkWatch(station.pipelines, station.registry), asyncio.run(join()))
+    network = NetworkWatch(station.pipelines, station.registry)
+    return Alarms(rig.execution, Outside(rig.execution), feeds, network, asyncio.run(join()))
 
 
 def outcome(

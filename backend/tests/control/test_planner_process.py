@@ -18,13 +18,13 @@ from control.bench import cell, until
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.control import planner_process
 from sequence_planner.control.planner_process import Listener, PlannerProcess
-from sequence_planner.planning.plan import PlanAnswer, PlanRequest, Verdict
+from sequence_planner.planning.plan import Answer, PlanAnswer, PlanRequest, Verdict
 
 
 @dataclass
 class Asking:
     planner: PlannerProcess
-    answers: list[PlanAnswer] = field(default_factory=list)
+    answers: list[Answer] = field(default_factory=list)
     failures: list[tuple[str, bool]] = field(default_factory=list)
 
     def ask(self, goal: str = "fetch(left)") -> None:
@@ -34,10 +34,10 @@ class Asking:
 def run(scenario: Callable[[Asking], Awaitable[None]]) -> None:
     async def live() -> None:
         station, supervisor = cell()
-        answers: list[PlanAnswer] = []
+        answers: list[Answer] = []
         failures: list[tuple[str, bool]] = []
         listener = Listener(
-            lambda request, answer: answers.append(answer), lambda why, again: failures.append((why, again))
+            lambda request, answer: answers.append(answer), lambda request, why, again: failures.append((why, again))
         )
         planner = PlannerProcess(station.automaton, supervisor, asyncio.get_running_loop(), listener)
         try:
@@ -64,7 +64,9 @@ def test_a_question_asked_at_once_is_answered() -> None:
         with pytest.raises(RuntimeError):
             asking.ask()
         await until(lambda: not asking.planner.busy)
-        assert asking.answers[0].verdict is Verdict.FOUND
+        (answer,) = asking.answers
+        assert isinstance(answer, PlanAnswer)
+        assert answer.verdict is Verdict.FOUND
         assert asking.planner.trouble is None
 
     run(scenario)

@@ -10,7 +10,7 @@ from sequence_planner.automaton.structure import Automaton, Operation, State
 from sequence_planner.automaton.tick import supervised_start
 from sequence_planner.expressions.syntax import TRUE, And, Comparison, Constant, Expression, Variable
 from sequence_planner.expressions.types import Value
-from sequence_planner.synthesis.enumeration import SynthesisError, synthesise
+from sequence_planner.synthesis.supervision import SynthesisError, synthesise
 
 from .choices import Choices
 from .explicit import outcomes

@@ -10,8 +10,8 @@ from sequence_planner.control.execution import Execution, TickOutcome
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.outside import Outside
 from sequence_planner.control.view import AlarmView, PlanStatus, Priority, Production
-from sequence_planner.expressions.evaluation import holds
 
 
 @dataclass(frozen=True)
@@ -27,8 +27,11 @@ class Cause:
 class Alarms:
     """The alarms of a station; remembers since when each has been there."""
 
-    def __init__(self, execution: Execution, feeds: Feeds, network: NetworkWatch, commander: Commander) -> None:
+    def __init__(
+        self, execution: Execution, outside: Outside, feeds: Feeds, network: NetworkWatch, commander: Commander
+    ) -> None:
         self._execution = execution
+        self._outside = outside
         self._feeds = feeds
         self._network = network
         self._commander = commander
@@ -88,17 +91,14 @@ class Alarms:
             )
 
     def _state(self) -> Iterator[Cause]:
-        execution = self._execution
-        known = all(execution.state[name] is not None for name in execution.supervisor.safe.names)
-        broken = [s.title for s in execution.automaton.specifications.values() if holds(s.forbidden, execution.state)]
+        situation = self._outside.situation
         # What is only possible with values that are unknown has an alarm of its own: the topic is silent.
-        if broken or (known and not execution.safe):
-            what = f"broken: {', '.join(broken)}" if broken else "a specification could be broken by the devices alone"
+        if situation is not None and situation.certain:
             yield Cause(
                 "unsafe-state",
                 Priority.HIGH,
-                f"The station is outside its safe states; {what}",
-                "Nothing is started until it is back. Bring the devices back by hand if they do not come alone.",
+                self._outside.describe(situation),
+                f"Nothing is started until it is back. {self._outside.way()}",
             )
         for one, other, variable in sorted(self._conflicts):
             yield Cause(

@@ -18,7 +18,7 @@ import structlog
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.planning.plan import PlanAnswer, PlanRequest
+from sequence_planner.planning.plan import Answer, Request
 from sequence_planner.planning.worker import Ready, Word, work
 
 LOG = structlog.get_logger(__name__)
@@ -32,8 +32,8 @@ LONGEST_PAUSE = 30.0  # seconds before a process that has died again and again i
 class Listener:
     """Who hears of it, on the event loop: an answer, or why there is none and whether to ask the same again."""
 
-    answered: Callable[[PlanRequest, PlanAnswer], None]
-    failed: Callable[[str, bool], None]
+    answered: Callable[[Request, Answer], None]
+    failed: Callable[[Request, str, bool], None]
 
 
 class _Worker:
@@ -47,7 +47,7 @@ class _Worker:
         hear: Callable[[_Worker, Word | None], None],
     ) -> None:
         self.ready = False
-        self.questions: SimpleQueue[PlanRequest | None] = SimpleQueue()
+        self.questions: SimpleQueue[Request | None] = SimpleQueue()
         self._loop = loop
         self._hear = hear
         context = multiprocessing.get_context("spawn")
@@ -97,7 +97,7 @@ class PlannerProcess:
         self._arguments = (automaton, supervisor)
         self._loop = loop
         self._listener = listener
-        self._asked: PlanRequest | None = None
+        self._asked: Request | None = None
         self._timer: asyncio.TimerHandle | None = None
         self._worker: _Worker | None = None
         self._deaths = 0  # since the last answer
@@ -110,7 +110,7 @@ class PlannerProcess:
         """Whether a question is out, or there is no process to be asked."""
         return self._asked is not None or self._worker is None
 
-    def ask(self, request: PlanRequest) -> None:
+    def ask(self, request: Request) -> None:
         """Ask; the one question before must have been answered."""
         if self._asked is not None or self._worker is None:
             raise RuntimeError("the planner is asked one thing at a time")
@@ -159,7 +159,8 @@ class PlannerProcess:
         if isinstance(word, str):
             LOG.error("a question was not answered", why=word)
             self.trouble = word
-            self._listener.failed(word, False)
+            if request is not None:
+                self._listener.failed(request, word, False)
         elif request is not None:
             self.trouble = None
             self._listener.answered(request, word)
@@ -172,6 +173,6 @@ class PlannerProcess:
         LOG.warning("planner is replaced", why=why, pause=pause)
         self._timer = self._loop.call_later(pause, self._start)
         self.trouble = f"the planner {why} and is started again"
-        if self._asked is not None:
+        if (request := self._asked) is not None:
             self._asked, self._owes = None, True
-            self._listener.failed(self.trouble, True)
+            self._listener.failed(request, self.trouble, True)

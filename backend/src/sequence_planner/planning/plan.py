@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
@@ -31,7 +31,7 @@ class Plan:
     @property
     def starts(self) -> tuple[tuple[int, str], ...]:
         """The start order, each with the number of its tick, counted from 1."""
-        return tuple((number, name) for number, tick in enumerate(self.ticks, 1) for name in tick.starts)
+        return starts_of(self.ticks)
 
 
 @dataclass(frozen=True)
@@ -65,3 +65,54 @@ class PlanAnswer:
     left_out: tuple[str, ...]
     searched: int
     seconds: float
+
+
+@dataclass(frozen=True)
+class WayBackRequest:
+    """A state outside the safe set, from which a way back is wanted until `deadline` seconds have passed."""
+
+    state: Mapping[str, Value | None]
+    deadline: float = 2.0
+    longest: int = 40
+
+
+@dataclass(frozen=True)
+class WayBack:
+    """A way into the safe set, with the fewest ticks and then the fewest starts.
+
+    `end` is the first safe state on it, one after step 3 or after the last of its starts. `breaks` are the
+    specifications that it violates on the way although they were not violated before.
+    """
+
+    ticks: tuple[PlanTick, ...]
+    end: Mapping[str, Value | None]
+    breaks: tuple[str, ...]
+    minimal_starts: bool
+
+    @property
+    def starts(self) -> tuple[tuple[int, str], ...]:
+        """The starts in order, each with the number of its tick, counted from 1."""
+        return starts_of(self.ticks)
+
+
+@dataclass(frozen=True)
+class WayBackAnswer:
+    """An answer. Without a way, there is none of up to `searched` ticks.
+
+    `threatened` are specifications that are not violated yet and that what happens without starts, faults included, can
+    violate soonest; none are named while one is violated.
+    """
+
+    way: WayBack | None
+    threatened: tuple[str, ...]
+    searched: int
+    seconds: float
+
+
+Request = PlanRequest | WayBackRequest
+Answer = PlanAnswer | WayBackAnswer
+
+
+def starts_of(ticks: Iterable[PlanTick]) -> tuple[tuple[int, str], ...]:
+    """All starts, each with the number of its tick, counted from 1."""
+    return tuple((number, name) for number, tick in enumerate(ticks, 1) for name in tick.starts)

@@ -3,19 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections import OrderedDict
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.planning.plan import Plan, PlanAnswer, PlanRequest, Verdict
 from sequence_planner.planning.relaxation import unreachable_goals
 from sequence_planner.planning.replay import Replay
-from sequence_planner.planning.search import Search, SearchTimeoutError
+from sequence_planner.planning.search import Searches, SearchTimeoutError
 from sequence_planner.planning.sweep import sweep_order
-
-# A solver for each set of unknown variables; topics come and go in few combinations.
-_KEPT_SEARCHES = 4
 
 
 class PlannerError(Exception):
@@ -27,10 +23,8 @@ class Planner:
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self._automaton = automaton
-        self._supervisor = supervisor
         self._replay = Replay(automaton, supervisor)
-        self._order = sweep_order(automaton, supervisor)
-        self._searches: OrderedDict[frozenset[str], Search] = OrderedDict()
+        self._searches = Searches(automaton, supervisor, sweep_order(automaton, supervisor))
 
     def answer(self, request: PlanRequest) -> PlanAnswer:
         """The plan for as many of the goals as can be planned together, the lowest priority given up first.
@@ -55,7 +49,7 @@ class Planner:
             # Each attempt gets half of what is left, so that fewer goals still have their turn.
             now = time.monotonic()
             try:
-                plan = self._search(request.state).plan(
+                plan = self._searches.search(request.state).plan(
                     request.state, missing, request.longest, now + max((deadline - now) / 2, 0.05)
                 )
                 searched = request.longest
@@ -75,12 +69,3 @@ class Planner:
         plan = tightened
         seconds = time.monotonic() - began
         return PlanAnswer(Verdict.FOUND, plan, tuple(goals), left_out, len(plan.ticks), seconds)
-
-    def _search(self, state: State) -> Search:
-        unknown = frozenset(name for name in self._automaton.variables if state[name] is None)
-        if unknown not in self._searches:
-            self._searches[unknown] = Search(self._automaton, self._supervisor, self._order, unknown)
-            if len(self._searches) > _KEPT_SEARCHES:
-                self._searches.popitem(last=False)[1].close()
-        self._searches.move_to_end(unknown)
-        return self._searches[unknown]

@@ -8,16 +8,20 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Sequence
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
 
 from pysat.card import ITotalizer
 from pysat.solvers import Solver
 
-from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.planning.circuit import Circuit
 from sequence_planner.planning.encoding import Encoding, SymbolicTick
 from sequence_planner.planning.plan import Plan, PlanTick
+
+# A solver for each set of unknown variables; topics come and go in few combinations.
+_KEPT_SEARCHES = 4
 
 
 class SearchTimeoutError(Exception):
@@ -54,24 +58,46 @@ class Search:
         `deadline` is on the clock of `time.monotonic`. Raises `SearchTimeoutError` when it passes before any plan is
         found; a plan found in time whose starts could not be proven fewest says so.
         """
+        return self._shortest(
+            state, lambda length: [self._goal(goal, length) for goal in goals], longest, deadline, last_starts=False
+        )
+
+    def plan_into(self, states: StateSet, state: State, longest: int, deadline: float) -> Plan | None:
+        """The same for a run into `states`, none of whose variables is unknown, after step 3 or after a start.
+
+        What its last tick starts counts as well.
+        """
+
+        def inside(length: int) -> list[int]:
+            last = self._ticks[length - 1]
+            members = (self._encoding.reading.member(states, each) for each in (last.synchronised, last.end))
+            return [self._circuit.disjunction(members)]
+
+        return self._shortest(state, inside, longest, deadline, last_starts=True)
+
+    def _shortest(
+        self, state: State, wanted: Callable[[int], list[int]], longest: int, deadline: float, last_starts: bool
+    ) -> Plan | None:
+        """`wanted` has the literals that say so many ticks are enough; without `last_starts` the last has none."""
         given = self._given(state)
         for length in range(1, longest + 1):
             self._unroll(length)
-            wanted = [self._goal(goal, length) for goal in goals]
-            answer = self._solve([*given, *wanted], deadline)
+            assumptions = [*given, *wanted(length)]
+            answer = self._solve(assumptions, deadline)
             if answer is None:
                 raise SearchTimeoutError(length - 1)
             if answer:
-                return self._fewest_starts([*given, *wanted], length, deadline)
+                return self._fewest_starts(assumptions, length, length if last_starts else length - 1, deadline)
         return None
 
-    def _fewest_starts(self, assumptions: list[int], length: int, deadline: float) -> Plan:
+    def _fewest_starts(self, assumptions: list[int], length: int, starting: int, deadline: float) -> Plan:
+        """Of the runs of `length` ticks, of which the first `starting` have starts."""
         while True:
-            ticks = self._read(length)
+            ticks = self._read(length, starting)
             count = sum(len(tick.starts) for tick in ticks)
             if count == 0:
                 return Plan(ticks, minimal_ticks=True, minimal_starts=True)
-            answer = self._solve([*assumptions, *self._at_most(count - 1, length)], deadline)
+            answer = self._solve([*assumptions, *self._at_most(count - 1, starting)], deadline)
             if not answer:
                 return Plan(ticks, minimal_ticks=True, minimal_starts=answer is False)
 
@@ -99,20 +125,17 @@ class Search:
             reached.append(self._circuit.disjunction((holds, *reached[-1:])))
         return reached[length - 1]
 
-    def _choices(self, length: int) -> list[int]:
-        """The choices of starts that can still serve a goal: all but those of the last tick."""
-        return [choice for tick in self._ticks[: length - 1] for _, choice in tick.starts]
-
-    def _at_most(self, bound: int, length: int) -> list[int]:
-        choices = self._choices(length)
+    def _at_most(self, bound: int, starting: int) -> list[int]:
+        """The literals that bound the number of starts in the first `starting` ticks."""
+        choices = [choice for tick in self._ticks[:starting] for _, choice in tick.starts]
         if bound >= len(choices):
             return []
-        counter = self._bounds.get(length)
+        counter = self._bounds.get(starting)
         if counter is None or len(counter.rhs) <= bound:
             counter = ITotalizer(choices, ubound=bound + 1, top_id=self._circuit.top)
             self._circuit.reserve(counter.top_id)
             self._solver.append_formula(counter.cnf.clauses)
-            self._bounds[length] = counter
+            self._bounds[starting] = counter
         return [-counter.rhs[bound]]
 
     def _solve(self, assumptions: list[int], deadline: float) -> bool | None:
@@ -128,14 +151,34 @@ class Search:
             alarm.join()
             self._solver.clear_interrupt()
 
-    def _read(self, length: int) -> tuple[PlanTick, ...]:
+    def _read(self, length: int, starting: int) -> tuple[PlanTick, ...]:
         model = self._solver.get_model()
         assert model is not None
         true = {literal for literal in model if literal > 0}
         return tuple(
             PlanTick(
                 tuple(name for name, choice in tick.effects.items() if choice in true),
-                tuple(name for name, choice in tick.starts if choice in true) if number < length else (),
+                tuple(name for name, choice in tick.starts if choice in true) if number <= starting else (),
             )
             for number, tick in enumerate(self._ticks[:length], start=1)
         )
+
+
+class Searches:
+    """A search for each set of variables that are unknown together, kept warm from question to question."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor, order: Sequence[Ability]) -> None:
+        self._automaton = automaton
+        self._supervisor = supervisor
+        self._order = order
+        self._kept: OrderedDict[frozenset[str], Search] = OrderedDict()
+
+    def search(self, state: State) -> Search:
+        """The one that plans from `state`."""
+        unknown = frozenset(name for name in self._automaton.variables if state[name] is None)
+        if unknown not in self._kept:
+            self._kept[unknown] = Search(self._automaton, self._supervisor, self._order, unknown)
+            if len(self._kept) > _KEPT_SEARCHES:
+                self._kept.popitem(last=False)[1].close()
+        self._kept.move_to_end(unknown)
+        return self._kept[unknown]

@@ -8,6 +8,7 @@ pairs do not commute is asked of the solver, over all safe states. Where they de
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Set
+from dataclasses import replace
 from graphlib import TopologicalSorter
 from itertools import permutations
 
@@ -24,11 +25,23 @@ def sweep_order(automaton: Automaton, supervisor: Supervisor) -> tuple[Ability, 
     """An order of the abilities, with repetitions if need be, of which every possible order of starts is a part."""
     abilities = [ability for ability in automaton.abilities.values() if not ability.restart]
     before: dict[str, set[str]] = {ability.name: set() for ability in abilities}
+    used = {ability.name: _used(automaton, supervisor, ability) for ability in abilities}
+    written = {ability.name: frozenset(map(target, ability.start_actions)) for ability in abilities}
+    read = {flag.name: read_variables(automaton, (flag.predicate,)) for flag in automaton.flags}
     for first, second in permutations(abilities, 2):
-        touching = _touches(automaton, supervisor, first, second) or _touches(automaton, supervisor, second, first)
-        if touching and _order_matters(automaton, supervisor, first, second):
-            before[second.name].add(first.name)
+        one, other = first.name, second.name
+        if written[one].isdisjoint(used[other]) and written[other].isdisjoint(used[one]):
+            continue
+        concerned = used[one] | used[other] | frozenset(supervisor.safe.names)
+        if _order_matters(_part(automaton, concerned, read), supervisor, first, second):
+            before[other].add(one)
     return tuple(automaton.abilities[name] for name in _linear(before))
+
+
+def _part(automaton: Automaton, names: Set[str], read: Mapping[str, Set[str]]) -> Automaton:
+    """The automaton with no more than the variables `names` and the flags that `read` nothing else."""
+    variables = {name: variable for name, variable in automaton.variables.items() if name in names}
+    return replace(automaton, variables=variables, flags=tuple(f for f in automaton.flags if read[f.name] <= names))
 
 
 def _linear(before: Mapping[str, Set[str]]) -> Iterator[str]:
@@ -60,20 +73,22 @@ def _above(name: str, before: Mapping[str, Set[str]]) -> Set[str]:
     return found
 
 
-def _touches(automaton: Automaton, supervisor: Supervisor, one: Ability, other: Ability) -> bool:
-    """Whether `one` writes something that `other` reads or writes."""
-    written = {target(action) for action in one.start_actions}
-    used = set(read_variables(automaton, (other.enabled, other.start_guard)))
-    for action in other.start_actions:
+def _used(automaton: Automaton, supervisor: Supervisor, ability: Ability) -> frozenset[str]:
+    """The variables that a start of `ability` reads or writes, and those that decide whether it is allowed."""
+    used = set(read_variables(automaton, (ability.enabled, ability.start_guard)))
+    for action in ability.start_actions:
         condition = () if action.condition is None else (action.condition,)
         used |= {target(action), *read_variables(automaton, (action.value, *condition))}
-    if (guard := supervisor.guards.get(other.name)) is not None:
+    if (guard := supervisor.guards.get(ability.name)) is not None:
         used |= set(guard.names)
-    return bool(written & used)
+    return frozenset(used)
 
 
 def _order_matters(automaton: Automaton, supervisor: Supervisor, first: Ability, second: Ability) -> bool:
-    """Whether in some safe state `first` then `second` can start, and the other way round not, or differently."""
+    """Whether in some safe state `first` then `second` can start, and the other way round not, or differently.
+
+    `automaton` has at least the variables that decide it.
+    """
     with Solver("minisat22") as solver:
         circuit = Circuit(solver)
         encoding = Encoding(automaton, supervisor, circuit, frozenset())

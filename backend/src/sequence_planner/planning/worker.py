@@ -10,8 +10,9 @@ from multiprocessing.connection import Connection
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.lifeline import end_without_parent
-from sequence_planner.planning.plan import PlanAnswer, PlanRequest
+from sequence_planner.planning.plan import Answer, Request, WayBackRequest
 from sequence_planner.planning.planner import Planner, PlannerError
+from sequence_planner.planning.way_back import WaysBack
 
 
 class Ready(Enum):
@@ -21,23 +22,23 @@ class Ready(Enum):
 
 
 # What comes from the process; a text says why there is no answer.
-Word = Ready | PlanAnswer | str
+Word = Ready | Answer | str
 
 
 def work(connection: Connection, automaton: Automaton, supervisor: Supervisor) -> None:
-    """Answer each `PlanRequest` with a `PlanAnswer`, or with the text of an error, until the other end is closed.
+    """Answer each request, or say in the text of an error why not, until the other end is closed.
 
     After an error that nobody thought of, the process ends: what it has learnt could be wrong.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
     end_without_parent()
-    planner = Planner(automaton, supervisor)
+    planner, ways = Planner(automaton, supervisor), WaysBack(automaton, supervisor.safe)
     try:
         connection.send(Ready.READY)
         while True:
-            request: PlanRequest = connection.recv()
+            request: Request = connection.recv()
             try:
-                word: Word = planner.answer(request)
+                word: Word = ways.answer(request) if isinstance(request, WayBackRequest) else planner.answer(request)
             except PlannerError as error:
                 word = str(error)
             except Exception as error:
