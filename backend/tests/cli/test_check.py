@@ -36,7 +36,8 @@ def test_warnings_for_programs() -> None:
     (finding,) = [each for each in document["findings"] if each["kind"] == "relies-on-executing"]
     assert finding.pop("message").startswith("`nutrunner.run_nut` finishes only after it was seen executing")
     file = str(EXAMPLE / "resources" / "nutrunner.yaml")
-    assert finding == {"severity": "warning", "kind": "relies-on-executing", "file": file, "line": 19, "column": 13}
+    place = {"file": file, "line": 19, "column": 13}
+    assert finding == {"severity": "warning", "kind": "relies-on-executing", **place, "trace": None}
 
 
 def test_unusable_input_for_programs(tmp_path: Path) -> None:
@@ -51,6 +52,7 @@ def test_unusable_input_for_programs(tmp_path: Path) -> None:
         "line": 1,
         "column": 1,
         "message": "`nam` is not known here; did you mean `name`?",
+        "trace": None,
     }
 
 
@@ -66,3 +68,32 @@ def test_a_plain_automaton_that_is_none(tmp_path: Path) -> None:
     code, out, err = command("check", file)
     assert (code, out) == (2, "")
     assert "did you mean `user`?" in err
+
+
+def test_a_trace_is_told_step_by_step_up_to_what_is_forbidden(tmp_path: Path) -> None:
+    file = plain(tmp_path)
+    text = file.read_text(encoding="utf-8").replace('"user == idle"}', '"true"}')
+    file.write_text(text.replace("user == has and free", "user == has"), encoding="utf-8")
+    code, out, err = command("check", file)
+    assert (code, err) == (1, "")
+    assert out.splitlines()[:3] == [
+        f"{file}:6:14: warning: `grab` never starts, as the supervisor forbids it wherever it could: it would lead to "
+        "what `forbidden_1` forbids. Let something else happen before it, forbid less, or leave it out [never-allowed]",
+        "  step 1: ask: user := waits",
+        "  step 2: grab: user := has, free := false, which forbidden_1 forbids",
+    ]
+
+
+def test_specifications_that_cannot_be_met_for_programs(tmp_path: Path) -> None:
+    file = plain(tmp_path)
+    file.write_text(file.read_text(encoding="utf-8").replace("user == has and free", "user == waits"), encoding="utf-8")
+    code, document = as_json("check", file)
+    (finding,) = document["findings"]
+    assert (code, finding["kind"], finding["line"]) == (1, "specification-cannot-be-met", 8)
+    assert finding["message"].endswith("In conflict are already `forbidden_1` and that nobody decides about `ask`")
+    changes = {"kind": "transition", "names": ["ask"], "finished": [], "changes": {"user": "waits"}}
+    assert finding["trace"] == {
+        "initial": {"user": "idle", "free": True},
+        "forbidden_by": [],
+        "steps": [{**changes, "forbidden_by": ["forbidden_1"]}],
+    }

@@ -17,6 +17,8 @@ Operator with watch (operator)
 
   ability operator.place_bolt: place bolt
     enabled     bolts == empty and not operator.task and not operator.acknowledged
+    supervisor  robot.pose != bolt_pair and robot.target_pose != bolt_pair
+                (because of no_standing_tool_on_placed_bolts)
     start       operator.task := true
     executing   operator.task and not operator.acknowledged
     finish      operator.place_bolt.executing and operator.acknowledged

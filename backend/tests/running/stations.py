@@ -83,6 +83,16 @@ class RunningStation:
             return False
         return station.get("production") in ("waiting", "started")
 
+    def analysed(self) -> Any:  # noqa: ANN401 - JSON
+        """What synthesis has found of the station; None before that is all."""
+        assert self.process.poll() is None, "the station has ended"
+        try:
+            answer = httpx.get(f"http://127.0.0.1:{self.port}/api/v1/analysis")
+        except httpx.HTTPError:
+            return None
+        analysis = answer.json().get("analysis") if answer.status_code == httpx.codes.OK else None
+        return analysis if analysis is not None and analysis["pending"] is None else None
+
     def value(self, name: str) -> object:
         return self.get("variables", "state")[name]["value"]
 

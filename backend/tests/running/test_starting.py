@@ -4,12 +4,23 @@ from __future__ import annotations
 
 import asyncio
 import os
+import shutil
 import signal
 from pathlib import Path
 
 import pytest
 
-from running.stations import MODEL, eventually, finished, foreign_node, station
+from running.stations import (
+    MODEL,
+    REPOSITORY,
+    RunningStation,
+    eventually,
+    finished,
+    foreign_node,
+    free_port,
+    process,
+    station,
+)
 from sequence_planner.ros.transport import QualityOfService
 
 
@@ -64,3 +75,26 @@ def test_what_cannot_be_run_says_what_to_do(arguments: tuple[str, ...], said: st
     assert refused.returncode == 2
     assert said in refused.stderr
     assert "Traceback" not in refused.stderr
+
+
+def test_specifications_that_cannot_be_met_are_shown_with_a_run_and_nothing_is_started(tmp_path: Path) -> None:
+    model = tmp_path / "station"
+    shutil.copytree(REPOSITORY / MODEL, model)
+    with (model / "specifications.yaml").open("a", encoding="utf-8") as file:
+        file.write("\nacknowledged_tasks:\n  forbidden: operator.acknowledged or robot.pose == home\n")
+    port = free_port()
+    log = tmp_path / "station.log"
+    with process(log, "run", str(model), "--emulator", "--start", "--port", str(port)) as running:
+        shown = RunningStation(running, port, log)
+        eventually(lambda: shown.analysed() is not None)
+        analysis = shown.analysed()
+        assert analysis is not None
+        assert (analysis["supervised"], analysis["guards"]) == (False, None)
+        [finding] = analysis["findings"]
+        assert "specification acknowledged_tasks cannot be met" in finding["message"]
+        assert (finding["file"], finding["line"]) == (str(model / "specifications.yaml"), 10)
+        assert finding["trace"]["initial"]["robot.pose"] == "home"
+        assert list(shown.get("alarms")) == ["no-supervisor"]
+        refused = shown.post("production/start", {})
+        assert (refused.status_code, refused.json()["type"]) == (409, "/problems/no-supervisor")
+        assert "acknowledged_tasks" in refused.json()["detail"]

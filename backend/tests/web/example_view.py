@@ -137,5 +137,7 @@ def example_view(**changes: object) -> StationView:
             )
         },
         alarms={"slow": AlarmView(priority=Priority.LOW, text="The robot is slow", action="Look at it", since=998.0)},
+        way_back=None,
+        analysis=None,
     )
     return view.model_copy(update=changes)

@@ -44,6 +44,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/analysis": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Analysis
+         * @description The guards that the supervisor adds, how many states can be reached, and findings with runs that show them.
+         */
+        get: operations["analysis_api_v1_analysis_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/mode": {
         parameters: {
             query?: never;
@@ -340,6 +360,40 @@ export interface components {
             time: number;
         };
         /**
+         * AnalysisAnswer
+         * @description What synthesis has found of the station; null before it has found anything.
+         */
+        AnalysisAnswer: {
+            analysis: components["schemas"]["AnalysisDocument"] | null;
+            /** Tick */
+            tick: number;
+            /** Time */
+            time: number;
+        };
+        /**
+         * AnalysisDocument
+         * @description An `Analysis`: what is null has not been computed, or there is none.
+         *
+         *     `supervised` says whether there is a supervisor; `guards` are of what it restricts: abilities, and in a plain
+         *     automaton events.
+         */
+        AnalysisDocument: {
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][] | null;
+            /** Guards */
+            guards: {
+                [key: string]: components["schemas"]["GuardDocument"];
+            } | null;
+            /** Pending */
+            pending: string | null;
+            /** Reachable States */
+            reachable_states: number | null;
+            /** Supervised */
+            supervised: boolean | null;
+            /** Supervised States */
+            supervised_states: number | null;
+        };
+        /**
          * ClientMessage
          * @description Any message from a client.
          */
@@ -366,6 +420,18 @@ export interface components {
             sequence: number;
         };
         /**
+         * DifferenceView
+         * @description A variable that has another value in the nearest safe state.
+         */
+        DifferenceView: {
+            /** Name */
+            name: string;
+            /** Now */
+            now: boolean | number | string;
+            /** Safe */
+            safe: boolean | number | string;
+        };
+        /**
          * FieldError
          * @description One place in a request that is not as it must be, e.g. `body.mode`, and what was expected there.
          */
@@ -374,6 +440,44 @@ export interface components {
             expected: string;
             /** Field */
             field: string;
+        };
+        /**
+         * FindingDocument
+         * @description Something suspicious, where it is written, and a run that shows it.
+         */
+        FindingDocument: {
+            /** Column */
+            column: number;
+            /** File */
+            file: string;
+            /** Kind */
+            kind: string;
+            /** Line */
+            line: number;
+            /** Message */
+            message: string;
+            /** Severity */
+            severity: string;
+            trace: components["schemas"]["TraceDocument"] | null;
+        };
+        /**
+         * GuardDocument
+         * @description What the supervisor adds to the guards of `starts`; `guard` is null when only the states themselves say it.
+         *
+         *     `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could be
+         *     reached any more.
+         */
+        GuardDocument: {
+            /** Guard */
+            guard: string | null;
+            /** Literals */
+            literals: number | null;
+            /** Rest */
+            rest: boolean;
+            /** Specifications */
+            specifications: string[];
+            /** Starts */
+            starts: string[];
         };
         /**
          * Health
@@ -589,6 +693,16 @@ export interface components {
             view: components["schemas"]["StationView"];
         };
         /**
+         * SpecificationView
+         * @description A ground specification; several can have one title.
+         */
+        SpecificationView: {
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+        };
+        /**
          * StartBody
          * @description Nothing: to start production is all that there is to say.
          */
@@ -633,6 +747,7 @@ export interface components {
             alarms?: {
                 [key: string]: components["schemas"]["AlarmView"];
             };
+            analysis?: components["schemas"]["AnalysisDocument"] | null;
             mode?: components["schemas"]["Mode"];
             /** Operations */
             operations?: {
@@ -661,6 +776,7 @@ export interface components {
             variables?: {
                 [key: string]: components["schemas"]["VariableView"];
             };
+            way_back?: components["schemas"]["WayBackView"] | null;
         };
         /**
          * StationIdentity
@@ -711,6 +827,7 @@ export interface components {
             alarms: {
                 [key: string]: components["schemas"]["AlarmView"];
             };
+            analysis: components["schemas"]["AnalysisDocument"] | null;
             mode: components["schemas"]["Mode"];
             /** Operations */
             operations: {
@@ -739,6 +856,28 @@ export interface components {
             variables: {
                 [key: string]: components["schemas"]["VariableView"];
             };
+            way_back: components["schemas"]["WayBackView"] | null;
+        };
+        /**
+         * StepDocument
+         * @description A step of a trace: what happens (`kind` and `names`), what changes, and the specifications that forbid the state
+         *     after it; `text` says it in a line.
+         */
+        StepDocument: {
+            /** Changes */
+            changes: {
+                [key: string]: boolean | number | string;
+            };
+            /** Finished */
+            finished: string[];
+            /** Forbidden By */
+            forbidden_by: string[];
+            /** Kind */
+            kind: string;
+            /** Names */
+            names: string[];
+            /** Text */
+            text: string;
         };
         /**
          * StepStatus
@@ -833,6 +972,18 @@ export interface components {
             };
         };
         /**
+         * TraceDocument
+         * @description A run from an initial state; null is unknown.
+         */
+        TraceDocument: {
+            /** Initial */
+            initial: {
+                [key: string]: boolean | number | string | null;
+            };
+            /** Steps */
+            steps: components["schemas"]["StepDocument"][];
+        };
+        /**
          * VariableKind
          * @description Who writes a variable.
          * @enum {string}
@@ -854,6 +1005,45 @@ export interface components {
             since: number | null;
             /** Value */
             value: boolean | number | string | null;
+        };
+        /**
+         * WayBackStepView
+         * @description One start on the way back. `tick` counts from the tick in which the way begins.
+         */
+        WayBackStepView: {
+            /** Ability */
+            ability: string;
+            /** Resource */
+            resource: string;
+            /** Tick */
+            tick: number;
+            /** Title */
+            title: string;
+        };
+        /**
+         * WayBackView
+         * @description The state does not count as safe: why, how the nearest safe state differs, and the shortest way back.
+         *
+         *     Without differences and with nothing violated the state may be safe, and what `awaits` names decides. `ticks` is
+         *     null while no way is known; a way without steps needs no start.
+         */
+        WayBackView: {
+            /** Awaits */
+            awaits: string[];
+            /** Breaks */
+            breaks: components["schemas"]["SpecificationView"][];
+            /** Differences */
+            differences: components["schemas"]["DifferenceView"][];
+            /** Reason */
+            reason: string;
+            /** Steps */
+            steps: components["schemas"]["WayBackStepView"][];
+            /** Threatened */
+            threatened: components["schemas"]["SpecificationView"][];
+            /** Ticks */
+            ticks: number | null;
+            /** Violated */
+            violated: components["schemas"]["SpecificationView"][];
         };
     };
     responses: never;
@@ -918,6 +1108,44 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["AlarmsAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    analysis_api_v1_analysis_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AnalysisAnswer"];
                 };
             };
             /** @description A problem */

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
+from sequence_planner.analysis.document import GuardDocument
 from sequence_planner.automaton.structure import Ability, Automaton, Effect
 from sequence_planner.automaton.transitions import Phase, Transition, transitions
 from sequence_planner.expressions.printing import print_assignment, print_expression
@@ -12,8 +13,10 @@ from sequence_planner.expressions.syntax import Assignment, Expression
 Json = dict[str, object]
 
 
-def described_automaton(automaton: Automaton, chosen: Callable[[str], bool]) -> Json:
-    """Those parts whose names are chosen."""
+def described_automaton(
+    automaton: Automaton, guards: Mapping[str, GuardDocument], chosen: Callable[[str], bool]
+) -> Json:
+    """Those parts whose names are chosen; `guards` are what the supervisor adds to the starts of abilities."""
     return {
         "name": automaton.name,
         "title": automaton.title,
@@ -29,7 +32,9 @@ def described_automaton(automaton: Automaton, chosen: Callable[[str], bool]) -> 
             for name, variable in automaton.variables.items()
             if chosen(name)
         },
-        "abilities": {name: _ability(ability) for name, ability in automaton.abilities.items() if chosen(name)},
+        "abilities": {
+            name: _ability(ability, guards.get(name)) for name, ability in automaton.abilities.items() if chosen(name)
+        },
         "effects": {effect.name: _effect(effect) for effect in automaton.effects if chosen(effect.name)},
         "operations": {
             name: {
@@ -64,13 +69,16 @@ def described_automaton(automaton: Automaton, chosen: Callable[[str], bool]) -> 
     }
 
 
-def _ability(ability: Ability) -> Json:
+def _ability(ability: Ability, guard: GuardDocument | None) -> Json:
     human = ability.human
     return {
         "title": ability.title,
         "resource": ability.resource,
         "enabled": print_expression(ability.enabled),
         "start": {"when": print_expression(ability.start_guard), "do": _actions(ability.start_actions)},
+        "supervisor": None
+        if guard is None
+        else {"when": guard.guard, "specifications": guard.specifications, "rest": guard.rest},
         "executing": print_expression(ability.executing),
         "finished": print_expression(ability.finished),
         "finish": None

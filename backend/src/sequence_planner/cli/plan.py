@@ -10,6 +10,7 @@ import typer
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import record_activity, update_operations
+from sequence_planner.cli.analysing import supervisor_of
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.moments import Moment, StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
@@ -18,7 +19,7 @@ from sequence_planner.planning.plain import PlainAnswer, plan_transitions
 from sequence_planner.planning.plan import PlanAnswer, PlanRequest, Verdict
 from sequence_planner.planning.planner import Planner
 from sequence_planner.station import require_runnable
-from sequence_planner.synthesis.supervision import SynthesisError, synthesise
+from sequence_planner.synthesis.supervision import SynthesisError
 
 Goals = Annotated[
     list[str] | None,
@@ -41,7 +42,7 @@ def plan(
     try:
         if found_model.station is not None:
             require_runnable(found_model.station)
-        supervisor = synthesise(automaton)
+        supervisor = supervisor_of(automaton)
     except (SynthesisError, ModelError) as error:
         refuse(str(error))
     if automaton.one_at_a_time:

@@ -11,6 +11,7 @@ from typing import Annotated
 
 import typer
 
+from sequence_planner.analysis.process import SynthesisEndedError
 from sequence_planner.cli.options import StationFolder, refuse
 from sequence_planner.control.unix_socket import SocketTakenError
 from sequence_planner.emulation.process import BY_HAND_TOPIC, BY_HAND_TYPE, Emulation, emulate
@@ -26,7 +27,6 @@ from sequence_planner.ros.exclusivity import DISCOVERY
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import QualityOfService, Transport, TransportError
 from sequence_planner.station import ReadyStation, prepare_station, require_runnable
-from sequence_planner.synthesis.supervision import SynthesisError
 from sequence_planner.web.settings import Settings, SettingsError
 
 TransportOption = Annotated[
@@ -165,7 +165,7 @@ def _until_interrupted(
 
     try:
         asyncio.run(live())
-    except (TransportError, SynthesisError, SocketTakenError) as error:
+    except (TransportError, SynthesisEndedError, SocketTakenError) as error:
         refuse(str(error))
 
 

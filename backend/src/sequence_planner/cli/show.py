@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Annotated
 
 import typer
 
+from sequence_planner.analysis.document import GuardDocument
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, Operation, VariableDeclaration
+from sequence_planner.cli.analysing import analysed
 from sequence_planner.cli.describing import described_automaton
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.options import AnyModel, AsJson, print_json, refuse
@@ -16,6 +18,9 @@ from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.syntax import FALSE, TRUE, Assignment, Expression
 
 Lines = Iterator[str]
+Guards = Mapping[str, GuardDocument]  # by ability
+
+LONGEST = 30.0  # seconds that whoever wants to see a model waits for guards
 
 
 def show(
@@ -29,6 +34,7 @@ def show(
     """Show what a model means: its variables, ground abilities with their effects, operations and specifications.
 
     A NAME shows what bears it and what begins with it: `robot` is all of the robot, `robot.move` all its instances.
+    The guard that the supervisor adds to a start stands apart from those that are written, with where it comes from.
     With --json also the transitions of each phase of the tick, with what they read and write.
     """
     automaton = usable_model(model).automaton
@@ -37,10 +43,25 @@ def show(
     for name in wanted:
         if not any(_bears(each, name) for each in known):
             refuse(f"{model}: there is nothing called `{name}`{suggestion(name, known)}")
+    guards = _guards(automaton, wanted)
     if json:
-        print_json(described_automaton(automaton, lambda name: _chosen(name, wanted)))
+        print_json(described_automaton(automaton, guards, lambda name: _chosen(name, wanted)))
         return
-    typer.echo("\n".join(_lines(automaton, wanted)).strip("\n"))
+    typer.echo("\n".join(_lines(automaton, guards, wanted)).strip("\n"))
+
+
+def _guards(automaton: Automaton, wanted: list[str]) -> Guards:
+    """The guard that the supervisor adds to each ability, if any of them are to be shown."""
+    if not automaton.specifications and automaton.rest is None:
+        return {}
+    if not any(_chosen(name, wanted) for name in automaton.abilities):
+        return {}
+    found = analysed(automaton, LONGEST)
+    if found.document.supervised is False:
+        typer.echo("there is no supervisor: `check` says why", err=True)
+    elif found.document.guards is None:
+        typer.echo(f"the guards of the supervisor are not shown: {found.unfinished}", err=True)
+    return {start: guard for guard in (found.document.guards or {}).values() for start in guard.starts}
 
 
 def _names(automaton: Automaton) -> list[str]:
@@ -64,17 +85,17 @@ def _chosen(name: str, wanted: list[str]) -> bool:
     return not wanted or any(_bears(name, each) for each in wanted)
 
 
-def _lines(automaton: Automaton, wanted: list[str]) -> Lines:
+def _lines(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lines:
     if not wanted:
         yield f"{automaton.title} ({automaton.name})"
     for resource, title in (*automaton.resources.items(), (None, "The station")):
         variables = [v for v in automaton.variables.values() if v.resource == resource and _chosen(v.name, wanted)]
         abilities, effects = _of_resource(automaton, resource)
-        shown = [*_variables(variables), *_abilities(abilities, effects, wanted)]
+        shown = [*_variables(variables), *_abilities(abilities, effects, guards, wanted)]
         if shown:
             yield from ("", title if resource is None else f"{title} ({resource})", *shown)
     if automaton.one_at_a_time:
-        yield from _transitions(automaton, wanted)
+        yield from _transitions(automaton, guards, wanted)
     for operation in automaton.operations.values():
         if _chosen(operation.name, wanted):
             yield from ("", *_operation(operation))
@@ -108,22 +129,25 @@ def _variables(variables: Iterable[VariableDeclaration]) -> Lines:
                 yield f"  {kind.value:9}  {variable.name}: {variable.type}, initially {initial}"
 
 
-def _abilities(abilities: Iterable[Ability], effects: Iterable[Effect], wanted: list[str]) -> Lines:
+def _abilities(
+    abilities: Iterable[Ability], effects: Iterable[Effect], guards: Guards, wanted: list[str]
+) -> Lines:
     left = {effect.name: effect for effect in effects}
     for ability in abilities:
         own = [left.pop(name) for name in list(left) if name.startswith(f"{ability.name}.")]
         shown = [effect for effect in own if _chosen(ability.name, wanted) or _chosen(effect.name, wanted)]
         if _chosen(ability.name, wanted):
-            yield from _ability(ability)
+            yield from _ability(ability, guards.get(ability.name))
         for effect in shown:
             yield from _effect(effect)
 
 
-def _ability(ability: Ability) -> Lines:
+def _ability(ability: Ability, guard: GuardDocument | None) -> Lines:
     restart = ", for restart mode only" if ability.restart else ""
     yield from ("", f"  ability {ability.name}: {ability.title}{restart}")
     yield from _condition("enabled", ability.enabled, TRUE)
     yield from _condition("start", ability.start_guard, TRUE)
+    yield from _added(guard)
     yield from _actions("start", ability.start_actions, "    ")
     yield from _condition("executing", ability.executing, FALSE)
     yield from _condition("finished", ability.finished, FALSE)
@@ -148,12 +172,13 @@ def _effect(effect: Effect) -> Lines:
     yield from _actions("do", effect.actions, "      ")
 
 
-def _transitions(automaton: Automaton, wanted: list[str]) -> Lines:
+def _transitions(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lines:
     """Those of a plain automaton."""
     for ability in automaton.abilities.values():
         if _chosen(ability.name, wanted):
             yield from ("", f"controllable {ability.name}")
             yield from _condition("guard", ability.start_guard, TRUE)
+            yield from _added(guards.get(ability.name))
             yield from _actions("set", ability.start_actions, "    ")
     for effect in automaton.effects:
         if _chosen(effect.name, wanted):
@@ -174,6 +199,14 @@ def _condition(name: str, condition: Expression, usual: Expression | None) -> Li
     """A condition, if it says more than the usual one."""
     if condition != usual:
         yield f"    {name:10}  {print_expression(condition)}"
+
+
+def _added(guard: GuardDocument | None) -> Lines:
+    """What the supervisor adds, and the specifications that this comes from."""
+    if guard is not None:
+        reasons = [*guard.specifications, *(["rest"] if guard.rest else [])]
+        yield f"    {'supervisor':10}  {guard.guard or 'see the states'}"
+        yield f"    {'':10}  (because of {', '.join(reasons)})"
 
 
 def _actions(name: str, actions: Iterable[Assignment], margin: str = "  ") -> Lines:

@@ -12,6 +12,7 @@ from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind, State, target
 from sequence_planner.automaton.tick import writes
+from sequence_planner.cli.analysing import supervisor_of
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.moments import StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
@@ -21,7 +22,7 @@ from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.resolution import Scope, resolve_assignment, suggestion
 from sequence_planner.expressions.syntax import ExpressionError
 from sequence_planner.expressions.types import Value, contains
-from sequence_planner.synthesis.supervision import SynthesisError, synthesise
+from sequence_planner.synthesis.supervision import SynthesisError
 
 T = TypeVar("T")
 Sets = Annotated[
@@ -81,7 +82,7 @@ def tick(
 
 def _supervisor(automaton: Automaton, needed: bool) -> Supervisor | None:
     try:
-        return synthesise(automaton) if needed else None
+        return supervisor_of(automaton) if needed else None
     except SynthesisError as error:
         typer.echo(f"starts are not supervised here: {error}", err=True)
         return None

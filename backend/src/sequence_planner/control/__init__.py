@@ -1,7 +1,6 @@
 """The running station.
 
 `execution` takes ticks and follows plans, free of clock, network and threads. Around it: `feeds` and `commander` speak
-to the devices, `synthesis_process` and `planner_process` have safe states and plans computed, `tasks` waits for people,
-`alarms` and `viewing` say how things stand, and `controller` brings them together on one event loop, in the process
-that `process` starts.
+to the devices, `planner_process` has plans computed, `tasks` waits for people, `alarms` and `viewing` say how things
+stand, and `controller` brings them together on one event loop, in the process that `process` starts.
 """

@@ -11,6 +11,8 @@ from enum import StrEnum
 
 from pydantic import BaseModel, ConfigDict
 
+from sequence_planner.analysis.document import AnalysisDocument
+
 Value = bool | int | str
 
 
@@ -184,6 +186,47 @@ class AlarmView(View):
     since: float
 
 
+class SpecificationView(View):
+    """A ground specification; several can have one title."""
+
+    name: str
+    title: str
+
+
+class DifferenceView(View):
+    """A variable that has another value in the nearest safe state."""
+
+    name: str
+    now: Value
+    safe: Value
+
+
+class WayBackStepView(View):
+    """One start on the way back. `tick` counts from the tick in which the way begins."""
+
+    tick: int
+    ability: str
+    title: str
+    resource: str
+
+
+class WayBackView(View):
+    """The state does not count as safe: why, how the nearest safe state differs, and the shortest way back.
+
+    Without differences and with nothing violated the state may be safe, and what `awaits` names decides. `ticks` is
+    null while no way is known; a way without steps needs no start.
+    """
+
+    violated: list[SpecificationView]
+    threatened: list[SpecificationView]  # what the devices could violate without any start
+    differences: list[DifferenceView]
+    awaits: list[str]  # topics whose values decide whether the state is safe
+    ticks: int | None
+    steps: list[WayBackStepView]
+    breaks: list[SpecificationView]  # what is violated on the way, and is not now
+    reason: str  # which way leads back, or why none is known
+
+
 class StationView(View):
     """The whole document."""
 
@@ -200,3 +243,5 @@ class StationView(View):
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
     alarms: dict[str, AlarmView]
+    way_back: WayBackView | None  # null while the state is safe
+    analysis: AnalysisDocument | None  # what synthesis has found of the station, as far as it has got

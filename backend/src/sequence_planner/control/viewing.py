@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
+from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.structure import Kind
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution, TickOutcome
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.outside import Outside
 from sequence_planner.control.start_order import Step
 from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.view import (
@@ -18,6 +22,7 @@ from sequence_planner.control.view import (
     PlanStatus,
     PlanStepView,
     PlanView,
+    Priority,
     Production,
     ResourceView,
     StationIdentity,
@@ -28,9 +33,11 @@ from sequence_planner.control.view import (
     VariableKind,
     VariableView,
 )
+from sequence_planner.control.viewing_outside import way_back
 from sequence_planner.control.waiting import waits_for
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.types import Value
+from sequence_planner.synthesis.guards import Guard
 
 # How many coming steps a task names as what moves next.
 _NEXT_MOVES = 2
@@ -39,15 +46,20 @@ _NEXT_MOVES = 2
 class Viewing:
     """Builds views; remembers since when values and operations have been what they are."""
 
-    def __init__(self, identity: StationIdentity, execution: Execution, feeds: Feeds, network: NetworkWatch) -> None:
+    def __init__(
+        self, identity: StationIdentity, execution: Execution, outside: Outside, feeds: Feeds, network: NetworkWatch
+    ) -> None:
         self._identity = identity
         self._execution = execution
+        self._outside = outside
         self._feeds = feeds
         self._network = network
         self._feeding = {v: name for name, feed in feeds.topics.items() for v in feed.pipeline.variables}
         self._since: dict[str, tuple[Value | None, float]] = {}
         self._active_since: dict[str, float] = {}
         self.completed: dict[str, int] = dict.fromkeys(execution.automaton.operations, 0)
+        self.analysis: AnalysisDocument | None = None
+        self.guards: Mapping[str, Guard] = {}  # that the supervisor adds, as far as they are known
 
     def note(self, outcome: TickOutcome, now: float) -> None:
         """After a tick: remember what has changed."""
@@ -76,6 +88,8 @@ class Viewing:
             tasks=self._tasks(desk),
             topics=self._topics(commander, moment),
             alarms=alarms,
+            way_back=way_back(self._execution.automaton, self._outside, self._feeding),
+            analysis=self.analysis,
         )
 
     def _resources(self, moment: Moment) -> dict[str, ResourceView]:
@@ -156,7 +170,11 @@ class Viewing:
 
     def _step(self, step: Step, status: StepStatus) -> PlanStepView:
         ability = self._execution.automaton.abilities[step.ability]
-        waiting = waits_for(self._execution, step.ability, self._feeding) if status is StepStatus.NEXT else []
+        waiting = (
+            waits_for(self._execution, step.ability, self._feeding, self.guards.get(step.ability))
+            if status is StepStatus.NEXT
+            else []
+        )
         return PlanStepView(
             id=str(step.number),
             ability=step.ability,
@@ -211,11 +229,18 @@ class Viewing:
         return views
 
 
-def preparing_view(identity: StationIdentity, now: float) -> StationView:
-    """What is shown while the safe set is being computed."""
+def preparing_view(
+    identity: StationIdentity, now: float, began: float, analysis: AnalysisDocument | None, trouble: str | None
+) -> StationView:
+    """What is shown while the safe set is being computed; with `trouble`, there is none and the station is not run."""
+    alarms = {}
+    if trouble is not None:
+        text = "The specifications cannot be met, so nothing is started"
+        action = "See why under Supervisor, change the model, and run it again."
+        alarms["no-supervisor"] = AlarmView(priority=Priority.HIGH, text=text, action=action, since=began)
     plan = PlanView(
         status=PlanStatus.IDLE,
-        reason="the safe states are being computed",
+        reason="the safe states are being computed" if trouble is None else "there is no supervisor",
         steps=[],
         ticks=0,
         minimal_ticks=False,
@@ -236,7 +261,9 @@ def preparing_view(identity: StationIdentity, now: float) -> StationView:
         plan=plan,
         tasks={},
         topics={},
-        alarms={},
+        alarms=alarms,
+        way_back=None,
+        analysis=analysis,
     )
 
 

@@ -10,13 +10,14 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.view import Mode, Production
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.printing import print_expression
-from sequence_planner.expressions.syntax import Expression, conjuncts, variables
+from sequence_planner.expressions.syntax import Expression, conjunction, conjuncts, variables
+from sequence_planner.synthesis.guards import Guard
 
 
-def waits_for(execution: Execution, name: str, feeds: Mapping[str, str]) -> list[str]:
+def waits_for(execution: Execution, name: str, feeds: Mapping[str, str], guard: Guard | None = None) -> list[str]:
     """Everything that keeps the ability from starting now; empty when it starts in the next tick.
 
-    `feeds` names the topic behind each measured variable.
+    `feeds` names the topic behind each measured variable, `guard` is what the supervisor adds to the written ones.
     """
     if execution.production is not Production.STARTED:
         return ["production to be started"]
@@ -25,10 +26,10 @@ def waits_for(execution: Execution, name: str, feeds: Mapping[str, str]) -> list
     if execution.obstacles:
         return list(execution.obstacles)
     ability = execution.automaton.abilities[name]
-    return list(dict.fromkeys(_reasons(execution, ability, feeds)))
+    return list(dict.fromkeys(_reasons(execution, ability, feeds, guard)))
 
 
-def _reasons(execution: Execution, ability: Ability, feeds: Mapping[str, str]) -> Iterator[str]:
+def _reasons(execution: Execution, ability: Ability, feeds: Mapping[str, str], guard: Guard | None) -> Iterator[str]:
     state = execution.state
     written = False
     for part in (*conjuncts(ability.enabled), *conjuncts(ability.start_guard)):
@@ -48,13 +49,19 @@ def _reasons(execution: Execution, ability: Ability, feeds: Mapping[str, str]) -
     elif not execution.supervisor.safe.includes(state):
         yield "the station to be back in a safe state"
     elif not execution.supervisor.safe.includes(after):
-        yield _unsafe(execution, after)
+        yield _unsafe(execution, after, guard)
     elif not execution.may_go_on(after):
         yield "the right moment: started now, the rest of the plan would not reach its goals"
 
 
-def _unsafe(execution: Execution, after: State) -> str:
-    """Which specification the start would break, at once or later."""
+def _unsafe(execution: Execution, after: State, guard: Guard | None) -> str:
+    """What the supervisor's guard lacks, and which specification the start would break, at once or later."""
+    if guard is not None and guard.expression is not None:
+        lacking = [part for part in conjuncts(guard.expression) if evaluate(part, execution.state) is not True]
+        if lacking:
+            causes = [execution.automaton.specifications[name].title for name in guard.specifications]
+            causes += ["coming to rest again"] if guard.rest else []
+            return f"{print_expression(conjunction(*lacking))}, for the sake of: {', '.join(causes)}"
     for specification in execution.automaton.specifications.values():
         if holds(specification.forbidden, after):
             return f"a safe start: {specification.title} ({specification.name})"

@@ -9,6 +9,7 @@ from __future__ import annotations
 from fastapi import APIRouter
 from pydantic import BaseModel
 
+from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
@@ -84,6 +85,12 @@ class TopicsAnswer(Answer):
     topics: dict[str, TopicView]
 
 
+class AnalysisAnswer(Answer):
+    """What synthesis has found of the station; null before it has found anything."""
+
+    analysis: AnalysisDocument | None
+
+
 class AlarmsAnswer(Answer):
     """The alarms that last."""
 
@@ -138,6 +145,12 @@ async def tasks(view: LiveView) -> TasksAnswer:
 async def topics(view: LiveView) -> TopicsAnswer:
     """Every ROS 2 topic of the station, and whether it speaks."""
     return TopicsAnswer(tick=view.tick, time=view.time, topics=view.topics)
+
+
+@router.get("/analysis")
+async def analysis(view: LiveView) -> AnalysisAnswer:
+    """The guards that the supervisor adds, how many states can be reached, and findings with runs that show them."""
+    return AnalysisAnswer(tick=view.tick, time=view.time, analysis=view.analysis)
 
 
 @router.get("/alarms")

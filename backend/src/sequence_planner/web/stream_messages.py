@@ -13,6 +13,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, RootModel
 from typing_extensions import TypedDict
 
+from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
@@ -26,6 +27,7 @@ from sequence_planner.control.view import (
     TaskView,
     TopicView,
     VariableView,
+    WayBackView,
 )
 
 
@@ -45,6 +47,8 @@ class StationChange(TypedDict, total=False):
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
     alarms: dict[str, AlarmView]
+    way_back: WayBackView | None
+    analysis: AnalysisDocument | None
 
 
 class StationRemoval(TypedDict, total=False):

@@ -49,6 +49,8 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		tasks: {},
 		topics: {},
 		alarms: {},
+		way_back: null,
+		analysis: null,
 		...rest
 	};
 }

@@ -1,0 +1,73 @@
+"""All that synthesis finds of a model, piece by piece: whoever cannot wait for all of it has what there is."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.checking.supervised import check_supervision
+from sequence_planner.checking.unmeetable import unmeetable
+from sequence_planner.checking.warning import ModelWarning, place
+from sequence_planner.synthesis.guards import Guard, shown_guards
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor
+from sequence_planner.synthesis.unmeetable import why_unmeetable
+
+
+@dataclass(frozen=True)
+class Analysis:
+    """What has been found. Of what has not been computed yet, and of what cannot be, it says None.
+
+    `pending` is what is being computed, and None when that is all. Without a supervisor in the end, `warnings` say why
+    there is none. Counts are of the states of all variables that can be reached, without and with the supervisor;
+    `guards` are those for people to read, by ability or event.
+    """
+
+    pending: str | None
+    supervisor: Supervisor | None = None
+    guards: Mapping[str, Guard] | None = None
+    reachable_states: int | None = None
+    supervised_states: int | None = None
+    warnings: tuple[ModelWarning, ...] | None = None
+
+
+def analyses(automaton: Automaton) -> Iterator[Analysis]:
+    """What is found of `automaton`, again and again, each time more of it."""
+    found = Analysis("the safe states")
+    yield found
+    supervision = Supervision(Plant(automaton, relevant(automaton)))
+    if not supervision.possible:
+        found = replace(found, pending="why they are none")
+        yield found
+        found = replace(found, warnings=(_unmet(supervision),))
+    else:
+        found = replace(found, supervisor=supervisor(supervision), pending="the guards")
+        yield found
+        found = replace(found, guards=shown_guards(supervision), pending="the findings")
+        yield found
+        found = replace(found, warnings=tuple(check_supervision(automaton, supervision)))
+    found = replace(found, pending="the number of states")
+    yield found
+    whole = _of_all_variables(supervision)
+    diagrams = whole.plant.diagrams
+    found = replace(found, reachable_states=diagrams.count(whole.reachable(supervised=False)))
+    yield found
+    if found.supervisor is not None:
+        found = replace(found, supervised_states=diagrams.count(whole.reachable(supervised=True)))
+    yield replace(found, pending=None)
+
+
+def _unmet(supervision: Supervision) -> ModelWarning:
+    automaton = supervision.plant.automaton
+    why = why_unmeetable(supervision.plant, supervision.forbidden)
+    broken = () if why.trace is None else why.trace.breaks
+    return unmeetable(automaton, why, place(automaton, *broken, *automaton.specifications))
+
+
+def _of_all_variables(supervision: Supervision) -> Supervision:
+    automaton, diagrams = supervision.plant.automaton, supervision.plant.diagrams
+    if len(diagrams.names) == len(automaton.variables):
+        return supervision
+    return Supervision(Plant(automaton, tuple(automaton.variables)), diagrams.exported(supervision.safe))

@@ -1,0 +1,89 @@
+"""What was found of a model, kept in the user's cache by the content of the model and of the program itself.
+
+It serves commands that are given one after the other. A running station never takes its supervisor from here.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import hashlib
+import json
+import os
+import pickle
+import tempfile
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+from pydantic import ValidationError
+
+from sequence_planner.analysis.document import AnalysisDocument, Document, SupervisorDocument
+from sequence_planner.automaton.structure import Automaton
+
+MOST_KEPT = 100  # files; the oldest are removed
+
+
+class Kept(Document):
+    """What is kept of a model; no `supervisor` if there is none."""
+
+    analysis: AnalysisDocument
+    supervisor: SupervisorDocument | None
+
+
+def folder() -> Path:
+    """Where it is kept: in `XDG_CACHE_HOME`, or else in `~/.cache`."""
+    base = os.environ.get("XDG_CACHE_HOME", "")
+    return (Path(base) if Path(base).is_absolute() else Path.home() / ".cache") / "sequence-planner"
+
+
+def key(automaton: Automaton) -> str:
+    """What a model and the program have in common with others only if the same is found of them.
+
+    Places count, as what is found names them; what jobs consist of does not.
+    """
+    content = pickle.dumps((replace(automaton, work_masters={}), dict(automaton.places)))
+    return hashlib.sha256(_program() + content).hexdigest()
+
+
+def kept(automaton: Automaton) -> Kept | None:
+    """What was found of the model; None if that is not known, or can no longer be read."""
+    try:
+        content = json.loads(_file(automaton).read_bytes())
+        text = content["text"]
+        if hashlib.sha256(text.encode()).hexdigest() == content["sum"]:
+            return Kept.model_validate_json(text)
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, ValidationError):
+        pass
+    return None
+
+
+def keep(automaton: Automaton, found: Kept) -> None:
+    """Keep what was found. Where nothing can be written, nothing is kept."""
+    with contextlib.suppress(OSError, RuntimeError):
+        file = _file(automaton)
+        file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+        text = found.model_dump_json()
+        content = json.dumps({"sum": hashlib.sha256(text.encode()).hexdigest(), "text": text})
+        with tempfile.NamedTemporaryFile("w", dir=file.parent, delete=False, encoding="utf-8") as written:
+            written.write(content)
+        Path(written.name).replace(file)
+        _remove_oldest(file.parent)
+
+
+def _file(automaton: Automaton) -> Path:
+    return folder() / f"{key(automaton)}.json"
+
+
+def _remove_oldest(where: Path) -> None:
+    files = sorted(where.glob("*.json"), key=lambda file: file.stat().st_mtime, reverse=True)
+    for file in files[MOST_KEPT:]:
+        file.unlink(missing_ok=True)
+
+
+@cache
+def _program() -> bytes:
+    """A sum of the program's own text, so that what an older one has found does not count."""
+    total = hashlib.sha256()
+    for file in sorted(Path(__file__).parents[1].rglob("*.py")):
+        total.update(file.read_bytes())
+    return total.digest()

@@ -1,0 +1,88 @@
+"""`synthesize`: the supervisor of a model, and what it makes of the model."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+import typer
+
+from sequence_planner.analysis.document import AnalysisDocument, GuardDocument
+from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, analysed
+from sequence_planner.cli.loading import usable_model
+from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json
+from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.syntax import TRUE
+
+
+def synthesize(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = False) -> None:
+    """Compute the supervisor of a model: how many states can be reached with and without it, and the guards it adds.
+
+    Each guard is added to the one that is written; it holds for the states that can be reached. With --json: {model,
+    reachable_states, supervised_states, guards: {ability or event: condition}, origins: {...}, findings: [...]}; null
+    is what has not been computed, and a guard that only the states themselves say. The exit code is 1 when there are
+    findings.
+    """
+    automaton = usable_model(model).automaton
+    found = analysed(automaton, deadline)
+    if json:
+        print_json(_document(automaton, found))
+    else:
+        typer.echo("\n".join(_lines(automaton, found)))
+    if found.document.findings or found.unfinished:
+        raise typer.Exit(FINDINGS)
+
+
+def _document(automaton: Automaton, found: Found) -> dict[str, object]:
+    document = found.document
+    guards = None if document.guards is None else dict(_all_guards(automaton, document.guards))
+    return {
+        "model": automaton.name,
+        "reachable_states": document.reachable_states,
+        "supervised_states": document.supervised_states,
+        "guards": guards,
+        "origins": None if document.guards is None else {n: g.model_dump() for n, g in document.guards.items()},
+        "findings": None if document.findings is None else [each.model_dump() for each in document.findings],
+        "unfinished": found.unfinished,
+    }
+
+
+def _all_guards(automaton: Automaton, guards: Mapping[str, GuardDocument]) -> Iterator[tuple[str, str | None]]:
+    """The guard of each ability or event, in order of declaration; `true` where the supervisor adds none."""
+    restricted = {start: name for name, guard in guards.items() for start in guard.starts}
+    for ability in automaton.abilities.values():
+        event = event_of(ability.name) if automaton.one_at_a_time else ability.name
+        name = restricted.get(ability.name)
+        if name is not None:
+            yield name, guards[name].guard
+        elif not ability.restart and event not in guards:
+            yield event, print_expression(TRUE)
+
+
+def _lines(automaton: Automaton, found: Found) -> Iterator[str]:
+    document = found.document
+    yield f"{automaton.title}: {_counts(document)}"
+    yield from _guards(document)
+    for finding in document.findings or ():
+        yield f"{finding.file}:{finding.line}:{finding.column}: warning: {finding.message} [{finding.kind}]"
+        yield from (f"  {step.text}" for step in (finding.trace.steps if finding.trace else ()))
+    if found.unfinished is not None:
+        yield found.unfinished
+
+
+def _counts(document: AnalysisDocument) -> str:
+    if document.supervised is False:
+        return "there is no supervisor"
+    reachable = "?" if document.reachable_states is None else f"{document.reachable_states}"
+    supervised = "?" if document.supervised_states is None else f"{document.supervised_states}"
+    return f"{reachable} states can be reached, {supervised} of them with the supervisor"
+
+
+def _guards(document: AnalysisDocument) -> Iterator[str]:
+    for name, guard in (document.guards or {}).items():
+        reasons = [*guard.specifications, *(["rest"] if guard.rest else [])]
+        yield f"  {name}"
+        yield f"    {guard.guard or 'see the states: no short condition says when'}"
+        if reasons:
+            yield f"    because of {', '.join(reasons)}"

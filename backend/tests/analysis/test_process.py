@@ -1,0 +1,75 @@
+"""Synthesis happens elsewhere, piece by piece, and whoever no longer wants it need not wait."""
+
+from __future__ import annotations
+
+import asyncio
+import multiprocessing
+import time
+from itertools import pairwise
+from multiprocessing.process import BaseProcess
+
+import pytest
+
+from control.bench import cell, until
+from control.rig import truck_engine
+from core.building import automaton
+from sequence_planner.analysis.analysis import Analysis, analyses
+from sequence_planner.analysis.process import SynthesisEndedError, analysing
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.expressions.types import BOOLEAN
+
+
+def processes() -> list[BaseProcess]:
+    return [child for child in multiprocessing.active_children() if child.name == "synthesis"]
+
+
+async def all_of(station: Automaton) -> list[Analysis]:
+    async with analysing(station) as finding:
+        return [found async for found in finding]
+
+
+def test_it_is_that_of_the_synthesis_and_grows() -> None:
+    station, supervisor = cell()
+    found = asyncio.run(all_of(station.automaton))
+    assert found == list(analyses(station.automaton))
+    assert found[-1].supervisor == supervisor
+    assert found[-1].pending is None
+    for before, after in pairwise(found):
+        assert before.pending is not None
+        for name in ("supervisor", "guards", "warnings", "reachable_states", "supervised_states"):
+            assert getattr(before, name) in (None, getattr(after, name))
+
+
+def test_that_there_is_no_supervisor_is_said_with_a_run() -> None:
+    impossible = automaton({}, measured={"hot": (BOOLEAN, True)}, forbidden={"never_hot": "hot"})
+    found = asyncio.run(all_of(impossible))[-1]
+    assert (found.supervisor, found.guards, found.reachable_states) == (None, None, 1)
+    assert found.warnings is not None
+    [warning] = found.warnings
+    assert (warning.kind, "never_hot" in warning.message) == ("specification-cannot-be-met", True)
+    assert warning.trace is not None
+    assert warning.trace.steps == ()
+
+
+def test_whoever_no_longer_wants_it_does_not_wait() -> None:
+    async def scenario() -> float:
+        computing = asyncio.create_task(all_of(truck_engine()[0].automaton))
+        await asyncio.sleep(0.3)
+        began = time.monotonic()
+        computing.cancel()
+        await asyncio.wait({computing})
+        return time.monotonic() - began
+
+    assert asyncio.run(scenario()) < 0.5
+    assert not processes()
+
+
+def test_a_process_that_is_killed_is_not_waited_for() -> None:
+    async def scenario() -> None:
+        computing = asyncio.create_task(all_of(truck_engine()[0].automaton))
+        await until(lambda: bool(processes()))
+        processes()[0].kill()
+        with pytest.raises(SynthesisEndedError, match="has ended without an answer"):
+            await computing
+
+    asyncio.run(scenario())

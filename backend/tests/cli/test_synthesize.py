@@ -1,0 +1,117 @@
+"""`synthesize`: counts, guards and findings of a model."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cli.commands import EXAMPLE, TRUCK, as_json, command, plain
+
+UNMEETABLE: dict[str, Any] = {
+    "name": "heater",
+    "variables": {"on": "bool", "hot": "bool"},
+    "initial": "on and not hot",
+    "transitions": [
+        {"event": "heats", "controllable": False, "guard": "on", "set": {"hot": True}},
+        {"event": "off", "controllable": True, "guard": "on", "set": {"on": False}},
+    ],
+    "forbidden": ["hot"],
+}
+
+
+@pytest.fixture(autouse=True)
+def _own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+
+
+def test_the_worked_example() -> None:
+    code, out, err = command("synthesize", EXAMPLE)
+    assert (code, err) == (0, "")
+    assert out.splitlines() == [
+        "Worked example: 180 states can be reached, 148 of them with the supervisor",
+        "  operator.place_bolt",
+        "    robot.pose != bolt_pair and robot.target_pose != bolt_pair",
+        "    because of no_standing_tool_on_placed_bolts",
+        "  robot.move(bolt_pair)",
+        "    not operator.task and (bolts != placed or nutrunner.run_nut.executing)",
+        "    because of no_standing_tool_on_placed_bolts",
+    ]
+
+
+def test_for_programs() -> None:
+    """Every ability has a guard; what is kept from the first time says the same."""
+    first = as_json("synthesize", EXAMPLE)
+    assert first == as_json("synthesize", EXAMPLE)
+    code, document = first
+    assert code == 0
+    assert (document["reachable_states"], document["supervised_states"]) == (180, 148)
+    assert document["guards"] == {
+        "engine.next_engine": "true",
+        "nutrunner.run_nut": "true",
+        "operator.place_bolt": "robot.pose != bolt_pair and robot.target_pose != bolt_pair",
+        "robot.move(home)": "true",
+        "robot.move(above)": "true",
+        "robot.move(bolt_pair)": "not operator.task and (bolts != placed or nutrunner.run_nut.executing)",
+    }
+    assert document["origins"]["robot.move(bolt_pair)"] == {
+        "guard": "not operator.task and (bolts != placed or nutrunner.run_nut.executing)",
+        "literals": 3,
+        "starts": ["robot.move(bolt_pair)"],
+        "specifications": ["no_standing_tool_on_placed_bolts"],
+        "rest": False,
+    }
+    assert (document["findings"], document["unfinished"]) == ([], None)
+
+
+def test_the_truck_engine_station() -> None:
+    _, document = as_json("synthesize", TRUCK)
+    restricted = {name: guard for name, guard in document["guards"].items() if guard != "true"}
+    expected = {}
+    for pair in ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3"):
+        expected[f"operator.place_bolt_pair({pair})"] = f"robot.pose != {pair} and robot.target_pose != {pair}"
+        expected[f"robot.move_to_position({pair})"] = (
+            f"operator.requested_pair != {pair} and (bolts[{pair}] != placed or nutrunner.run_nut.executing)"
+        )
+    assert restricted == expected
+
+
+def test_a_plain_automaton(tmp_path: Path) -> None:
+    code, document = as_json("synthesize", plain(tmp_path))
+    assert (code, document["reachable_states"], document["supervised_states"]) == (0, 3, 3)
+    assert document["guards"] == {"grab": "true", "drop": "true"}
+
+
+def test_what_cannot_be_met_is_told_with_a_run(tmp_path: Path) -> None:
+    file = tmp_path / "heater.efa.json"
+    file.write_text(json.dumps(UNMEETABLE), encoding="utf-8")
+    code, document = as_json("synthesize", file)
+    assert (code, document["reachable_states"], document["supervised_states"], document["guards"]) == (1, 4, None, None)
+    [finding] = document["findings"]
+    assert finding["kind"] == "specification-cannot-be-met"
+    assert "forbidden_1" in finding["message"]
+    assert "`heats`" in finding["message"]
+    assert [step["names"] for step in finding["trace"]["steps"]] == [["heats"]]
+    assert finding["trace"]["steps"][0]["changes"] == {"hot": True}
+    assert finding["trace"]["steps"][0]["forbidden_by"] == ["forbidden_1"]
+    code, out, _ = command("synthesize", file)
+    assert code == 1
+    assert out.splitlines()[0] == "heater: there is no supervisor"
+    assert "step 1: heats: hot := true, which forbidden_1 forbids" in out
+
+
+def test_what_takes_too_long_is_said() -> None:
+    code, document = as_json("synthesize", TRUCK, "--deadline", "0.1")
+    assert (code, document["reachable_states"], document["guards"]) == (1, None, None)
+    assert document["unfinished"].endswith("could not be computed within 0.1 s: allow more with --deadline")
+    code, out, _ = command("synthesize", TRUCK, "--deadline", "0.1")
+    assert (code, out.splitlines()[-1]) == (1, document["unfinished"])
+    assert as_json("synthesize", TRUCK)[0] == 0  # nothing unfinished was kept
+
+
+def test_a_model_that_is_none(tmp_path: Path) -> None:
+    code, out, err = command("synthesize", tmp_path / "missing.efa.json")
+    assert (code, out) == (2, "")
+    assert "missing.efa.json" in err
