@@ -92,8 +92,9 @@ def test_specifications_that_cannot_be_met_for_programs(tmp_path: Path) -> None:
     assert (code, finding["kind"], finding["line"]) == (1, "specification-cannot-be-met", 8)
     assert finding["message"].endswith("In conflict are already `forbidden_1` and that nobody decides about `ask`")
     changes = {"kind": "transition", "names": ["ask"], "finished": [], "changes": {"user": "waits"}}
+    text = "step 1: ask: user := waits, which forbidden_1 forbids"
     assert finding["trace"] == {
         "initial": {"user": "idle", "free": True},
         "forbidden_by": [],
-        "steps": [{**changes, "forbidden_by": ["forbidden_1"]}],
+        "steps": [{**changes, "forbidden_by": ["forbidden_1"], "text": text}],
     }

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections import Counter
 from collections.abc import Collection, Iterable
 from dataclasses import replace
@@ -17,8 +16,8 @@ from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.synthesis.minimal_conflict import Conflict, minimal_conflict
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.shortest import Tracer
-from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, supervised
-from sequence_planner.synthesis.traces import StepKind, Trace
+from sequence_planner.synthesis.supervision import Supervision, SynthesisError, supervised
+from sequence_planner.synthesis.traces import StepKind
 from sequence_planner.synthesis.unmeetable import Unmeetable
 
 from .budget import examples
@@ -274,30 +273,3 @@ def test_rest_that_devices_take_away() -> None:
     assert reason.message.startswith("from where the devices alone can lead no state described by `rest`")
     assert reason.lines == ("tick 1: rotten := true (rots)",)
     assert minimal_conflict(station, reason.trace) == Conflict((), ("rots",), minimal=True)
-
-
-def test_a_trace_as_a_document() -> None:
-    station = automaton(
-        {"open": Does(start=("valve := true",))},
-        measured={"flows": OFF},
-        output={"valve": OFF},
-        effects={"flow": ("valve", ("flows := true",))},
-        forbidden={"no_flow": "flows"},
-    )
-    plant = Plant(station, relevant(station))
-    trace = Tracer(plant).shortest(plant.where(station.specifications["no_flow"].forbidden))
-    assert isinstance(trace, Trace)
-    assert json.loads(json.dumps(trace.to_document(station))) == {
-        "initial": {"flows": False, "valve": False},
-        "forbidden_by": [],
-        "steps": [
-            {"kind": "start", "names": ["open"], "finished": [], "changes": {"valve": True}, "forbidden_by": []},
-            {
-                "kind": "tick",
-                "names": ["flow"],
-                "finished": [],
-                "changes": {"flows": True},
-                "forbidden_by": ["no_flow"],
-            },
-        ],
-    }

@@ -63,7 +63,7 @@ def _unmet(supervision: Supervision) -> ModelWarning:
     automaton = supervision.plant.automaton
     why = why_unmeetable(supervision.plant, supervision.forbidden)
     broken = () if why.trace is None else why.trace.breaks
-    return unmeetable(automaton, why, place(automaton, *broken, *automaton.specifications))
+    return unmeetable(automaton, why, place(automaton, *broken, *automaton.specifications, "rest"))
 
 
 def _of_all_variables(supervision: Supervision) -> Supervision:

@@ -51,9 +51,10 @@ class StepDocument(Document):
 
 
 class TraceDocument(Document):
-    """A run from an initial state; null is unknown."""
+    """A run from an initial state, which the specifications `forbidden_by` forbid; null is unknown."""
 
     initial: dict[str, Value | None]
+    forbidden_by: list[str]
     steps: list[StepDocument]
 
 
@@ -108,11 +109,11 @@ def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
         reachable_states=analysis.reachable_states,
         supervised_states=analysis.supervised_states,
         guards=None if analysis.guards is None else {name: _guard(guard) for name, guard in analysis.guards.items()},
-        findings=None if warnings is None else findings(automaton, warnings),
+        findings=None if warnings is None else findings_of(automaton, warnings),
     )
 
 
-def findings(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[FindingDocument]:
+def findings_of(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[FindingDocument]:
     """The warnings of a model that can be used."""
     return [
         FindingDocument(
@@ -122,7 +123,7 @@ def findings(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[Fin
             line=warning.place.line,
             column=warning.place.column,
             message=warning.message,
-            trace=None if warning.trace is None else _trace(automaton, warning.trace),
+            trace=None if warning.trace is None else trace_document(automaton, warning.trace),
         )
         for warning in warnings
     ]
@@ -138,9 +139,11 @@ def _guard(guard: Guard) -> GuardDocument:
     )
 
 
-def _trace(automaton: Automaton, trace: Trace) -> TraceDocument:
+def trace_document(automaton: Automaton, trace: Trace) -> TraceDocument:
+    """A trace as JSON."""
     return TraceDocument(
         initial={name: trace.initial[name] for name in automaton.variables},
+        forbidden_by=list(trace.forbidden_by),
         steps=[
             StepDocument(
                 kind=step.kind.value,

@@ -129,9 +129,7 @@ def _variables(variables: Iterable[VariableDeclaration]) -> Lines:
                 yield f"  {kind.value:9}  {variable.name}: {variable.type}, initially {initial}"
 
 
-def _abilities(
-    abilities: Iterable[Ability], effects: Iterable[Effect], guards: Guards, wanted: list[str]
-) -> Lines:
+def _abilities(abilities: Iterable[Ability], effects: Iterable[Effect], guards: Guards, wanted: list[str]) -> Lines:
     left = {effect.name: effect for effect in effects}
     for ability in abilities:
         own = [left.pop(name) for name in list(left) if name.startswith(f"{ability.name}.")]

@@ -10,6 +10,7 @@ from sequence_planner.analysis.document import AnalysisDocument, GuardDocument
 from sequence_planner.automaton.plain.meaning import event_of
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, analysed
+from sequence_planner.cli.findings import finding_lines
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json
 from sequence_planner.expressions.printing import print_expression
@@ -65,8 +66,7 @@ def _lines(automaton: Automaton, found: Found) -> Iterator[str]:
     yield f"{automaton.title}: {_counts(document)}"
     yield from _guards(document)
     for finding in document.findings or ():
-        yield f"{finding.file}:{finding.line}:{finding.column}: warning: {finding.message} [{finding.kind}]"
-        yield from (f"  {step.text}" for step in (finding.trace.steps if finding.trace else ()))
+        yield from finding_lines(finding)
     if found.unfinished is not None:
         yield found.unfinished
 

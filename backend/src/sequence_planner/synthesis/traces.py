@@ -103,23 +103,6 @@ class Trace:
         """A line for each step."""
         return [each.line(number) for number, each in enumerate(self.steps, start=1)]
 
-    def to_document(self, automaton: Automaton) -> dict[str, object]:
-        """JSON: the initial values, and of each step what happens, what changes and what forbids the state after it."""
-        return {
-            "initial": {name: self.initial[name] for name in automaton.variables},
-            "forbidden_by": list(self.forbidden_by),
-            "steps": [
-                {
-                    "kind": each.kind.value,
-                    "names": list(each.names),
-                    "finished": list(each.finished),
-                    "changes": dict(each.changes),
-                    "forbidden_by": list(each.forbidden_by),
-                }
-                for each in self.steps
-            ],
-        }
-
 
 @dataclass(frozen=True)
 class Steps:

@@ -11,7 +11,7 @@ from sequence_planner.automaton.grounding.operations import ground_operations, g
 from sequence_planner.automaton.grounding.specifications import ground_specifications
 from sequence_planner.automaton.structure import Ability, Automaton, Flag
 from sequence_planner.model.loading import Station
-from sequence_planner.model.source import ModelError
+from sequence_planner.model.source import ModelError, SourceText
 
 
 def ground(station: Station) -> Automaton:
@@ -24,6 +24,8 @@ def ground(station: Station) -> Automaton:
     specifications = ground_specifications(meaning, station.specifications, station.resources)
     work_masters = ground_work_masters(meaning, station.work_masters, operations)
     rest = meaning.predicate(station.station.rest, meaning.scope({}))
+    if isinstance(station.station.rest, SourceText):
+        declarations.places.setdefault("rest", station.station.rest.place)
     automaton = Automaton(
         name=str(station.station.name),
         title=str(station.title),

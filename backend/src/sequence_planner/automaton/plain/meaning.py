@@ -97,6 +97,7 @@ class _Meaning:
         described, initial = self._initial(conjunction(*conjuncts(self._predicate(content.initial)), invariant))
         abilities, effects = self._transitions(invariant)
         rest = self._predicate(content.marked)
+        self._places.setdefault("rest", self._model.source.place_of_value(("marked",)))
         goals = tuple(self._formula(text) for text in content.goal)
         name = str(content.name)
         return Automaton(

@@ -1,0 +1,48 @@
+"""What was found, as JSON."""
+
+from __future__ import annotations
+
+from core.building import Does, automaton
+from sequence_planner.analysis.document import trace_document
+from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.shortest import Tracer
+from sequence_planner.synthesis.supervision import relevant
+from sequence_planner.synthesis.traces import Trace
+
+OFF = (BOOLEAN, False)
+
+
+def test_a_trace_as_a_document() -> None:
+    station = automaton(
+        {"open": Does(start=("valve := true",))},
+        measured={"flows": OFF},
+        output={"valve": OFF},
+        effects={"flow": ("valve", ("flows := true",))},
+        forbidden={"no_flow": "flows"},
+    )
+    plant = Plant(station, relevant(station))
+    trace = Tracer(plant).shortest(plant.where(station.specifications["no_flow"].forbidden))
+    assert isinstance(trace, Trace)
+    assert trace_document(station, trace).model_dump() == {
+        "initial": {"flows": False, "valve": False},
+        "forbidden_by": [],
+        "steps": [
+            {
+                "kind": "start",
+                "names": ["open"],
+                "finished": [],
+                "changes": {"valve": True},
+                "forbidden_by": [],
+                "text": "start 1: open: valve := true",
+            },
+            {
+                "kind": "tick",
+                "names": ["flow"],
+                "finished": [],
+                "changes": {"flows": True},
+                "forbidden_by": ["no_flow"],
+                "text": "tick 2: flows := true (flow), which no_flow forbids",
+            },
+        ],
+    }
