@@ -11,14 +11,11 @@ from pathlib import Path
 
 import structlog
 
-from sequence_planner.analysis.analysis import Analysis
-from sequence_planner.analysis.document import AnalysisDocument, document_of
-from sequence_planner.analysis.process import analysing
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.commands import Command, CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.link import ControllerLink
+from sequence_planner.control.preparation import Preparation, analyse
 from sequence_planner.control.view import Production, StationIdentity
 from sequence_planner.control.viewing import preparing_view
 from sequence_planner.emulation.process import NODE as EMULATED_DEVICES
@@ -53,17 +50,19 @@ async def control(running: Running) -> None:
     Raises `SynthesisEndedError` when that could not be computed, and `TransportError` when the network cannot be joined
     or somebody else commands the devices.
     """
-    holder: list[Controller] = []
     preparation = Preparation()
 
     async def handle(command: Command) -> None:
-        if not holder:
+        if preparation.controller is None:
             raise preparation.refusal()
-        await holder[0].command(command)
+        await preparation.controller.command(command)
 
-    async with ControllerLink(running.socket, handle) as link, analysing(running.station.automaton) as finding:
+    async with (
+        ControllerLink(running.socket, handle) as link,
+        _beside(analyse(running.station.automaton, preparation)),
+    ):
         async with _beside(_show_preparing(running, preparation, link)):
-            supervisor = await _prepared(running, preparation, finding)
+            supervisor = await _prepared(running, preparation)
             if supervisor is None:
                 LOG.error("there is no supervisor", because=preparation.trouble)
                 await asyncio.Event().wait()
@@ -71,29 +70,14 @@ async def control(running: Running) -> None:
         transport = running.connect(NODE)
         try:
             controller = Controller(_identity(running, transport.name), running.station, supervisor, transport)
-            holder.append(controller)
+            preparation.give(controller)
             async with contextlib.AsyncExitStack() as stack:
                 await stack.enter_async_context(_beside(_show(controller, link)))
-                await stack.enter_async_context(_beside(_hear(controller, running.station.automaton, finding)))
                 if running.start:
                     await stack.enter_async_context(_beside(start_when_alone(controller)))
                 await controller.run()
         finally:
             transport.close()
-
-
-@dataclass
-class Preparation:
-    """What has been found of the station while it is prepared; `trouble` if it cannot be run."""
-
-    analysis: AnalysisDocument | None = None
-    trouble: str | None = None
-
-    def refusal(self) -> CommandRefused:
-        """Why nothing can be commanded yet."""
-        if self.trouble is not None:
-            return CommandRefused("no-supervisor", "The specifications cannot be met", f"{self.trouble}.")
-        return CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
 
 
 async def start_when_alone(controller: Controller, look_every: float = 0.2) -> None:
@@ -128,12 +112,12 @@ async def _beside(life: Coroutine[None, None, None]) -> AsyncIterator[None]:
         await asyncio.wait({task})
 
 
-async def _prepared(running: Running, preparation: Preparation, finding: AsyncIterator[Analysis]) -> Supervisor | None:
+async def _prepared(running: Running, preparation: Preparation) -> Supervisor | None:
     """The supervisor, computed while the network is asked whether somebody else commands the station's devices."""
     began = time.monotonic()
     try:
         async with asyncio.TaskGroup() as both:
-            synthesis = both.create_task(_supervisor(running.station.automaton, preparation, finding))
+            synthesis = both.create_task(_awaited(preparation.supervisor))
             both.create_task(_require_sole_command(running))
     except ExceptionGroup as failed:
         raise failed.exceptions[0] from None
@@ -144,23 +128,8 @@ async def _prepared(running: Running, preparation: Preparation, finding: AsyncIt
     return supervisor
 
 
-async def _supervisor(
-    automaton: Automaton, preparation: Preparation, finding: AsyncIterator[Analysis]
-) -> Supervisor | None:
-    """The supervisor as soon as it is there, or None when there is none."""
-    async for found in finding:
-        preparation.analysis = document_of(automaton, found)
-        if found.supervisor is not None:
-            return found.supervisor
-        if found.warnings is not None:
-            preparation.trouble = "; ".join(warning.message for warning in found.warnings)
-    return None
-
-
-async def _hear(controller: Controller, automaton: Automaton, finding: AsyncIterator[Analysis]) -> None:
-    """Have the controller know what else is found of its station."""
-    async for found in finding:
-        controller.know(document_of(automaton, found), found.guards)
+async def _awaited(supervisor: asyncio.Future[Supervisor | None]) -> Supervisor | None:
+    return await asyncio.shield(supervisor)
 
 
 async def _require_sole_command(running: Running) -> None:

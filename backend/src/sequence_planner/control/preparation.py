@@ -1,0 +1,77 @@
+"""What is found of a station while it is prepared, and after that while it runs."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+
+import structlog
+
+from sequence_planner.analysis.analysis import Analysis
+from sequence_planner.analysis.document import AnalysisDocument, document_of
+from sequence_planner.analysis.process import SynthesisEndedError, analysing
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.commands import CommandRefused
+from sequence_planner.control.controller import Controller
+from sequence_planner.synthesis.guards import Guard
+
+LOG = structlog.get_logger(__name__)
+
+ANALYSIS_DEADLINE = 300.0  # seconds for all that synthesis finds
+
+
+class Preparation:
+    """What has been found of the station so far; `trouble` if it cannot be run."""
+
+    def __init__(self) -> None:
+        self.supervisor: asyncio.Future[Supervisor | None] = asyncio.get_running_loop().create_future()
+        self.analysis: AnalysisDocument | None = None
+        self.trouble: str | None = None
+        self.controller: Controller | None = None
+        self._guards: Mapping[str, Guard] = {}
+
+    def take(self, analysis: AnalysisDocument, found: Analysis) -> None:
+        """Take note of what has been found by now."""
+        self.analysis, self._guards = analysis, found.guards or {}
+        if found.supervisor is not None and not self.supervisor.done():
+            self.supervisor.set_result(found.supervisor)
+        elif found.supervisor is None and found.warnings is not None and not self.supervisor.done():
+            self.trouble = "; ".join(warning.message for warning in found.warnings)
+            self.supervisor.set_result(None)
+        if self.controller is not None:
+            self.controller.know(analysis, self._guards)
+
+    def give(self, controller: Controller) -> None:
+        """From now on the controller is told what else is found."""
+        self.controller = controller
+        if self.analysis is not None:
+            controller.know(self.analysis, self._guards)
+
+    def end(self, why: SynthesisEndedError) -> None:
+        """No more will be found."""
+        if not self.supervisor.done():
+            self.supervisor.set_exception(why)
+        elif self.analysis is not None and self.controller is not None:
+            self.controller.know(self.analysis.model_copy(update={"pending": None}), self._guards)
+
+    def refusal(self) -> CommandRefused:
+        """Why nothing can be commanded yet."""
+        if self.trouble is not None:
+            return CommandRefused("no-supervisor", "The specifications cannot be met", f"{self.trouble}.")
+        return CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
+
+
+async def analyse(automaton: Automaton, preparation: Preparation) -> None:
+    """Have all found that synthesis can find, as long as that takes no unreasonable time."""
+    try:
+        async with asyncio.timeout(ANALYSIS_DEADLINE), analysing(automaton) as finding:
+            async for found in finding:
+                preparation.take(document_of(automaton, found), found)
+    except SynthesisEndedError as ended:
+        LOG.error("synthesis ended early", because=str(ended))
+        preparation.end(ended)
+    except TimeoutError:
+        LOG.warning("not all was found of the station", within=ANALYSIS_DEADLINE)
+        late = f"the safe states could not be computed within {ANALYSIS_DEADLINE:g} s: let fewer variables bear on them"
+        preparation.end(SynthesisEndedError(late))
