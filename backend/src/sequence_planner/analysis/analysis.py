@@ -43,11 +43,11 @@ def analyses(automaton: Automaton) -> Iterator[Analysis]:
         yield found
         found = replace(found, warnings=(_unmet(supervision),))
     else:
-        found = replace(found, supervisor=supervisor(supervision), pending="the guards")
+        found = replace(found, supervisor=supervisor(supervision), pending="the findings")
         yield found
-        found = replace(found, guards=shown_guards(supervision), pending="the findings")
+        found = replace(found, warnings=tuple(check_supervision(automaton, supervision)), pending="the guards")
         yield found
-        found = replace(found, warnings=tuple(check_supervision(automaton, supervision)))
+        found = replace(found, guards=shown_guards(supervision))
     found = replace(found, pending="the number of states")
     yield found
     whole = _of_all_variables(supervision)

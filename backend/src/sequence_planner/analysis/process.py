@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import multiprocessing
+import os
 import signal
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
@@ -15,6 +16,8 @@ from multiprocessing.connection import Connection
 from sequence_planner.analysis.analysis import Analysis, analyses
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.lifeline import end_without_parent
+
+_NICENESS = 5  # ticks come first
 
 
 class SynthesisEndedError(Exception):
@@ -74,6 +77,7 @@ class _Words:
 def _work(connection: Connection, automaton: Automaton) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
     end_without_parent()
+    os.nice(_NICENESS)
     try:
         for found in analyses(automaton):
             connection.send(found)

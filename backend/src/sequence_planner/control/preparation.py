@@ -18,7 +18,7 @@ from sequence_planner.synthesis.guards import Guard
 
 LOG = structlog.get_logger(__name__)
 
-ANALYSIS_DEADLINE = 300.0  # seconds for all that synthesis finds
+ANALYSIS_DEADLINE = 120.0  # seconds for all that synthesis finds
 
 
 class Preparation:

@@ -16,12 +16,14 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.syntax import FALSE, And, Expression, Or
 from sequence_planner.synthesis.covers import cover
 from sequence_planner.synthesis.diagrams import Diagrams, Function
+from sequence_planner.synthesis.effort import Effort, TooMuchError
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.saturation import reaching
 from sequence_planner.synthesis.separation import Separation
 from sequence_planner.synthesis.supervision import Supervision
 from sequence_planner.synthesis.wording import count_literals, worded
 
+MOST_EFFORT = 20_000_000  # nodes, see `effort`, to find out which states are reached
 MOST_LITERALS = 60  # of a guard that people can still read
 _MOST_SYNTHESES = 8  # to see for which specifications' sake rest is lost
 _CACHE = 1 << 16  # for sets over the few variables that tell them apart
@@ -32,9 +34,10 @@ class Guard:
     """Where the supervisor allows some starts, as far as the station can get under it and the written guard holds.
 
     `starts` are the abilities it is added to: several where they are transitions of one event. `expression` is None
-    where no short one was found: then only the states themselves say it. `specifications` are those whose violation
-    nothing could prevent after some start that must wait. With `rest`, some must wait because no state of rest could be
-    reached any more; where that is all, `specifications` are those each of which would have to go for it to be allowed.
+    where no short one was found: then only the states themselves say it. `specifications` are those that could be the
+    first to be broken, and nothing prevent it, after some start that must wait. With `rest`, some must wait because no
+    state of rest could be reached any more; where that is all, `specifications` are those each of which would have to
+    go for it to be allowed.
     """
 
     starts: tuple[str, ...]
@@ -52,7 +55,7 @@ def shown_guards(supervision: Supervision) -> Mapping[str, Guard]:
     """
     if not supervision.possible:
         raise ValueError("there is no supervisor, and every guard would say nothing")
-    reached = supervision.reachable(supervised=True)
+    reached = _reached(supervision)
     on: dict[str, Function] = {}
     off: dict[str, Function] = {}
     for name in supervision.plant.starts:
@@ -69,6 +72,14 @@ def shown_guards(supervision: Supervision) -> Mapping[str, Guard]:
             specifications, rest = reasons.of({start: off[start] for start in starts})
             guards[name] = Guard(starts, expression, count, specifications, rest)
     return guards
+
+
+def _reached(supervision: Supervision) -> Function:
+    """What is reached under the supervisor; where that is too much, what is safe: then guards are longer, and right."""
+    try:
+        return supervision.reachable(supervised=True, effort=Effort(MOST_EFFORT))
+    except TooMuchError:
+        return supervision.safe
 
 
 def _merged(
@@ -121,8 +132,10 @@ class _Reasons:
     def __init__(self, supervision: Supervision) -> None:
         plant, diagrams = supervision.plant, supervision.plant.diagrams
         self._plant = plant
+        # What is broken first is the reason, and not what may be broken after that.
+        unbroken = diagrams.valid & ~diagrams.disjunction(supervision.forbidden.values())
         self._trouble = {
-            name: reaching(diagrams, forbidden, plant.uncontrollable)
+            name: reaching(diagrams, forbidden, plant.uncontrollable, forbidden | unbroken)
             for name, forbidden in supervision.forbidden.items()
         }
         self._restless = diagrams.valid & ~supervision.safe & ~diagrams.disjunction(self._trouble.values())

@@ -13,6 +13,7 @@ from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.syntax import TRUE, Expression, conjuncts, variables
 from sequence_planner.synthesis.diagrams import Function
+from sequence_planner.synthesis.effort import Effort
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.saturation import reachable, reaching
 from sequence_planner.synthesis.steps import Step
@@ -50,18 +51,24 @@ class Supervision:
         """Whether there is a supervisor: all initial states are safe."""
         return self.plant.initial & self.safe == self.plant.initial
 
-    def reachable(self, supervised: bool) -> Function:
-        """The states that the initial ones lead to, with or without the supervisor."""
+    def reachable(self, supervised: bool, effort: Effort | None = None) -> Function:
+        """The states that the initial ones lead to, with or without the supervisor.
+
+        Raises `TooMuchError` when that takes more than `effort`.
+        """
         plant = self.plant
         starts = [step for steps in plant.starts.values() for step in steps]
+        uncontrollable = plant.uncontrollable
+        if effort is not None:
+            starts, uncontrollable = effort.limited(starts), effort.limited(uncontrollable)
         if not supervised:
-            return reachable(plant.diagrams, plant.initial, [*plant.uncontrollable, *starts])
+            return reachable(plant.diagrams, plant.initial, [*uncontrollable, *starts])
         reached, before = plant.initial, None
         while reached != before:
             before = reached
             # From outside the safe states nothing is started; inside, nothing leads out of them.
-            reached = reachable(plant.diagrams, reached, plant.uncontrollable)
-            reached |= reachable(plant.diagrams, reached & self.safe, [*plant.uncontrollable, *starts], self.safe)
+            reached = reachable(plant.diagrams, reached, uncontrollable)
+            reached |= reachable(plant.diagrams, reached & self.safe, [*uncontrollable, *starts], self.safe)
         return reached
 
     def guard(self, name: str) -> tuple[Function, Function]:
