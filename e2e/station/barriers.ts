@@ -11,7 +11,7 @@ export async function findings(page: Page): Promise<string[]> {
 /** Whatever can be pressed and is smaller than 44 px in one direction. */
 export async function smallTargets(page: Page): Promise<string[]> {
 	return page.evaluate(() =>
-		[...document.querySelectorAll('button, a, input, select')].flatMap((element) => {
+		[...document.querySelectorAll('button, a, input, select, summary')].flatMap((element) => {
 			const { width, height } = element.getBoundingClientRect();
 			return width >= 44 && height >= 44 ? [] : [`${element.textContent.trim()}: ${width} × ${height}`];
 		})

@@ -973,9 +973,11 @@ export interface components {
         };
         /**
          * TraceDocument
-         * @description A run from an initial state; null is unknown.
+         * @description A run from an initial state, which the specifications `forbidden_by` forbid; null is unknown.
          */
         TraceDocument: {
+            /** Forbidden By */
+            forbidden_by: string[];
             /** Initial */
             initial: {
                 [key: string]: boolean | number | string | null;
