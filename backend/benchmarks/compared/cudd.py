@@ -75,6 +75,10 @@ class Function:
         high, low = (~node.high, ~node.low) if node.negated else (node.high, node.low)
         return Function(self._manager, high), Function(self._manager, low)
 
+    def node_count(self) -> int:
+        """How many nodes it has."""
+        return len(self.node)
+
     def sat_count(self, bits: int) -> int:
         """How many valuations of `bits` satisfy it, as near as a floating-point number is."""
         return int(self._manager.bdd.count(self.node, bits))
