@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 from control.bench import cell
+from control.rig import truck_engine
 from sequence_planner.analysis import store
 from sequence_planner.analysis.analysis import analyses
 from sequence_planner.analysis.document import document_of, read_supervisor, supervisor_document
@@ -75,6 +76,26 @@ def test_only_so_much_is_kept(cache: Path, monkeypatch: pytest.MonkeyPatch) -> N
 def test_where_nothing_can_be_written_nothing_is_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file"))
+    automaton = cell()[0].automaton
+    keep(automaton, found(automaton))
+    assert kept(automaton) is None
+
+
+def test_what_new_products_bring_counts_and_the_order_of_a_job_does_not(cache: Path) -> None:
+    """A finding can be that nothing ever makes a condition true, and a new product may."""
+    automaton = truck_engine()[0].automaton
+    keep(automaton, found(automaton))
+    ((name, master),) = automaton.work_masters.items()
+    assert kept(replace(automaton, work_masters={name: replace(master, operations={})})) is not None
+    assert kept(replace(automaton, work_masters={name: replace(master, brings=())})) is None
+
+
+def test_without_a_home_nothing_is_kept(monkeypatch: pytest.MonkeyPatch) -> None:
+    def homeless() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.delenv("XDG_CACHE_HOME", raising=False)
+    monkeypatch.setattr(Path, "home", homeless)
     automaton = cell()[0].automaton
     keep(automaton, found(automaton))
     assert kept(automaton) is None

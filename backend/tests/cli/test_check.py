@@ -90,7 +90,7 @@ def test_specifications_that_cannot_be_met_for_programs(tmp_path: Path) -> None:
     code, document = as_json("check", file)
     (finding,) = document["findings"]
     assert (code, finding["kind"], finding["line"]) == (1, "specification-cannot-be-met", 8)
-    assert finding["message"].endswith("In conflict are already `forbidden_1` and that nobody decides about `ask`")
+    assert finding["message"].endswith("Already these conflict: `forbidden_1`, with what no start decides: `ask`")
     changes = {"kind": "transition", "names": ["ask"], "finished": [], "changes": {"user": "waits"}}
     text = "step 1: ask: user := waits, which forbidden_1 forbids"
     assert finding["trace"] == {

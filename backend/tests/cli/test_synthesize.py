@@ -115,3 +115,59 @@ def test_a_model_that_is_none(tmp_path: Path) -> None:
     code, out, err = command("synthesize", tmp_path / "missing.efa.json")
     assert (code, out) == (2, "")
     assert "missing.efa.json" in err
+
+
+def test_transitions_of_one_event_that_differ_have_guards_of_their_own(tmp_path: Path) -> None:
+    """One that changes nothing, too: to forbid the event would be to forbid it."""
+    file = tmp_path / "overlap.efa.json"
+    transitions = [
+        {"event": "go", "controllable": True, "guard": "x < 3", "set": {"x": "x + 1"}},
+        {"event": "go", "controllable": True, "set": {}},
+        {"event": "go", "controllable": True, "guard": "x == 2", "set": {"x": 0}},
+        {"event": "stay", "controllable": True, "set": {}},
+    ]
+    document = {"name": "overlap", "variables": {"x": {"min": 0, "max": 3}}, "initial": "x == 0"}
+    file.write_text(json.dumps({**document, "transitions": transitions, "forbidden": ["x == 3"]}), encoding="utf-8")
+    _, found = as_json("synthesize", file)
+    assert found["guards"] == {"go#1": "x != 2", "go#2": "true", "go#3": "true", "stay": "true"}
+    assert found["origins"]["go#1"]["starts"] == ["go"]
+
+
+def test_copying_many_values_at_once_is_no_matter_of_their_combinations(tmp_path: Path) -> None:
+    """A table of twelve slots that is turned: 4¹² combinations of values."""
+    slots = [f"slot{number}" for number in range(12)]
+    turned = {slot: before for before, slot in zip(slots, [*slots[1:], slots[0]], strict=True)}
+    document = {
+        "name": "table",
+        "variables": {slot: ["empty", "raw", "done", "bad"] for slot in slots},
+        "initial": " and ".join(f"{slot} == {'raw' if slot == 'slot0' else 'empty'}" for slot in slots),
+        "transitions": [
+            {"event": "turn", "controllable": True, "set": turned},
+            {"event": "works", "controllable": False, "guard": "slot6 == raw", "set": {"slot6": "done"}},
+        ],
+        "forbidden": ["slot0 == raw and slot6 == done"],
+    }
+    file = tmp_path / "table.efa.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    code, found = as_json("synthesize", file)
+    assert (code, found["reachable_states"], found["supervised_states"]) == (0, 24, 24)
+
+
+def test_a_model_that_is_too_much_does_not_hold_up_other_commands(tmp_path: Path) -> None:
+    counters = [f"n{number}" for number in range(6)]
+    document = {
+        "name": "sum",
+        "variables": {name: {"min": 0, "max": 99} for name in counters},
+        "initial": " and ".join(f"{name} == 0" for name in counters),
+        "transitions": [{"event": f"up_{n}", "controllable": True, "set": {n: f"{n} + 1"}} for n in counters],
+        "forbidden": [f"{' + '.join(counters)} > 200"],
+        "goal": ["F (n0 == 1)"],
+    }
+    file = tmp_path / "sum.efa.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    code, _, err = command("plan", file, "--deadline", "1")
+    assert code == 2
+    assert err == "the safe states could not be computed within 1 s: let fewer variables bear on them\n"
+    code, out, err = command("show", file, "up_n0", "--deadline", "1")
+    assert (code, "controllable up_n0" in out) == (0, True)
+    assert "could not be computed within 1 s: allow more with --deadline" in err

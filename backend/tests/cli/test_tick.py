@@ -97,3 +97,18 @@ def test_a_transition_of_a_plain_automaton(tmp_path: Path) -> None:
     code, document = as_json("tick", file, "--state", "-", "--start", "grab", given=json.dumps(asked))
     assert (code, document["changes"]) == (0, {"user": "has", "free": False})
     assert command("tick", file, "--start", "grb")[2] == "there is no event `grb`; did you mean `grab`?\n"
+
+
+def test_the_supervisor_holds_back_events_of_plain_automata(tmp_path: Path) -> None:
+    file = tmp_path / "step.efa.json"
+    file.write_text(
+        '{"name": "step", "variables": {"x": {"min": 0, "max": 2}}, "initial": "x == 1", "forbidden": ["x == 2"],'
+        ' "transitions": [{"event": "go", "controllable": true, "set": {"x": "x + 1"}}]}',
+        encoding="utf-8",
+    )
+    code, out, _ = command("tick", file, "--start", "go")
+    assert code == 1
+    assert out == (
+        "go waits: it leads out of the safe states, and the supervisor forbids that (--unsupervised takes it)\n"
+    )
+    assert command("tick", file, "--start", "go", "--unsupervised")[:2] == (0, "go: x := 2\n")

@@ -15,6 +15,8 @@ from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor
 from sequence_planner.synthesis.unmeetable import why_unmeetable
 
+COUNTING = "the number of states"  # the last that is computed
+
 
 @dataclass(frozen=True)
 class Analysis:
@@ -48,7 +50,7 @@ def analyses(automaton: Automaton) -> Iterator[Analysis]:
         found = replace(found, warnings=tuple(check_supervision(automaton, supervision)), pending="the guards")
         yield found
         found = replace(found, guards=shown_guards(supervision))
-    found = replace(found, pending="the number of states")
+    found = replace(found, pending=COUNTING)
     yield found
     whole = _of_all_variables(supervision)
     diagrams = whole.plant.diagrams
@@ -63,7 +65,7 @@ def _unmet(supervision: Supervision) -> ModelWarning:
     automaton = supervision.plant.automaton
     why = why_unmeetable(supervision.plant, supervision.forbidden)
     broken = () if why.trace is None else why.trace.breaks
-    return unmeetable(automaton, why, place(automaton, *broken, *automaton.specifications, "rest"))
+    return unmeetable(automaton, why, place(automaton, *broken, "rest", *automaton.specifications))
 
 
 def _of_all_variables(supervision: Supervision) -> Supervision:

@@ -39,9 +39,10 @@ def folder() -> Path:
 def key(automaton: Automaton) -> str:
     """What a model and the program have in common with others only if the same is found of them.
 
-    Places count, as what is found names them; what jobs consist of does not.
+    Places count, as what is found names them. In which order a job has its operations does not.
     """
-    content = pickle.dumps((replace(automaton, work_masters={}), dict(automaton.places)))
+    masters = {name: replace(master, operations={}) for name, master in automaton.work_masters.items()}
+    content = pickle.dumps((replace(automaton, work_masters=masters), dict(automaton.places)))
     return hashlib.sha256(_program() + content).hexdigest()
 
 
@@ -52,7 +53,7 @@ def kept(automaton: Automaton) -> Kept | None:
         text = content["text"]
         if hashlib.sha256(text.encode()).hexdigest() == content["sum"]:
             return Kept.model_validate_json(text)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, ValidationError):
+    except (OSError, RuntimeError, ValueError, KeyError, TypeError, AttributeError, ValidationError):
         pass
     return None
 
@@ -64,9 +65,10 @@ def keep(automaton: Automaton, found: Kept) -> None:
         file.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
         text = found.model_dump_json()
         content = json.dumps({"sum": hashlib.sha256(text.encode()).hexdigest(), "text": text})
-        with tempfile.NamedTemporaryFile("w", dir=file.parent, delete=False, encoding="utf-8") as written:
-            written.write(content)
-        Path(written.name).replace(file)
+        with tempfile.TemporaryDirectory(dir=file.parent) as beside:
+            written = Path(beside) / file.name
+            written.write_text(content, encoding="utf-8")
+            written.replace(file)
         _remove_oldest(file.parent)
 
 

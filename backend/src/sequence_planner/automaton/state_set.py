@@ -54,6 +54,8 @@ class StateSet:
 
     def for_all(self, unknown: frozenset[str]) -> StateSet:
         """The set over the other variables of what is included for every value of `unknown`."""
+        if unknown.isdisjoint(self.names):
+            return self
         kept = [axis for axis, name in enumerate(self.names) if name not in unknown]
         number = {axis: position for position, axis in enumerate(kept)}
         builder = Builder()

@@ -104,6 +104,13 @@ class Inquiry:
         reached = reachable(self.diagrams, states, steps)
         return [name for name, where in self.forbidden().items() if (where & reached).satisfiable()]
 
+    def unbroken_unasked(self, states: Function) -> bool:
+        """Whether from some of `states` on no specification can be broken without any start."""
+        broken = self.diagrams.disjunction(self.forbidden().values())
+        return (
+            states & ~reaching(self.diagrams, broken, self._effort.limited(self.plant.uncontrollable))
+        ).satisfiable()
+
     @cached_property
     def ever(self) -> tuple[Plant, Function]:
         """All that may be reached by any means, on a plant of its own."""

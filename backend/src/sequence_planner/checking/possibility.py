@@ -115,21 +115,24 @@ class Possibility:
         """The way to a state in which only the supervisor keeps it from starting, the start, and what may follow."""
         inquiry = self._inquiry
         trace = Tracer(inquiry.plant, within=inquiry.safe).shortest(where)
-        consequence = "what is forbidden, or states from which rest cannot be reached any more"
         if trace is not None:
             trace = Tracer(inquiry.plant).started(trace, ability.name)
             broken = inquiry.diagrams.disjunction(inquiry.forbidden().values())
             trace = Tracer(inquiry.plant, starts=False).onward(trace, broken) or trace
-            consequence = self._consequence(inquiry.diagrams.states(trace.last))
+        after = [step.after(where & inquiry.safe) for step in inquiry.plant.starts[ability.name]]
+        consequence = self._consequence(inquiry.diagrams.disjunction(after))
         message = (
             f"never starts, as the supervisor forbids it wherever it could: it would lead to {consequence}. Let "
             "something else happen before it, forbid less, or leave it out"
         )
         return Finding("never-allowed", subject, message, trace, cause=_causes([ability.name]))
 
-    def _consequence(self, state: Function) -> str:
-        broken = self._inquiry.broken_unasked(state)
-        return f"what {_quoted(broken)} forbids" if broken else "states from which rest cannot be reached any more"
+    def _consequence(self, states: Function) -> str:
+        """What comes of `states`, in some of them one thing and in others another."""
+        broken, restless = self._inquiry.broken_unasked(states), self._inquiry.unbroken_unasked(states)
+        parts = [f"what {_quoted(broken)} forbids"] if broken else []
+        parts += ["states from which rest cannot be reached any more"] if restless else []
+        return ", or to ".join(parts)
 
     def _after(self, trace: Trace | None) -> str:
         """Where a trace leaves the safe states."""

@@ -58,11 +58,13 @@ def _in_parts(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet)
     too_wide = 0
     for subject in subjects:
         read = read_variables(automaton, subject.expressions)
-        names = next((names for names in parts if read <= names), None)
+        names = min((names for names in parts if read <= names), key=len, default=None)
+        if names is not None and bits(automaton, names) > MOST_BITS:
+            names = None
         if names is None and too_wide < MOST_TOO_WIDE:
             names = bearing_on(automaton, subject.expressions)
             too_wide += bits(automaton, names) > MOST_BITS
-        parts.setdefault(names or frozenset(automaton.variables), []).append(subject)
+        parts.setdefault(frozenset(automaton.variables) if names is None else names, []).append(subject)
     effort = Effort(MOST_EFFORT_IN_PARTS)
     for names, members in sorted(parts.items(), key=lambda part: len(part[0])):
         try:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.checking.warning import ModelWarning
+from sequence_planner.checking.warning import ModelWarning, listed
 from sequence_planner.model.source import Place
 from sequence_planner.synthesis.minimal_conflict import Conflict, minimal_conflict
 from sequence_planner.synthesis.unmeetable import Unmeetable
@@ -18,13 +18,8 @@ def unmeetable(automaton: Automaton, reason: Unmeetable, place: Place) -> ModelW
 
 def _in_conflict(automaton: Automaton, conflict: Conflict) -> str:
     """What would already be enough, as a sentence."""
-    parts = [f"`{name}`" for name in conflict.specifications]
-    if not parts:
-        parts = [f"reaching {'a marked state' if automaton.one_at_a_time else 'rest'}"]
-    text = f"In conflict are already {', '.join(parts)}"
+    rest = "marked" if automaton.one_at_a_time else "rest"
+    text = f"Already these conflict: {listed(conflict.specifications or (rest,), most=None)}"
     if conflict.uncontrollable:
-        names = ", ".join(f"`{name}`" for name in conflict.uncontrollable)
-        text += f" and that nobody decides about {names}"
-    else:
-        text += ", whatever is uncontrollable"
-    return text if conflict.minimal else f"{text}; perhaps fewer would be enough, as not all was tried"
+        text += f", with what no start decides: {listed(conflict.uncontrollable, most=None)}"
+    return text if conflict.minimal else f"{text} (perhaps fewer would do: not all was tried)"

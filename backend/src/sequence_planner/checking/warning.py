@@ -44,10 +44,10 @@ def families(names: Iterable[str]) -> Mapping[str, tuple[str, ...]]:
     return {family: tuple(members) for family, members in found.items()}
 
 
-def listed(names: Sequence[str]) -> str:
-    """Several names, in backticks; of many only the first."""
-    shown = ", ".join(f"`{name}`" for name in names[:MOST_NAMED])
-    return shown if len(names) <= MOST_NAMED else f"{shown} and {len(names) - MOST_NAMED} more"
+def listed(names: Sequence[str], most: int | None = MOST_NAMED) -> str:
+    """Several names, in backticks; of more than `most` only the first."""
+    shown = ", ".join(f"`{name}`" for name in names[:most])
+    return shown if most is None or len(names) <= most else f"{shown} and {len(names) - most} more"
 
 
 def described(state: State, names: Iterable[str]) -> str:

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import asyncio
+import signal
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
+from types import FrameType
 from typing import Annotated
 
 import typer
 
-from sequence_planner.analysis.analysis import Analysis
+from sequence_planner.analysis.analysis import COUNTING, Analysis
 from sequence_planner.analysis.document import (
     AnalysisDocument,
     document_of,
@@ -21,6 +25,7 @@ from sequence_planner.analysis.process import SynthesisEndedError, analysing
 from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.cli.options import refuse
 from sequence_planner.synthesis.supervision import synthesise
 
 Deadline = Annotated[
@@ -39,34 +44,65 @@ class Found:
     unfinished: str | None
 
 
-def analysed(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Found:
-    """What is found of `automaton` within `deadline` seconds; a terminal's standard error is told what goes on."""
-    if (known := kept(automaton)) is not None:
+def analysed(automaton: Automaton, deadline: float = USUAL_DEADLINE, counts: bool = False) -> Found:
+    """What is found of `automaton` within `deadline` seconds, with numbers of states only if `counts` asks for them.
+
+    A terminal's standard error is told what goes on.
+    """
+    known = kept(automaton)
+    if known is not None and not (counts and known.analysis.pending):
         supervisor = None if known.supervisor is None else read_supervisor(automaton, known.supervisor)
         return Found(known.analysis, supervisor, None)
-    analysis, unfinished = asyncio.run(_heard(automaton, deadline))
+    analysis, unfinished = asyncio.run(_heard(automaton, deadline, counts))
     document = document_of(automaton, analysis)
-    if unfinished is None:
+    if analysis.pending in (None, COUNTING):
         supervisor_kept = None if analysis.supervisor is None else supervisor_document(analysis.supervisor)
         keep(automaton, Kept(analysis=document, supervisor=supervisor_kept))
     return Found(document, analysis.supervisor, unfinished)
 
 
-def supervisor_of(automaton: Automaton) -> Supervisor:
-    """The supervisor of `automaton`, kept or computed here and now. Raises `SynthesisError` if there is none."""
+def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Supervisor:
+    """The supervisor of `automaton`, kept or computed here and now. Ends the command if that takes too long.
+
+    Raises `SynthesisError` if there is none.
+    """
     known = kept(automaton)
     if known is not None and known.supervisor is not None:
         return read_supervisor(automaton, known.supervisor)
-    return synthesise(automaton)
+    try:
+        with _within(deadline):
+            return synthesise(automaton)
+    except TimeoutError:
+        refuse(f"the safe states could not be computed within {deadline:g} s: let fewer variables bear on them")
+    except MemoryError:
+        refuse("the safe states have outgrown the memory set aside for them: let fewer variables bear on them")
 
 
-async def _heard(automaton: Automaton, deadline: float) -> tuple[Analysis, str | None]:
+@contextmanager
+def _within(seconds: float) -> Iterator[None]:
+    """Raise `TimeoutError` in the block after so many seconds; in the main thread only."""
+
+    def ring(number: int, frame: FrameType | None) -> None:
+        raise TimeoutError
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+async def _heard(automaton: Automaton, deadline: float, counts: bool) -> tuple[Analysis, str | None]:
     found = Analysis("the safe states")
     began = time.monotonic()
     try:
         async with asyncio.timeout(deadline), analysing(automaton) as finding:
             async for found in finding:
                 _tell(found, time.monotonic() - began)
+                if found.pending == COUNTING and not counts:
+                    break
     except TimeoutError:
         return found, f"{found.pending} could not be computed within {deadline:g} s: allow more with --deadline"
     except SynthesisEndedError as ended:

@@ -84,7 +84,7 @@ def _unusable(finding: Finding) -> dict[str, object]:
 
 
 def _summary(checked: Checked) -> dict[str, object]:
-    automaton, supervisor = checked.model.automaton, checked.found.supervisor
+    automaton = checked.model.automaton
     return {
         "title": automaton.title,
         "kind": "station" if checked.model.station is not None else "plain automaton",
@@ -93,12 +93,18 @@ def _summary(checked: Checked) -> dict[str, object]:
         "effects": len(automaton.effects),
         "operations": len(automaton.operations),
         "specifications": len(automaton.specifications),
-        "guarded_abilities": None if supervisor is None else sorted(supervisor.guards),
+        "guarded_abilities": None if (guarded := _guarded(checked)) is None else sorted(guarded),
     }
 
 
+def _guarded(checked: Checked) -> set[str] | None:
+    """The starts that the supervisor restricts; None if that is not known, or there is none."""
+    guards = checked.found.document.guards
+    return None if guards is None else {start for guard in guards.values() for start in guard.starts}
+
+
 def _summary_line(checked: Checked) -> str:
-    automaton, supervisor = checked.model.automaton, checked.found.supervisor
+    automaton = checked.model.automaton
     parts = f"{automaton.title}: {len(automaton.variables)} variables, "
     if checked.model.station is None:
         parts += f"{len(automaton.abilities)} controllable and {len(automaton.effects)} uncontrollable transitions"
@@ -106,5 +112,9 @@ def _summary_line(checked: Checked) -> str:
     else:
         parts += f"{len(automaton.abilities)} abilities, {len(automaton.operations)} operations"
         what = "abilities"
-    guarded = "no supervisor" if supervisor is None else f"the supervisor guards {len(supervisor.guards)} {what}"
-    return f"{parts}; {guarded}"
+    if checked.found.document.supervised is False:
+        return f"{parts}; no supervisor"
+    guarded = _guarded(checked)
+    if guarded is None:
+        return f"{parts}; the guards of the supervisor were not computed"
+    return f"{parts}; the supervisor guards {len(guarded)} {what}"

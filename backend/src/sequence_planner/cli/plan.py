@@ -25,7 +25,9 @@ Goals = Annotated[
     list[str] | None,
     typer.Argument(metavar="[OPERATION]...", help="Whose goals to reach; else those that are active then."),
 ]
-Deadline = Annotated[float, typer.Option(min=0.01, max=86_400, help="Seconds to look for a plan.")]
+Deadline = Annotated[
+    float, typer.Option(min=0.01, max=86_400, help="Seconds to look for the safe states, and for a plan.")
+]
 
 
 def plan(
@@ -42,7 +44,7 @@ def plan(
     try:
         if found_model.station is not None:
             require_runnable(found_model.station)
-        supervisor = supervisor_of(automaton)
+        supervisor = supervisor_of(automaton, deadline)
     except (SynthesisError, ModelError) as error:
         refuse(str(error))
     if automaton.one_at_a_time:

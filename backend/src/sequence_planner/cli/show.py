@@ -9,7 +9,7 @@ import typer
 
 from sequence_planner.analysis.document import GuardDocument
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, Operation, VariableDeclaration
-from sequence_planner.cli.analysing import analysed
+from sequence_planner.cli.analysing import Deadline, analysed
 from sequence_planner.cli.describing import described_automaton
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.options import AnyModel, AsJson, print_json, refuse
@@ -29,6 +29,7 @@ def show(
         list[str] | None,
         typer.Argument(metavar="[NAME]...", help="Show these only: a resource, variable, ability, operation, ..."),
     ] = None,
+    deadline: Deadline = LONGEST,
     json: AsJson = False,
 ) -> None:
     """Show what a model means: its variables, ground abilities with their effects, operations and specifications.
@@ -43,20 +44,20 @@ def show(
     for name in wanted:
         if not any(_bears(each, name) for each in known):
             refuse(f"{model}: there is nothing called `{name}`{suggestion(name, known)}")
-    guards = _guards(automaton, wanted)
+    guards = _guards(automaton, wanted, deadline)
     if json:
         print_json(described_automaton(automaton, guards, lambda name: _chosen(name, wanted)))
         return
     typer.echo("\n".join(_lines(automaton, guards, wanted)).strip("\n"))
 
 
-def _guards(automaton: Automaton, wanted: list[str]) -> Guards:
+def _guards(automaton: Automaton, wanted: list[str], deadline: float) -> Guards:
     """The guard that the supervisor adds to each ability, if any of them are to be shown."""
     if not automaton.specifications and automaton.rest is None:
         return {}
     if not any(_chosen(name, wanted) for name in automaton.abilities):
         return {}
-    found = analysed(automaton, LONGEST)
+    found = analysed(automaton, deadline)
     if found.document.supervised is False:
         typer.echo("there is no supervisor: `check` says why", err=True)
     elif found.document.guards is None:
@@ -176,7 +177,7 @@ def _transitions(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lin
         if _chosen(ability.name, wanted):
             yield from ("", f"controllable {ability.name}")
             yield from _condition("guard", ability.start_guard, TRUE)
-            yield from _added(guards.get(ability.name))
+            yield from _added(guards.get(ability.name), rest="marked")
             yield from _actions("set", ability.start_actions, "    ")
     for effect in automaton.effects:
         if _chosen(effect.name, wanted):
@@ -199,10 +200,10 @@ def _condition(name: str, condition: Expression, usual: Expression | None) -> Li
         yield f"    {name:10}  {print_expression(condition)}"
 
 
-def _added(guard: GuardDocument | None) -> Lines:
+def _added(guard: GuardDocument | None, rest: str = "rest") -> Lines:
     """What the supervisor adds, and the specifications that this comes from."""
     if guard is not None:
-        reasons = [*guard.specifications, *(["rest"] if guard.rest else [])]
+        reasons = [*guard.specifications, *([rest] if guard.rest else [])]
         yield f"    {'supervisor':10}  {guard.guard or 'see the states'}"
         yield f"    {'':10}  (because of {', '.join(reasons)})"
 

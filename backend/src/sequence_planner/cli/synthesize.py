@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping
 
 import typer
 
 from sequence_planner.analysis.document import AnalysisDocument, GuardDocument
-from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.plain.meaning import NUMBER_SIGN, event_of
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, analysed
 from sequence_planner.cli.findings import finding_lines
@@ -26,7 +27,7 @@ def synthesize(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJso
     findings.
     """
     automaton = usable_model(model).automaton
-    found = analysed(automaton, deadline)
+    found = analysed(automaton, deadline, counts=True)
     if json:
         print_json(_document(automaton, found))
     else:
@@ -52,19 +53,25 @@ def _document(automaton: Automaton, found: Found) -> dict[str, object]:
 def _all_guards(automaton: Automaton, guards: Mapping[str, GuardDocument]) -> Iterator[tuple[str, str | None]]:
     """The guard of each ability or event, in order of declaration; `true` where the supervisor adds none."""
     restricted = {start: name for name, guard in guards.items() for start in guard.starts}
+    split = {event_of(name) for name in guards if automaton.one_at_a_time and NUMBER_SIGN in name}
+    numbers: Counter[str] = Counter()
     for ability in automaton.abilities.values():
+        if ability.restart:
+            continue
         event = event_of(ability.name) if automaton.one_at_a_time else ability.name
-        name = restricted.get(ability.name)
-        if name is not None:
+        numbers[event] += 1
+        name = f"{event}{NUMBER_SIGN}{numbers[event]}" if event in split else event
+        name = restricted.get(ability.name, name)
+        if name in guards:
             yield name, guards[name].guard
-        elif not ability.restart and event not in guards:
-            yield event, print_expression(TRUE)
+        else:
+            yield name, print_expression(TRUE)
 
 
 def _lines(automaton: Automaton, found: Found) -> Iterator[str]:
     document = found.document
     yield f"{automaton.title}: {_counts(document)}"
-    yield from _guards(document)
+    yield from _guards(document, "marked" if automaton.one_at_a_time else "rest")
     for finding in document.findings or ():
         yield from finding_lines(finding)
     if found.unfinished is not None:
@@ -79,9 +86,9 @@ def _counts(document: AnalysisDocument) -> str:
     return f"{reachable} states can be reached, {supervised} of them with the supervisor"
 
 
-def _guards(document: AnalysisDocument) -> Iterator[str]:
+def _guards(document: AnalysisDocument, rest: str) -> Iterator[str]:
     for name, guard in (document.guards or {}).items():
-        reasons = [*guard.specifications, *(["rest"] if guard.rest else [])]
+        reasons = [*guard.specifications, *([rest] if guard.rest else [])]
         yield f"  {name}"
         yield f"    {guard.guard or 'see the states: no short condition says when'}"
         if reasons:

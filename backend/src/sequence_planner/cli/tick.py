@@ -37,6 +37,7 @@ Starts = Annotated[
     typer.Option("--start", help="An ability to start, in this order; the event of a plain automaton. Repeatable."),
 ]
 RestartMode = Annotated[bool, typer.Option("--restart-mode", help="Restart abilities may start, too.")]
+Unsupervised = Annotated[bool, typer.Option("--unsupervised", help="Start also what the supervisor forbids.")]
 
 
 def tick(
@@ -47,6 +48,7 @@ def tick(
     effects: Effects = None,
     starts: Starts = None,
     restart_mode: RestartMode = False,
+    unsupervised: Unsupervised = False,
     json: AsJson = False,
 ) -> None:
     """Take one tick of the reference interpreter, and say what each of its steps did.
@@ -60,7 +62,7 @@ def tick(
     if automaton.one_at_a_time:
         if sets or unknown or effects or len(starts or ()) != 1:
             refuse("a plain automaton takes one transition at a time: give one event with --start, and nothing else")
-        _plain(automaton, before.state, (starts or [""])[0], json)
+        _plain(automaton, before.state, (starts or [""])[0], unsupervised, json)
         return
     request = Request(
         {**_measured(automaton, before.state, sets or ()), **_forgotten(automaton, unknown or ())},
@@ -69,7 +71,7 @@ def tick(
         restart_mode,
     )
     try:
-        taken = take_tick(automaton, _supervisor(automaton, bool(starts)), before, request)
+        taken = take_tick(automaton, _supervisor(automaton, bool(starts) and not unsupervised), before, request)
     except EffectRefused as error:
         refuse(str(error))
     if json:
@@ -117,20 +119,27 @@ def _require_measured(automaton: Automaton, name: str) -> None:
         refuse(f"messages set measured variables, and `{name}` is {kind} variable{suggestion(name, measured)}")
 
 
-def _plain(automaton: Automaton, state: State, event: str, json: bool) -> None:
-    """Take the first transition of an event that is enabled."""
+def _plain(automaton: Automaton, state: State, event: str, unsupervised: bool, json: bool) -> None:
+    """Take the first transition of an event that is enabled, and that the supervisor allows."""
     known = plain_transitions(automaton)
     transitions = [t for name, t in known.items() if event in (name, event_of(name))]
     if not transitions:
         refuse(f"there is no event `{event}`{suggestion(event, map(event_of, known))}")
-    taken, after = next(((t, s) for t in transitions if (s := step(state, t)) is not None), (None, state))
-    waits_for = [] if taken else [reason for t in transitions for reason in lacking(t.guard, state)]
+    enabled = [(t, s) for t in transitions if (s := step(state, t)) is not None]
+    controlled = any(t.controllable for t, _ in enabled)
+    supervisor = _supervisor(automaton, controlled and not unsupervised)
+    allowed = [(t, s) for t, s in enabled if not t.controllable or supervisor is None or supervisor.allows(state, s)]
+    taken, after = allowed[0] if allowed else (None, state)
+    waits_for = [] if enabled else [reason for t in transitions for reason in lacking(t.guard, state)]
+    if enabled and not allowed:
+        waits_for = ["it leads out of the safe states, and the supervisor forbids that (--unsupervised takes it)"]
     changed = changes(state, after)
     if json:
         name = None if taken is None else taken.name
         print_json({"transition": name, "waits_for": waits_for, "changes": changed, "state": dict(after)})
     else:
-        typer.echo(f"{event}: {_changes(changed)}" if taken else f"{event} is not enabled: {', '.join(waits_for)}")
+        refused = f"{event} {'waits' if enabled else 'is not enabled'}: {', '.join(waits_for)}"
+        typer.echo(f"{event}: {_changes(changed)}" if taken else refused)
     if taken is None:
         raise typer.Exit(FINDINGS)
 

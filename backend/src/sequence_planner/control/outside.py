@@ -96,6 +96,8 @@ class Outside:
         elif isinstance(answer, WayBackAnswer) and answer.threatened:
             named = _named(automaton, answer.threatened)
             wrong = f"Nothing is violated yet, but without any start the devices could violate {named}."
+        elif isinstance(answer, WayBackAnswer):
+            wrong = "Nothing is violated, but rest can perhaps no longer be reached."
         else:
             wrong = "Nothing is violated yet, but that could come without any start, or rest can no longer be reached."
         return f"The station is outside its safe states. {wrong}{_nearest(automaton, situation.differences)}"
@@ -122,7 +124,7 @@ class Outside:
     def _by_starts(self, way: WayBack) -> str:
         abilities = self._execution.automaton.abilities
         starts = ", then ".join(f"{abilities[name].title} ({name})" for _, name in way.starts)
-        return f"Shortest way back, {_ticks(len(way.ticks))}, for a person to take: {starts}."
+        return f"Shortest way back, {_ticks(len(way.ticks))}: {starts}. The station does not take it by itself."
 
     def _by_itself(self, way: WayBack) -> str:
         automaton, state = self._execution.automaton, self._execution.state

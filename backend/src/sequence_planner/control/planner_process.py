@@ -18,7 +18,7 @@ import structlog
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.planning.plan import Answer, Request
+from sequence_planner.planning.plan import Answer, Request, WayBackRequest
 from sequence_planner.planning.worker import Ready, Word, work
 
 LOG = structlog.get_logger(__name__)
@@ -48,14 +48,13 @@ class _Worker:
     ) -> None:
         self.ready = False
         self.questions: SimpleQueue[Request | None] = SimpleQueue()
+        self._model = (automaton, supervisor)
         self._loop = loop
         self._hear = hear
         context = multiprocessing.get_context("spawn")
         self._connection, theirs = context.Pipe()
         with theirs:
-            self._process = context.Process(
-                target=work, args=(theirs, automaton, supervisor), daemon=True, name="planner"
-            )
+            self._process = context.Process(target=work, args=(theirs,), daemon=True, name="planner")
             self._process.start()
         loop.add_reader(self._process.sentinel, self._ended)
         self._thread = threading.Thread(target=self._converse, daemon=True, name="planner")
@@ -77,6 +76,7 @@ class _Worker:
     def _converse(self) -> None:
         # Whatever is wrong with the pipe or with what comes out of it: the process is of no more use.
         with self._connection, contextlib.suppress(Exception):
+            self._connection.send(self._model)  # from this thread: a large one takes as long as the process to start
             self._tell(self._connection.recv())
             while (question := self.questions.get()) is not None:
                 self._connection.send(question)
@@ -175,4 +175,5 @@ class PlannerProcess:
         self.trouble = f"the planner {why} and is started again"
         if (request := self._asked) is not None:
             self._asked, self._owes = None, True
-            self._listener.failed(request, self.trouble, True)
+            # A way back is only told; a station whose planner it kills again and again would have no plans.
+            self._listener.failed(request, self.trouble, not isinstance(request, WayBackRequest))

@@ -52,8 +52,10 @@ class Preparation:
         """No more will be found."""
         if not self.supervisor.done():
             self.supervisor.set_exception(why)
-        elif self.analysis is not None and self.controller is not None:
-            self.controller.know(self.analysis.model_copy(update={"pending": None}), self._guards)
+        if self.analysis is not None:
+            self.analysis = self.analysis.model_copy(update={"pending": None})
+            if self.controller is not None:
+                self.controller.know(self.analysis, self._guards)
 
     def refusal(self) -> CommandRefused:
         """Why nothing can be commanded yet."""
@@ -75,3 +77,6 @@ async def analyse(automaton: Automaton, preparation: Preparation) -> None:
         LOG.warning("not all was found of the station", within=ANALYSIS_DEADLINE)
         late = f"the safe states could not be computed within {ANALYSIS_DEADLINE:g} s: let fewer variables bear on them"
         preparation.end(SynthesisEndedError(late))
+    except Exception as error:
+        LOG.exception("synthesis failed")
+        preparation.end(SynthesisEndedError(f"the safe states could not be computed ({type(error).__name__}: {error})"))

@@ -124,7 +124,7 @@ async def _prepared(running: Running, preparation: Preparation) -> Supervisor | 
     supervisor = synthesis.result()
     if supervisor is not None:
         seconds = round(time.monotonic() - began, 2)
-        LOG.info("safe states computed", seconds=seconds, states=supervisor.safe.count)
+        LOG.info("safe states computed", seconds=seconds)
     return supervisor
 
 

@@ -16,7 +16,8 @@ from pysat.solvers import Solver
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, target
+from sequence_planner.automaton.structure import Ability, Automaton, reads, target
+from sequence_planner.expressions.syntax import variables
 from sequence_planner.planning.circuit import Circuit
 from sequence_planner.planning.encoding import Encoding
 
@@ -27,21 +28,34 @@ def sweep_order(automaton: Automaton, supervisor: Supervisor) -> tuple[Ability, 
     before: dict[str, set[str]] = {ability.name: set() for ability in abilities}
     used = {ability.name: _used(automaton, supervisor, ability) for ability in abilities}
     written = {ability.name: frozenset(map(target, ability.start_actions)) for ability in abilities}
-    read = {flag.name: read_variables(automaton, (flag.predicate,)) for flag in automaton.flags}
+    flags = {ability.name: _flags(automaton, ability) for ability in abilities}
     for first, second in permutations(abilities, 2):
         one, other = first.name, second.name
         if written[one].isdisjoint(used[other]) and written[other].isdisjoint(used[one]):
             continue
         concerned = used[one] | used[other] | frozenset(supervisor.safe.names)
-        if _order_matters(_part(automaton, concerned, read), supervisor, first, second):
+        if _order_matters(_part(automaton, concerned, flags[one] | flags[other]), supervisor, first, second):
             before[other].add(one)
     return tuple(automaton.abilities[name] for name in _linear(before))
 
 
-def _part(automaton: Automaton, names: Set[str], read: Mapping[str, Set[str]]) -> Automaton:
-    """The automaton with no more than the variables `names` and the flags that `read` nothing else."""
-    variables = {name: variable for name, variable in automaton.variables.items() if name in names}
-    return replace(automaton, variables=variables, flags=tuple(f for f in automaton.flags if read[f.name] <= names))
+def _part(automaton: Automaton, names: Set[str], flags: Set[str]) -> Automaton:
+    """The automaton with no more than these variables and flags."""
+    kept = {name: variable for name, variable in automaton.variables.items() if name in names}
+    return replace(automaton, variables=kept, flags=tuple(flag for flag in automaton.flags if flag.name in flags))
+
+
+def _flags(automaton: Automaton, ability: Ability) -> frozenset[str]:
+    """The flags that a start of `ability` reads, and those that these read."""
+    found: set[str] = set()
+    pending = [ability.flag("enabled"), *variables(ability.enabled), *variables(ability.start_guard)]
+    pending += [name for action in ability.start_actions for name in reads(action)]
+    while pending:
+        name = pending.pop()
+        if name in automaton.flag_predicates and name not in found:
+            found.add(name)
+            pending.extend(variables(automaton.flag_predicates[name]))
+    return frozenset(found)
 
 
 def _linear(before: Mapping[str, Set[str]]) -> Iterator[str]:

@@ -25,15 +25,18 @@ class Ready(Enum):
 Word = Ready | Answer | str
 
 
-def work(connection: Connection, automaton: Automaton, supervisor: Supervisor) -> None:
-    """Answer each request, or say in the text of an error why not, until the other end is closed.
+def work(connection: Connection) -> None:
+    """Hear of an automaton and its supervisor, then answer each request, until the other end is closed.
 
-    After an error that nobody thought of, the process ends: what it has learnt could be wrong.
+    Where there is no answer, the text of an error says why. After an error that nobody thought of, the process ends:
+    what it has learnt could be wrong.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
     end_without_parent()
-    planner, ways = Planner(automaton, supervisor), WaysBack(automaton, supervisor.safe)
     try:
+        model: tuple[Automaton, Supervisor] = connection.recv()
+        automaton, supervisor = model
+        planner, ways = Planner(automaton, supervisor), WaysBack(automaton, supervisor.safe)
         connection.send(Ready.READY)
         while True:
             request: Request = connection.recv()

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.plain.meaning import NUMBER_SIGN, event_of
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.syntax import FALSE, And, Expression, Or
 from sequence_planner.synthesis.covers import cover
@@ -51,14 +51,14 @@ def shown_guards(supervision: Supervision) -> Mapping[str, Guard]:
     """The guard of each start that the supervisor restricts, by ability, and in a plain automaton by event.
 
     Where an event has transitions of which one is allowed and another is not in one state, they have guards of their
-    own. Raises `ValueError` if there is no supervisor.
+    own, under the names `event#1`, `event#2` and so on. Raises `ValueError` if there is no supervisor.
     """
     if not supervision.possible:
         raise ValueError("there is no supervisor, and every guard would say nothing")
     reached = _reached(supervision)
     on: dict[str, Function] = {}
     off: dict[str, Function] = {}
-    for name in supervision.plant.starts:
+    for name in _startable(supervision.plant.automaton):
         allowed, disallowed = supervision.guard(name)
         on[name], off[name] = allowed & reached, disallowed & reached
     reasons = _Reasons(supervision)
@@ -82,6 +82,10 @@ def _reached(supervision: Supervision) -> Function:
         return supervision.safe
 
 
+def _startable(automaton: Automaton) -> list[str]:
+    return [name for name, ability in automaton.abilities.items() if not ability.restart]
+
+
 def _merged(
     automaton: Automaton, on: Mapping[str, Function], off: Mapping[str, Function]
 ) -> Mapping[str, tuple[str, ...]]:
@@ -94,7 +98,7 @@ def _merged(
     merged: dict[str, tuple[str, ...]] = {}
     for event, starts in events.items():
         if any((on[one] & off[other]).satisfiable() for one in starts for other in starts):
-            merged |= {name: (name,) for name in starts}
+            merged |= {f"{event}{NUMBER_SIGN}{number}": (name,) for number, name in enumerate(starts, start=1)}
         else:
             merged[event] = tuple(starts)
     return merged
@@ -152,7 +156,7 @@ class _Reasons:
         return any(
             (step.before(states) & where).satisfiable()
             for start, where in off.items()
-            for step in self._plant.starts[start]
+            for step in self._plant.starts.get(start, ())
         )
 
     @cached_property

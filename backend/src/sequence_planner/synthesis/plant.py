@@ -11,7 +11,7 @@ from sequence_planner.automaton.transitions import Phase, transitions
 from sequence_planner.expressions.syntax import TRUE, Expression, conjunction, conjuncts, variables
 from sequence_planner.synthesis.diagrams import Diagrams, Function, Reader, Values
 from sequence_planner.synthesis.ordering import hubs_first, ordered
-from sequence_planner.synthesis.steps import Flip, Reaction, Step, updates
+from sequence_planner.synthesis.steps import Flip, Reaction, Step, depends, updates
 
 _MOST_TRIED = 1 << 16  # nodes, to find out whether an order is a good one
 
@@ -43,7 +43,7 @@ class Plant:
     def __init__(self, automaton: Automaton, names: Sequence[str]) -> None:
         self.automaton = automaton
         order = _ordered(automaton, names)
-        afterwards = () if automaton.one_at_a_time else set(_written_by_reactions(automaton))
+        afterwards = set(_written_afterwards(automaton, order))
         self.diagrams = Diagrams({name: automaton.variables[name].type.domain for name in order}, afterwards)
         self.reader = _FlagReader(automaton, self.diagrams)
 
@@ -135,9 +135,11 @@ def _size(automaton: Automaton, order: Sequence[str]) -> float:
         return float("inf")
 
 
-def _written_by_reactions(automaton: Automaton) -> Iterator[str]:
+def _written_afterwards(automaton: Automaton, names: Sequence[str]) -> Iterator[str]:
+    """The variables that need bits for their value afterwards."""
     for transition in transitions(automaton):
-        if transition.phase is not Phase.START:
+        together = not automaton.one_at_a_time and transition.phase is not Phase.START
+        if together or len([name for name in depends(transition.actions) if name in names]) > 1:
             yield from transition.writes
 
 

@@ -2,7 +2,8 @@
 
 All writes are functions of the state, so a guarded update is split into cases that write constants: the states after it
 are a quantification and a conjunction, those before it a cofactor, and no bits for values afterwards are needed. Only
-the uncontrollable part of a tick, in which all devices react and all abilities finish at once, has such bits.
+the uncontrollable part of a tick, in which all devices react and all abilities finish at once, has such bits, and an
+update of several values that depend on the state.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from oxidd.bcdd import BCDDSubstitution
 from oxidd.util import BooleanOperator
 
 from sequence_planner.automaton.structure import Ability, Effect, target
-from sequence_planner.expressions.syntax import Assignment, Expression
+from sequence_planner.expressions.syntax import Assignment, Constant, Expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.synthesis.diagrams import Diagrams, Function, Lookup, Reader, Values
 
@@ -69,12 +70,43 @@ class Stutter:
     before = after
 
 
+@dataclass(frozen=True)
+class Change:
+    """A relation between values now and values afterwards of some variables; the others stay what they are."""
+
+    relation: Function
+    now: Function
+    afterwards: Function
+    to_now: BCDDSubstitution
+    to_afterwards: BCDDSubstitution
+    top: int
+
+    def after(self, states: Function) -> Function:
+        """Where it leads from `states`."""
+        return states.apply_exists(_AND, self.relation, self.now).substitute(self.to_now)
+
+    def before(self, states: Function) -> Function:
+        """From where it leads to `states`."""
+        return states.substitute(self.to_afterwards).apply_exists(_AND, self.relation, self.afterwards)
+
+
+def depends(actions: Iterable[Assignment]) -> list[str]:
+    """The variables to which something is written that depends on the state."""
+    return [target(a) for a in actions if a.condition is not None or not isinstance(a.value, Constant)]
+
+
 def updates(
     diagrams: Diagrams, reader: Reader, guards: Iterable[Expression], actions: Iterable[Assignment]
 ) -> list[Step]:
-    """A guarded update of those variables of `actions` that there are bits for, in cases that write constants."""
+    """A guarded update of those variables of `actions` that there are bits for.
+
+    It is split into cases that write constants. Where several values depend on the state there would be a case for each
+    combination of them, so then it is a relation, if there are bits for the values afterwards.
+    """
     guard = diagrams.conjunction(map(reader.predicate, guards))
     written = [action for action in actions if target(action) in diagrams.bits]
+    if len(depends(written)) > 1 and all(target(action) in diagrams.bits_after for action in written):
+        return [_change(diagrams, reader, guard, written)]
     steps: list[Step] = []
     for where, values in _cases(diagrams, reader, written, guard):
         if not values:
@@ -85,6 +117,28 @@ def updates(
         constants = diagrams.conjunction(diagrams.values(name)[value] for name, value in values.items())
         steps.append(Update(where, constants, diagrams.cube(bits), diagrams.top([where], bits)))
     return steps
+
+
+def _change(diagrams: Diagrams, reader: Reader, guard: Function, actions: Sequence[Assignment]) -> Change:
+    names = [target(action) for action in actions]
+    relation = guard & diagrams.valid_of(names)
+    for action in actions:
+        name = target(action)
+        becomes = _same(diagrams, reader.values(action.value), diagrams.values_after(name))
+        if action.condition is not None:
+            stays = _same(diagrams, diagrams.values(name), diagrams.values_after(name))
+            becomes = reader.predicate(action.condition).ite(becomes, stays)
+        relation &= becomes
+    now = [bit for name in names for bit in diagrams.bits[name]]
+    afterwards = [bit for name in names for bit in diagrams.bits_after[name]]
+    return Change(
+        relation,
+        diagrams.cube(now),
+        diagrams.cube(afterwards),
+        BCDDSubstitution(zip(afterwards, map(diagrams.bit, now), strict=True)),
+        BCDDSubstitution(zip(now, map(diagrams.bit, afterwards), strict=True)),
+        diagrams.top([relation], now),
+    )
 
 
 def _cases(
@@ -106,6 +160,24 @@ def _cases(
         if value in domain:
             for inner, values in _cases(diagrams, reader, rest, guard & where):
                 yield inner, {**values, target(action): value}
+
+
+def _applying(
+    reader: Reader, actions: Sequence[Assignment], guard: Function
+) -> Iterator[tuple[Function, list[Assignment]]]:
+    """Where which of `actions` are taken."""
+    if not guard.satisfiable():
+        return
+    if not actions:
+        yield guard, []
+        return
+    action, rest = actions[0], actions[1:]
+    if action.condition is not None:
+        applies = reader.predicate(action.condition)
+        yield from _applying(reader, rest, guard & ~applies)
+        guard &= applies
+    for where, taken in _applying(reader, rest, guard):
+        yield where, [action, *taken]
 
 
 @dataclass(frozen=True)
@@ -197,17 +269,16 @@ class Reaction:
         relation = diagrams.conjunction(~mark for mark in marks.values())
         for effect in group:
             actions = [action for action in effect.actions if target(action) in marks]
-            taken = [
-                diagrams.conjunction(
-                    (
-                        relation.exists(diagrams.cube(diagrams.marks[name] for name in values)),
-                        where,
-                        *(marks[name] & diagrams.values_after(name)[value] for name, value in values.items()),
-                    )
-                )
-                for where, values in _cases(diagrams, self._now, actions, self._now.predicate(effect.guard))
-            ]
-            relation |= diagrams.disjunction(taken)
+            chosen_sets: list[Function] = []
+            for where, taken in _applying(self._now, actions, self._now.predicate(effect.guard)):
+                names_taken = [target(action) for action in taken]
+                chosen = relation.exists(diagrams.cube(diagrams.marks[name] for name in names_taken)) & where
+                for action in taken:
+                    name = target(action)
+                    chosen &= marks[name]
+                    chosen &= _same(diagrams, self._now.values(action.value), diagrams.values_after(name))
+                chosen_sets.append(chosen)
+            relation |= diagrams.disjunction(chosen_sets)
         for name, mark in marks.items():
             relation &= mark | _same(diagrams, diagrams.values(name), diagrams.values_after(name))
         relation = relation.exists(diagrams.cube(diagrams.marks[name] for name in names))

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from sequence_planner.automaton.cone import cone_of_influence
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.expressions.syntax import TRUE, Expression, conjuncts, variables
+from sequence_planner.expressions.syntax import TRUE, Expression, conjunction, conjuncts, variables
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.effort import Effort
 from sequence_planner.synthesis.plant import Plant
@@ -74,6 +74,12 @@ class Supervision:
     def guard(self, name: str) -> tuple[Function, Function]:
         """The safe states in which the start `name` may be taken, and those in which only the supervisor forbids it."""
         allowed = disallowed = self.plant.diagrams.false
+        if name not in self.plant.starts:  # it changes nothing here
+            ability = self.plant.automaton.abilities[name]
+            written = (ability.enabled, ability.start_guard)
+            return (
+                self.plant.where(conjunction(*written)) if self.plant.says(written) else self.safe
+            ) & self.safe, allowed
         for step in self.plant.starts[name]:
             allowed |= step.before(self.safe)
             disallowed |= step.before(self.plant.diagrams.valid & ~self.safe)

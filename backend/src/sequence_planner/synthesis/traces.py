@@ -64,7 +64,9 @@ class TraceStep:
         text = f"{_LABELS[self.kind]} {number}: "
         if not names:
             return text + changed
-        if self.kind is not StepKind.TICK:
+        if self.kind is StepKind.ACTIVITY:
+            text += f"{changed}, as any operation may become active or be completed"
+        elif self.kind is not StepKind.TICK:
             text += f"{self.names[0]}: {changed}"
         else:
             # Of several instances that are alike there is one effect, with arguments that say too much.

@@ -43,6 +43,10 @@ def _into_the_forbidden(plant: Plant, forbidden: Mapping[str, Function], broken:
     last = plant.diagrams.states(trace.last)
     names = ", ".join(name for name, where in forbidden.items() if (where & last).satisfiable())
     lines = [step.line(number, names=False) for number, step in enumerate(trace.steps, start=1)]
+    if not trace.steps:
+        which = "an initial state" if plant.automaton.initial is not None else "the initial state"
+        text = f"specification {names} cannot be met: {which} breaks it, with {_values(plant, trace.last)}"
+        return Unmeetable(f"{text}. Begin in another state, or forbid less", (), trace)
     return Unmeetable(
         f"specification {names} cannot be met: no start could prevent this from the initial state on",
         (*lines, f"violated with {_values(plant, trace.last)}"),
