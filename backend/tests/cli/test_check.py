@@ -26,7 +26,7 @@ def test_warnings() -> None:
         "`ignore` if a message has it [never-read]\n"
         f"{CELL}/station.yaml:8:3: warning: no ability writes `parts`: it stays `empty`. Write the action that is "
         "missing, or leave it out [never-written]\n"
-        "cell: 6 variables, 2 abilities, 2 operations; the supervisor guards 1 abilities\n"
+        "cell: 6 variables, 2 abilities, 2 operations; the supervisor guards 0 abilities\n"
     )
 
 

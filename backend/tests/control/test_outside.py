@@ -103,14 +103,14 @@ def test_what_the_devices_could_violate_is_named_once_it_is_known() -> None:
 def test_a_way_back_may_start_restart_abilities() -> None:
     seen = Seen(gate_open=True, closed=True, shut=True)
     assert seen.ask()
-    assert seen.outside.way() == "Shortest way back, 2 ticks, for a person to take: lift (lift)."
+    assert seen.outside.way() == "Shortest way back, 2 ticks: lift (lift). The station does not take it by itself."
 
 
 def test_a_way_that_violates_something_says_so() -> None:
     seen = Seen(gate_open=True, closed=True, shut=True, slide="back", extend=False)
     assert seen.ask()
     assert seen.outside.way() == (
-        "Shortest way back, 4 ticks, for a person to take: slide_out (slide_out), then lift (lift). "
+        "Shortest way back, 4 ticks: slide_out (slide_out), then lift (lift). The station does not take it by itself. "
         "On the way it violates “sliding” (sliding)."
     )
 
@@ -207,7 +207,7 @@ def test_a_device_moved_by_hand_raises_an_alarm_that_says_what_is_wrong_and_whic
                 )
                 assert [(step.tick, step.ability) for step in shown().steps] == [(1, "arm.move(home)")]
                 alarm = on.controller.view().alarms[UNSAFE]
-                assert alarm.action.endswith("Shortest way back, 2 ticks, for a person to take: move (arm.move(home)).")
+                assert alarm.action.endswith("2 ticks: move (arm.move(home)). The station does not take it by itself.")
                 assert alarm.since == first.since
                 assert arm.commands == []
             with arm.saying("home"):  # and the command is what it was

@@ -129,8 +129,8 @@ def test_transitions_of_one_event_share_a_guard_where_they_agree() -> None:
     assert texts(together) == {"go": "not wind"}
     assert together["go"].starts == ("go", "go#2")
     apart = shown(read(crane(transitions=steps)))
-    assert texts(apart) == {"go": "false"}
-    assert apart["go"].starts == ("go",)
+    assert texts(apart) == {"go#1": "false"}
+    assert apart["go#1"].starts == ("go",)
 
 
 def test_a_guard_for_the_sake_of_rest_names_the_specification_without_which_it_would_go() -> None:
