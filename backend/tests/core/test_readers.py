@@ -10,7 +10,8 @@ from sequence_planner.expressions.syntax import Assignment, Expression, Variable
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
 from sequence_planner.planning.circuit import Circuit
 from sequence_planner.planning.symbolic import Reading, Symbol
-from sequence_planner.synthesis.diagrams import Diagrams, Reader
+from sequence_planner.synthesis.diagrams import Diagrams
+from sequence_planner.synthesis.reading import Reader
 
 from .budget import examples
 from .choices import Choices, made_by

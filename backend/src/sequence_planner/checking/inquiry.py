@@ -14,8 +14,9 @@ from sequence_planner.expressions.syntax import FALSE, TRUE, Expression, conjunc
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.effort import MOST_BITS, Effort, TooMuchError
 from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.reaction import Reaction
 from sequence_planner.synthesis.saturation import reachable, reaching
-from sequence_planner.synthesis.steps import Reaction, Step
+from sequence_planner.synthesis.steps import Step
 from sequence_planner.synthesis.supervision import with_initial
 
 

@@ -14,6 +14,16 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.controller import Controller
+from sequence_planner.control.view import (
+    AlarmView,
+    Mode,
+    PlanStatus,
+    PlanView,
+    Priority,
+    Production,
+    StationIdentity,
+    StationView,
+)
 from sequence_planner.synthesis.guards import Guard
 
 LOG = structlog.get_logger(__name__)
@@ -62,6 +72,44 @@ class Preparation:
         if self.trouble is not None:
             return CommandRefused("no-supervisor", "The specifications cannot be met", f"{self.trouble}.")
         return CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
+
+
+def preparing_view(
+    identity: StationIdentity, now: float, began: float, analysis: AnalysisDocument | None, trouble: str | None
+) -> StationView:
+    """What is shown while the safe set is being computed; with `trouble`, there is none and the station is not run."""
+    alarms = {}
+    if trouble is not None:
+        text = "The specifications cannot be met, so nothing is started"
+        action = "See why under Supervisor, change the model, and run it again."
+        alarms["no-supervisor"] = AlarmView(priority=Priority.HIGH, text=text, action=action, since=began)
+    plan = PlanView(
+        status=PlanStatus.IDLE,
+        reason="the safe states are being computed" if trouble is None else "there is no supervisor",
+        steps=[],
+        ticks=0,
+        minimal_ticks=False,
+        minimal_starts=False,
+        replanned=0,
+        milliseconds=None,
+    )
+    return StationView(
+        station=identity,
+        tick=0,
+        time=now,
+        mode=Mode.AUTOMATIC,
+        production=Production.PREPARING,
+        resources={},
+        variables={},
+        abilities={},
+        operations={},
+        plan=plan,
+        tasks={},
+        topics={},
+        alarms=alarms,
+        way_back=None,
+        analysis=analysis,
+    )
 
 
 async def analyse(automaton: Automaton, preparation: Preparation) -> None:

@@ -15,9 +15,8 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.commands import Command, CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.link import ControllerLink
-from sequence_planner.control.preparation import Preparation, analyse
+from sequence_planner.control.preparation import Preparation, analyse, preparing_view
 from sequence_planner.control.view import Production, StationIdentity
-from sequence_planner.control.viewing import preparing_view
 from sequence_planner.emulation.process import NODE as EMULATED_DEVICES
 from sequence_planner.ros.exclusivity import require_sole_publisher
 from sequence_planner.ros.transport import Transport

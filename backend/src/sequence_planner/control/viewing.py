@@ -17,13 +17,9 @@ from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
-    Mode,
     OperationView,
-    PlanStatus,
     PlanStepView,
     PlanView,
-    Priority,
-    Production,
     ResourceView,
     StationIdentity,
     StationView,
@@ -227,44 +223,6 @@ class Viewing:
                 trouble=self._network.rivals.get(name) or self._network.troubles.get(name) or command.owed,
             )
         return views
-
-
-def preparing_view(
-    identity: StationIdentity, now: float, began: float, analysis: AnalysisDocument | None, trouble: str | None
-) -> StationView:
-    """What is shown while the safe set is being computed; with `trouble`, there is none and the station is not run."""
-    alarms = {}
-    if trouble is not None:
-        text = "The specifications cannot be met, so nothing is started"
-        action = "See why under Supervisor, change the model, and run it again."
-        alarms["no-supervisor"] = AlarmView(priority=Priority.HIGH, text=text, action=action, since=began)
-    plan = PlanView(
-        status=PlanStatus.IDLE,
-        reason="the safe states are being computed" if trouble is None else "there is no supervisor",
-        steps=[],
-        ticks=0,
-        minimal_ticks=False,
-        minimal_starts=False,
-        replanned=0,
-        milliseconds=None,
-    )
-    return StationView(
-        station=identity,
-        tick=0,
-        time=now,
-        mode=Mode.AUTOMATIC,
-        production=Production.PREPARING,
-        resources={},
-        variables={},
-        abilities={},
-        operations={},
-        plan=plan,
-        tasks={},
-        topics={},
-        alarms=alarms,
-        way_back=None,
-        analysis=analysis,
-    )
 
 
 def _epoch(moment: Moment | None) -> float | None:

@@ -10,9 +10,9 @@ from sequence_planner.automaton.tick import synchronise
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.effort import Effort
 from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.reaction import Reaction
 from sequence_planner.synthesis.saturation import reachable
 from sequence_planner.synthesis.shortest import Tracer
-from sequence_planner.synthesis.steps import Reaction
 from sequence_planner.synthesis.traces import Trace
 
 

@@ -9,9 +9,11 @@ from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, target
 from sequence_planner.automaton.transitions import Phase, transitions
 from sequence_planner.expressions.syntax import TRUE, Expression, conjunction, conjuncts, variables
-from sequence_planner.synthesis.diagrams import Diagrams, Function, Reader, Values
+from sequence_planner.synthesis.diagrams import Diagrams, Function, Values
 from sequence_planner.synthesis.ordering import hubs_first, ordered
-from sequence_planner.synthesis.steps import Flip, Reaction, Step, depends, updates
+from sequence_planner.synthesis.reaction import Reaction
+from sequence_planner.synthesis.reading import Reader
+from sequence_planner.synthesis.steps import Flip, Step, depends, updates
 
 _MOST_TRIED = 1 << 16  # nodes, to find out whether an order is a good one
 

@@ -2,24 +2,23 @@
 
 All writes are functions of the state, so a guarded update is split into cases that write constants: the states after it
 are a quantification and a conjunction, those before it a cofactor, and no bits for values afterwards are needed. Only
-the uncontrollable part of a tick, in which all devices react and all abilities finish at once, has such bits, and an
-update of several values that depend on the state.
+an update of several values that depend on the state has such bits, and the `reaction` of a tick.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
 from typing import Protocol
 
 from oxidd.bcdd import BCDDSubstitution
 from oxidd.util import BooleanOperator
 
-from sequence_planner.automaton.structure import Ability, Effect, target
+from sequence_planner.automaton.structure import target
 from sequence_planner.expressions.syntax import Assignment, Constant, Expression
 from sequence_planner.expressions.types import Value
-from sequence_planner.synthesis.diagrams import Diagrams, Function, Lookup, Reader, Values
+from sequence_planner.synthesis.diagrams import Diagrams, Function, Values
+from sequence_planner.synthesis.reading import Reader
 
 _AND = BooleanOperator.AND
 
@@ -124,9 +123,9 @@ def _change(diagrams: Diagrams, reader: Reader, guard: Function, actions: Sequen
     relation = guard & diagrams.valid_of(names)
     for action in actions:
         name = target(action)
-        becomes = _same(diagrams, reader.values(action.value), diagrams.values_after(name))
+        becomes = same(diagrams, reader.values(action.value), diagrams.values_after(name))
         if action.condition is not None:
-            stays = _same(diagrams, diagrams.values(name), diagrams.values_after(name))
+            stays = same(diagrams, diagrams.values(name), diagrams.values_after(name))
             becomes = reader.predicate(action.condition).ite(becomes, stays)
         relation &= becomes
     now = [bit for name in names for bit in diagrams.bits[name]]
@@ -162,24 +161,6 @@ def _cases(
                 yield inner, {**values, target(action): value}
 
 
-def _applying(
-    reader: Reader, actions: Sequence[Assignment], guard: Function
-) -> Iterator[tuple[Function, list[Assignment]]]:
-    """Where which of `actions` are taken."""
-    if not guard.satisfiable():
-        return
-    if not actions:
-        yield guard, []
-        return
-    action, rest = actions[0], actions[1:]
-    if action.condition is not None:
-        applies = reader.predicate(action.condition)
-        yield from _applying(reader, rest, guard & ~applies)
-        guard &= applies
-    for where, taken in _applying(reader, rest, guard):
-        yield where, [action, *taken]
-
-
 @dataclass(frozen=True)
 class Flip:
     """A truth value changes: an operation becomes active, or is so no longer."""
@@ -195,179 +176,6 @@ class Flip:
     before = after
 
 
-@dataclass(frozen=True)
-class Finish:
-    """Where an ability finishes, and for each variable where it writes it, and which values."""
-
-    guard: Function
-    writes: Mapping[str, tuple[Function, Values]]
-
-
-@dataclass(frozen=True)
-class Part:
-    """A relation between the values of variables now, and those of `decides` afterwards."""
-
-    relation: Function
-    decides: tuple[str, ...]
-
-
-class Reaction:
-    """Steps 1 to 3 of a tick: any set of compatible effects, then all finishes, on the state with the sensed values.
-
-    Effects write measured variables, finishes the others. What is measured afterwards is chosen by relations, one for
-    each group of effects that write common variables; all else is a function of the state before and of what is sensed.
-    """
-
-    def __init__(
-        self, diagrams: Diagrams, now: Reader, effects: Iterable[Effect], abilities: Iterable[Ability]
-    ) -> None:
-        self._diagrams = diagrams
-        self._now = now
-        self._parts = [self._sensed(group) for group in _groups(diagrams, effects)]
-        self.measured = tuple(name for part in self._parts for name in part.decides)
-        self._sensing = Reader(diagrams, self._sensed_values(frozenset(self.measured)))
-        self.finishes = self._finishing(abilities)
-        finished = self._finished()
-        self.changed = (*self.measured, *finished)
-        self._to_before = BCDDSubstitution((*self._sensed_bits(self.measured), *self._finished_bits(finished)))
-        self._valid_before = diagrams.valid_of(finished)
-        self._to_now = BCDDSubstitution(
-            (after, diagrams.bit(now))
-            for name in self.changed
-            for now, after in zip(diagrams.bits[name], diagrams.bits_after[name], strict=True)
-        )
-        self._schedule = self._scheduled(finished)
-        relations = [relation for relation, _ in self._schedule]
-        self.top = diagrams.top(relations, [bit for name in self.changed for bit in diagrams.bits[name]])
-
-    def after(self, states: Function) -> Function:
-        """Where it can lead from `states`."""
-        for relation, done_with in self._schedule:
-            states = states.apply_exists(_AND, relation, done_with)
-        return states.substitute(self._to_now)
-
-    def before(self, states: Function) -> Function:
-        """From where it can lead to `states`."""
-        states = states.substitute(self._to_before)
-        for part in self._parts:
-            states = states.apply_exists(_AND, part.relation, self._bits_after(part.decides))
-        return states & self._valid_before
-
-    def sensed(self, states: Function) -> Function:
-        """`states`, each with every value that may be measured after it; for conditions of the finishes."""
-        return self._diagrams.conjunction((states, *(part.relation for part in self._parts)))
-
-    def _bits_after(self, names: Iterable[str]) -> Function:
-        return self._diagrams.cube(bit for name in names for bit in self._diagrams.bits_after[name])
-
-    def _sensed(self, group: Sequence[Effect]) -> Part:
-        """Any set of compatible effects of `group`; a mark says that a variable has been written."""
-        diagrams = self._diagrams
-        written = {target(action) for effect in group for action in effect.actions}
-        names = tuple(name for name in diagrams.names if name in written)
-        marks = {name: diagrams.bit(diagrams.marks[name]) for name in names}
-        relation = diagrams.conjunction(~mark for mark in marks.values())
-        for effect in group:
-            actions = [action for action in effect.actions if target(action) in marks]
-            chosen_sets: list[Function] = []
-            for where, taken in _applying(self._now, actions, self._now.predicate(effect.guard)):
-                names_taken = [target(action) for action in taken]
-                chosen = relation.exists(diagrams.cube(diagrams.marks[name] for name in names_taken)) & where
-                for action in taken:
-                    name = target(action)
-                    chosen &= marks[name]
-                    chosen &= _same(diagrams, self._now.values(action.value), diagrams.values_after(name))
-                chosen_sets.append(chosen)
-            relation |= diagrams.disjunction(chosen_sets)
-        for name, mark in marks.items():
-            relation &= mark | _same(diagrams, diagrams.values(name), diagrams.values_after(name))
-        relation = relation.exists(diagrams.cube(diagrams.marks[name] for name in names))
-        return Part(relation & diagrams.valid_of(names), names)
-
-    def _sensed_values(self, measured: frozenset[str]) -> Lookup:
-        return lambda name: self._diagrams.values_after(name) if name in measured else self._now.lookup(name)
-
-    def _finishing(self, abilities: Iterable[Ability]) -> dict[str, Finish]:
-        found: dict[str, Finish] = {}
-        for ability in abilities:
-            actions = [action for action in ability.finish_actions if target(action) in self._diagrams.bits]
-            if ability.finish_guard is None or not actions:
-                continue
-            guard = self._sensing.predicate(ability.finish_guard)
-            writes = {}
-            for action in actions:
-                applies = guard if action.condition is None else guard & self._sensing.predicate(action.condition)
-                writes[target(action)] = (applies, self._sensing.values(action.value))
-            found[ability.name] = Finish(guard, writes)
-        return found
-
-    def disputes(self, one: Finish, other: Finish, name: str) -> Function:
-        """Where both would write the variable, and different values."""
-        (where, values), (other_where, other_values) = one.writes[name], other.writes[name]
-        return where & other_where & ~_same(self._diagrams, values, other_values)
-
-    def _finished(self) -> Mapping[str, Values]:
-        """The values afterwards of what finishes write."""
-        diagrams = self._diagrams
-        refused = dict.fromkeys(self.finishes, diagrams.false)
-        for (one, first), (other, second) in combinations(self.finishes.items(), 2):
-            for name in first.writes.keys() & second.writes.keys():
-                dispute = self.disputes(first, second, name)
-                refused[one] |= dispute
-                refused[other] |= dispute
-        after: dict[str, dict[Value, Function]] = {}
-        for ability, finish in self.finishes.items():
-            for name, (where, values) in finish.writes.items():
-                taken = where & ~refused[ability]
-                before = after.setdefault(name, dict(diagrams.values(name)))
-                after[name] = {value: taken.ite(values.get(value, diagrams.false), before[value]) for value in before}
-        return after
-
-    def _sensed_bits(self, names: Iterable[str]) -> Iterator[tuple[int, Function]]:
-        for name in names:
-            for now, after in zip(self._diagrams.bits[name], self._diagrams.bits_after[name], strict=True):
-                yield now, self._diagrams.bit(after)
-
-    def _finished_bits(self, finished: Mapping[str, Values]) -> Iterator[tuple[int, Function]]:
-        diagrams = self._diagrams
-        for name, values in finished.items():
-            bits = diagrams.bits[name]
-            for bit in bits:
-                yield (
-                    bit,
-                    diagrams.disjunction(
-                        where for position, where in enumerate(values.values()) if diagrams.digit(bits, bit, position)
-                    ),
-                )
-
-    def _scheduled(self, finished: Mapping[str, Values]) -> list[tuple[Function, Function]]:
-        """All relations, each with the bits that none of those behind it reads."""
-        diagrams = self._diagrams
-        relations = [part.relation for part in self._parts]
-        relations += [_same(diagrams, values, diagrams.values_after(name)) for name, values in finished.items()]
-        last = dict.fromkeys((bit for name in self.changed for bit in diagrams.bits[name]), 0)
-        for index, relation in enumerate(relations):
-            last |= {bit: index for bit in diagrams.support_bits(relation) if bit in last}
-        return [
-            (relation, diagrams.cube(bit for bit, at in last.items() if at == index))
-            for index, relation in enumerate(relations)
-        ]
-
-
-def _same(diagrams: Diagrams, one: Values, other: Values) -> Function:
+def same(diagrams: Diagrams, one: Values, other: Values) -> Function:
     """Where two have the same value."""
     return diagrams.disjunction(where & other[value] for value, where in one.items() if value in other)
-
-
-def _groups(diagrams: Diagrams, effects: Iterable[Effect]) -> list[list[Effect]]:
-    """The effects that write a variable there are bits for; those that write common ones are one group."""
-    groups: list[tuple[set[str], list[Effect]]] = []
-    for effect in effects:
-        written = {target(action) for action in effect.actions} & diagrams.bits.keys()
-        if not written:
-            continue
-        joined = [group for group in groups if not group[0].isdisjoint(written)]
-        groups = [group for group in groups if group[0].isdisjoint(written)]
-        members = [member for _, group in joined for member in group]
-        groups.append((written.union(*(names for names, _ in joined)), [*members, effect]))
-    return [members for _, members in groups]
