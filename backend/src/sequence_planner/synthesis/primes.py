@@ -68,11 +68,15 @@ class Primes:
         axes = list(order)
         left = list(axes)
         while left:
-            axis = left[0] if wanted is None else max(left, key=lambda each: self._gain(cube, each, wanted))
-            left.remove(axis)
+            axis = left[0]
+            if wanted is not None:
+                gains = {each: self._gain(cube, each, wanted) for each in left}
+                left = [each for each in left if gains[each] >= 0]  # a literal that is needed stays so in larger cubes
+                axis = max(left, key=gains.__getitem__, default=axis)
             freed = _with(cube, axis, self.whole[axis])
             if self._fits(freed):
                 cube = freed
+            left = [each for each in left if each != axis]
         for axis in axes:
             for position in range(self.whole[axis].bit_length()):
                 wider = _with(cube, axis, cube[axis] | 1 << position)
