@@ -70,7 +70,8 @@ class Primes:
         while left:
             axis = left[0]
             if wanted is not None:
-                gains = {each: self._gain(cube, each, wanted) for each in left}
+                freed_of = self._freed(cube)
+                gains = {each: self._gain(freed_of[each], wanted) for each in left}
                 left = [each for each in left if gains[each] >= 0]  # a literal that is needed stays so in larger cubes
                 axis = max(left, key=gains.__getitem__, default=axis)
             freed = _with(cube, axis, self.whole[axis])
@@ -89,9 +90,21 @@ class Primes:
         excluded = Primes(self._diagrams, self._diagrams.valid & ~self._off).holding(self._off, most)
         return None if excluded is None else _missing(self.whole, excluded, most)
 
-    def _gain(self, cube: Cube, axis: int, wanted: Function) -> int:
-        """How much of `wanted` it holds without the literal; less than nothing if it must not be left out."""
-        freed = self.function(_with(cube, axis, self.whole[axis]))
+    def _freed(self, cube: Cube) -> list[Function]:
+        """What the cube holds without its literal of each variable."""
+        true = self._diagrams.true
+        literals = [self._literal(a, cube[a]) if cube[a] != self.whole[a] else true for a in self.axes]
+        before = [true]
+        for literal in literals:
+            before.append(before[-1] & literal)
+        freed, after = before[:-1], true
+        for axis in reversed(self.axes):
+            freed[axis] &= after
+            after &= literals[axis]
+        return freed
+
+    def _gain(self, freed: Function, wanted: Function) -> int:
+        """How much of `wanted` is in what is left of a cube; less than nothing if that is too large."""
         return -1 if (freed & self._off).satisfiable() else self._diagrams.count(freed & wanted)
 
     def _fits(self, cube: Cube) -> bool:
