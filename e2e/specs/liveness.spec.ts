@@ -62,8 +62,11 @@ test.describe('when a part of the station dies', () => {
 		await expect(operate.getByTestId('mode')).toContainText('waits for the start of production', { timeout: 30_000 });
 		await expect(variable(operate, 'robot.pose')).not.toHaveAttribute('data-value', 'unknown');
 		await expect(operate.getByText('old', { exact: true })).toHaveCount(0);
-		const said = await station.values();
-		for (const [name, value] of said) await expect(variable(operate, name)).toHaveAttribute('data-value', value);
+		// Some topics are heard later than others, so the values are asked for again until page and station agree.
+		await expect(async () => {
+			for (const [name, value] of await station.values())
+				await expect(variable(operate, name)).toHaveAttribute('data-value', value, { timeout: 500 });
+		}).toPass({ timeout: 15_000 });
 		await expect(done(watch)).toHaveCount(0);
 		await expect(operate.locator('[data-step]')).toHaveCount(0);
 
