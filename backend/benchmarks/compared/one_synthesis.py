@@ -18,7 +18,7 @@ from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.model.plain_documents import load_plain, read_plain
 from sequence_planner.station import prepare_station
-from sequence_planner.synthesis import diagrams, steps, supervision
+from sequence_planner.synthesis import diagrams, supervision
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision
 
@@ -39,7 +39,7 @@ def choose(engine: str, algorithm: str) -> None:
     if engine == "cudd":
         cudd = import_module("cudd")
         diagrams.BCDDManager = cudd.Manager  # type: ignore[attr-defined]
-        steps.BCDDSubstitution = cudd.Substitution  # type: ignore[attr-defined]
+        diagrams.BCDDSubstitution = cudd.Substitution  # type: ignore[attr-defined]
     if algorithm != "saturation":
         reachable, reaching = import_module("fixpoints").closures(algorithm)
         supervision.reachable = reachable  # type: ignore[attr-defined]

@@ -16,8 +16,12 @@ from sequence_planner.control.preparation import Preparation, analyse
 def test_a_process_that_cannot_be_started_is_said() -> None:
     async def scenario() -> None:
         preparation = Preparation()
-        unsendable: Any = lambda: None  # noqa: E731
-        await analyse(replace(cell()[0].automaton, title=unsendable), preparation)
+
+        def unsendable() -> None:
+            """No process can be given a function that only this one has."""
+
+        title: Any = unsendable
+        await analyse(replace(cell()[0].automaton, title=title), preparation)
         with pytest.raises(SynthesisEndedError, match="could not be computed"):
             await preparation.supervisor
 

@@ -11,13 +11,14 @@ import sys
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from functools import cached_property
 
-from oxidd.bcdd import BCDDFunction, BCDDManager
+from oxidd.bcdd import BCDDFunction, BCDDManager, BCDDSubstitution
 
 from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, Builder, StateSet
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.types import Value
 
 Function = BCDDFunction
+Substitution = BCDDSubstitution
 Values = Mapping[Value, Function]  # for each value, where it is the one
 Lookup = Callable[[str], Values]
 
@@ -124,6 +125,10 @@ class Diagrams:
         for function in functions:
             together |= function
         return together
+
+    def substitution(self, pairs: Iterable[tuple[int, Function]]) -> Substitution:
+        """Functions in place of bits, all at once."""
+        return BCDDSubstitution(pairs)
 
     def cube(self, bits: Iterable[int]) -> Function:
         """The set of bits, as quantification wants it."""

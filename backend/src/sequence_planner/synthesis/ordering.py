@@ -47,12 +47,7 @@ def hubs_first(order: Sequence[str], groups: Iterable[Collection[str]]) -> tuple
 
 
 def _span(order: Sequence[int], groups: Groups) -> int:
-    place = _places(order)
-    total = 0
-    for members, weight in groups.items():
-        places = [place[member] for member in members]
-        total += weight * (max(places) - min(places))
-    return total
+    return _cost(order, 0, [0] * len(order), groups)
 
 
 def _places(order: Sequence[int]) -> list[int]:
@@ -95,17 +90,22 @@ def _slid(order: list[int], groups: Groups) -> list[int]:
             window = order[begin : begin + _WINDOW]
             near = dict(each for member in window for each in touching[member])
             place = _places(order)
-
-            def cost(arranged: tuple[int, ...], place: list[int] = place, begin: int = begin) -> int:
-                for position, member in enumerate(arranged, begin):
-                    place[member] = position
-                return sum(w * (max(p) - min(p)) for g, w in near.items() if (p := [place[m] for m in g]))  # noqa: B023
-
-            least = cost(tuple(window))
-            chosen = min(permutations(window), key=cost)
-            if cost(chosen) < least:
+            costs = {each: _cost(each, begin, place, near) for each in permutations(window)}
+            chosen = min(costs, key=costs.__getitem__)
+            if costs[chosen] < costs[tuple(window)]:
                 order[begin : begin + _WINDOW] = chosen
                 improved = True
         if not improved:
             break
     return order
+
+
+def _cost(arranged: Sequence[int], begin: int, place: list[int], near: Groups) -> int:
+    """How far the groups `near` are stretched with a window from `begin` on arranged so; `place` is changed."""
+    for position, member in enumerate(arranged, begin):
+        place[member] = position
+    total = 0
+    for members, weight in near.items():
+        places = [place[member] for member in members]
+        total += weight * (max(places) - min(places))
+    return total

@@ -114,7 +114,7 @@ class Plant:
         for name in self.automaton.names(Kind.ACTIVITY):
             if name in self.diagrams.bits:
                 (number,) = self.diagrams.bits[name]
-                yield Flip(self.diagrams.bit(number), number, number)
+                yield Flip(self.diagrams.substitution([(number, ~self.diagrams.bit(number))]), number)
 
 
 def _ordered(automaton: Automaton, names: Sequence[str]) -> tuple[str, ...]:

@@ -6,7 +6,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
-from oxidd.bcdd import BCDDSubstitution
 from oxidd.util import BooleanOperator
 
 from sequence_planner.automaton.structure import Ability, Effect, target
@@ -53,9 +52,9 @@ class Reaction:
         self.finishes = self._finishing(abilities)
         finished = self._finished()
         self.changed = (*self.measured, *finished)
-        self._to_before = BCDDSubstitution((*self._sensed_bits(self.measured), *self._finished_bits(finished)))
+        self._to_before = diagrams.substitution((*self._sensed_bits(self.measured), *self._finished_bits(finished)))
         self._valid_before = diagrams.valid_of(finished)
-        self._to_now = BCDDSubstitution(
+        self._to_now = diagrams.substitution(
             (after, diagrams.bit(now))
             for name in self.changed
             for now, after in zip(diagrams.bits[name], diagrams.bits_after[name], strict=True)

@@ -11,13 +11,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
-from oxidd.bcdd import BCDDSubstitution
 from oxidd.util import BooleanOperator
 
 from sequence_planner.automaton.structure import target
 from sequence_planner.expressions.syntax import Assignment, Constant, Expression
 from sequence_planner.expressions.types import Value
-from sequence_planner.synthesis.diagrams import Diagrams, Function, Values
+from sequence_planner.synthesis.diagrams import Diagrams, Function, Substitution, Values
 from sequence_planner.synthesis.reading import Reader
 
 _AND = BooleanOperator.AND
@@ -76,8 +75,8 @@ class Change:
     relation: Function
     now: Function
     afterwards: Function
-    to_now: BCDDSubstitution
-    to_afterwards: BCDDSubstitution
+    to_now: Substitution
+    to_afterwards: Substitution
     top: int
 
     def after(self, states: Function) -> Function:
@@ -134,8 +133,8 @@ def _change(diagrams: Diagrams, reader: Reader, guard: Function, actions: Sequen
         relation,
         diagrams.cube(now),
         diagrams.cube(afterwards),
-        BCDDSubstitution(zip(afterwards, map(diagrams.bit, now), strict=True)),
-        BCDDSubstitution(zip(now, map(diagrams.bit, afterwards), strict=True)),
+        diagrams.substitution(zip(afterwards, map(diagrams.bit, now), strict=True)),
+        diagrams.substitution(zip(now, map(diagrams.bit, afterwards), strict=True)),
         diagrams.top([relation], now),
     )
 
@@ -165,13 +164,12 @@ def _cases(
 class Flip:
     """A truth value changes: an operation becomes active, or is so no longer."""
 
-    bit: Function
-    number: int
+    other: Substitution
     top: int
 
     def after(self, states: Function) -> Function:
         """The states that differ by the truth value."""
-        return states.substitute(BCDDSubstitution([(self.number, ~self.bit)]))
+        return states.substitute(self.other)
 
     before = after
 
