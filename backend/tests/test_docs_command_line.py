@@ -1,4 +1,4 @@
-"""What the page about the command line shows is what the program prints."""
+"""What the pages show of the command line is what the program prints."""
 
 from __future__ import annotations
 
@@ -13,12 +13,15 @@ import pytest
 REPOSITORY = Path(__file__).parents[2]
 SOURCE = REPOSITORY / "backend" / "src" / "sequence_planner"
 TEXT = (REPOSITORY / "docs" / "command-line.md").read_text(encoding="utf-8")
-SESSIONS = re.findall(r"^```console\n\$ (.*)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)
+EXPORT = (REPOSITORY / "docs" / "export.md").read_text(encoding="utf-8")
+SESSION = re.compile(r"^```console\n\$ (.*)\n((?:.*\n)*?)```$", re.MULTILINE)
+SESSIONS = [*SESSION.findall(TEXT), *SESSION.findall(EXPORT)]
 KINDS = re.compile(r'"([a-z]+(?:-[a-z]+)+)"')
 
 
 def test_there_is_something_to_try() -> None:
-    assert len(SESSIONS) >= 7
+    assert len(SESSION.findall(TEXT)) >= 8
+    assert len(SESSION.findall(EXPORT)) == 2
 
 
 @pytest.mark.parametrize(("line", "printed"), SESSIONS)

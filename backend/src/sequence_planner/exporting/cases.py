@@ -8,7 +8,7 @@ from itertools import product
 from sequence_planner.automaton.plain.updates import decided
 from sequence_planner.automaton.structure import target
 from sequence_planner.automaton.transitions import Transition
-from sequence_planner.exporting.replacing import Replacements, replaced, replaced_in_action
+from sequence_planner.expressions.replacing import Replacements, replaced, replaced_in_action
 from sequence_planner.expressions.simplification import simplify, simplify_assignment
 from sequence_planner.expressions.syntax import (
     FALSE,

@@ -10,8 +10,8 @@ from sequence_planner.automaton.plain.meaning import event_of
 from sequence_planner.automaton.plain.steps import plain_transitions
 from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.exporting.names import different, dotted
-from sequence_planner.exporting.replacing import Replacements, replaced
 from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.replacing import Replacements, replaced
 from sequence_planner.expressions.syntax import (
     TRUE,
     Assignment,

@@ -23,9 +23,9 @@ from sequence_planner.automaton.structure import (
 from sequence_planner.automaton.transitions import Phase, Transition, transitions
 from sequence_planner.exporting.cases import cases, condition_of, leaves, no_dispute
 from sequence_planner.exporting.names import different
-from sequence_planner.exporting.replacing import Replacements, replaced
 from sequence_planner.exporting.steps import Step, reaction
 from sequence_planner.exporting.together import can_dispute
+from sequence_planner.expressions.replacing import Replacements, replaced
 from sequence_planner.expressions.simplification import simplify
 from sequence_planner.expressions.syntax import (
     FALSE,

@@ -9,18 +9,15 @@ from math import prod
 from sequence_planner.automaton.structure import target
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.fitting import fits_condition
+from sequence_planner.expressions.replacing import rebuilt
 from sequence_planner.expressions.simplification import simplify
 from sequence_planner.expressions.syntax import (
     TRUE,
-    And,
-    Arithmetic,
     Assignment,
     Comparison,
     Constant,
     Expression,
-    Implies,
     Membership,
-    Not,
     Or,
     Variable,
     conjunction,
@@ -58,23 +55,13 @@ def _before(expression: Expression, updates: Mapping[str, Expression]) -> Expres
     match expression:
         case Variable(name):
             return updates.get(name, expression)
-        case Not(operand):
-            return Not(part(operand))
-        case And(operands):
-            return And(tuple(map(part, operands)))
-        case Or(operands):
-            return Or(tuple(map(part, operands)))
-        case Implies(left, right):
-            return Implies(part(left), part(right))
         case Comparison(operator, left, right):
             return decided(Comparison(operator, part(left), part(right)))
         case Membership(left, options):
             equal = [decided(Comparison("==", part(left), part(option))) for option in options]
             return Or(tuple(equal)) if len(equal) > 1 else equal[0]
-        case Arithmetic(operator, left, right):
-            return Arithmetic(operator, part(left), part(right))
         case _:
-            return expression
+            return rebuilt(expression, part)
 
 
 def decided(comparison: Comparison) -> Expression:

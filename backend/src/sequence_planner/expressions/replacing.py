@@ -1,8 +1,8 @@
-"""Expressions with variables replaced."""
+"""Expressions with parts of them replaced."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from sequence_planner.expressions.syntax import (
     And,
@@ -23,15 +23,9 @@ from sequence_planner.expressions.syntax import (
 Replacements = Mapping[str, Expression]
 
 
-def replaced(expression: Expression, replacements: Replacements) -> Expression:
-    """The resolved `expression`, or formula, with all variables and flags of `replacements` replaced at once."""
-
-    def part(inner: Expression) -> Expression:
-        return replaced(inner, replacements)
-
+def rebuilt(expression: Expression, part: Callable[[Expression], Expression]) -> Expression:
+    """The resolved `expression`, or formula, with each of its operands replaced by what `part` makes of it."""
     match expression:
-        case Variable(name):
-            return replacements.get(name, expression)
         case Not(operand):
             return Not(part(operand))
         case And(operands):
@@ -52,6 +46,17 @@ def replaced(expression: Expression, replacements: Replacements) -> Expression:
             return BinaryTemporal(operator, part(left), part(right))
         case _:
             return expression
+
+
+def replaced(expression: Expression, replacements: Replacements) -> Expression:
+    """The resolved `expression`, or formula, with all variables and flags of `replacements` replaced at once."""
+
+    def part(inner: Expression) -> Expression:
+        return replaced(inner, replacements)
+
+    return (
+        replacements.get(expression.name, expression) if isinstance(expression, Variable) else rebuilt(expression, part)
+    )
 
 
 def replaced_in_action(action: Assignment, replacements: Replacements) -> Assignment:
