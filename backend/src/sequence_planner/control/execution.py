@@ -144,7 +144,7 @@ class Execution:
         if self.plan_status is PlanStatus.IDLE or (self.plan_status is PlanStatus.NONE and self._none_while_blind):
             self.plan_status = PlanStatus.PLANNING
             self.plan_reason = "a plan is being looked for"
-        return PlanRequest(dict(self.state), tuple(sorted(wanted)), deadline)
+        return PlanRequest(dict(self.state), tuple(self.goals[name] for name in sorted(wanted)), deadline)
 
     def unanswered(self, why: str, again: bool) -> None:
         """The planner could not answer. With `again` the same question is asked once more, else only another one."""

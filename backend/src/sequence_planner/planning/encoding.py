@@ -14,6 +14,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, Flag, target
 from sequence_planner.expressions.syntax import Assignment, variables
 from sequence_planner.planning.circuit import Circuit
+from sequence_planner.planning.plan import Circumstances
 from sequence_planner.planning.symbolic import Reading, Symbol, SymbolicState
 
 
@@ -30,12 +31,20 @@ Writes = dict[str, Write]
 
 @dataclass(frozen=True)
 class SymbolicTick:
-    """One tick: the choices, the state after step 3, and the state at its end."""
+    """One tick: the choices, the state after step 3, and after each place in the order of starts.
+
+    A position counts where its start is chosen; the last is the end of the tick, whatever is chosen.
+    """
 
     effects: Mapping[str, int]
     starts: Sequence[tuple[str, int]]
     synchronised: SymbolicState
-    end: SymbolicState
+    positions: Sequence[tuple[int, SymbolicState]]
+
+    @property
+    def end(self) -> SymbolicState:
+        """The state at the end of the tick."""
+        return self.positions[-1][1] if self.positions else self.synchronised
 
 
 class Encoding:
@@ -52,6 +61,14 @@ class Encoding:
         # and only the safe set itself tells where a start may lead.
         self._by_guards = not unknown
         self._guards = supervisor.guards
+        acting = {a.resource for a in automaton.abilities.values()} | {e.resource for e in self._effects}
+        self._online = {resource: circuit.fresh() for resource in sorted(acting)}
+        self._restart = circuit.fresh()
+
+    def assumptions(self, circumstances: Circumstances) -> list[int]:
+        """The literals that say which resources are online, and whether restart abilities may start."""
+        online = [-one if name in circumstances.offline else one for name, one in self._online.items()]
+        return [*online, self._restart if circumstances.restart else -self._restart]
 
     def initial(self, unknown: frozenset[str], synchronised: bool = False) -> SymbolicState:
         """A state of free values; flags are free too (and may be undetermined), or functions of the variables."""
@@ -85,16 +102,21 @@ class Encoding:
         synchronised = self._synchronise(self._finish(sensed), self.automaton.flags)
         end, safe = synchronised, self.safe(synchronised)
         starts: list[tuple[str, int]] = []
+        positions: list[tuple[int, SymbolicState]] = []
         for ability in order:
             choice = self._circuit.fresh()
             starts.append((ability.name, choice))
             allowed, end = self.start(ability, end, state, choice)
+            positions.append((choice, end))
             self._circuit.require(-choice, safe)
             self._circuit.require(-choice, allowed)
+            self._circuit.require(-choice, self._online[ability.resource])
+            if ability.restart:
+                self._circuit.require(-choice, self._restart)
         for (one, first), (other, second) in combinations(starts, 2):
             if one == other:
                 self._circuit.require(-first, -second)
-        return SymbolicTick(effects, starts, synchronised, end)
+        return SymbolicTick(effects, starts, synchronised, positions)
 
     def safe(self, state: SymbolicState) -> int:
         """The literal that says the state is safe."""
@@ -113,7 +135,7 @@ class Encoding:
             self.reading.truth(ability.start_guard, state).yes,
             *(-self._reverts(name, state, published, write) for name, write in writes.items()),
         ]
-        if not self._by_guards:
+        if not self._by_guards or ability.restart:
             conditions.append(self.safe(after))
         elif ability.name in self._guards:
             conditions.append(self.reading.member(self._guards[ability.name], state))
@@ -129,6 +151,7 @@ class Encoding:
         taken: list[tuple[int, Writes]] = []
         for effect in self._effects:
             choice = choices[effect.name] = self._circuit.fresh()
+            self._circuit.require(-choice, self._online[effect.resource])
             writes, determined = self._writes(effect.actions, state)
             self._circuit.require(-choice, determined)
             self._circuit.require(-choice, self.reading.truth(effect.guard, state).yes)

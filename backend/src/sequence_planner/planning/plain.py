@@ -18,7 +18,8 @@ from sequence_planner.automaton.structure import Ability, Automaton, Flag, State
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import FALSE, TRUE
-from sequence_planner.planning.plan import Verdict
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.plan import Circumstances, Verdict, goals_of
 from sequence_planner.planning.planner import PlannerError
 from sequence_planner.planning.relaxation import unreachable_goals
 from sequence_planner.planning.search import Search, SearchTimeoutError
@@ -73,17 +74,18 @@ def plan_transitions(
         raise ValueError(f"no plan begins outside the safe set: {dict(start)}")
     derived = for_planning(automaton)
     begin = synchronise(derived, {**dict.fromkeys(derived.types), **start})
+    goals = goals_of(automaton, (goal,))
     transitions: tuple[str, ...] | None = None
     verdict, searched = Verdict.NONE_UP_TO, longest
     if holds(automaton.operations[goal].goal, start):
         transitions = ()
-    elif unreachable_goals(derived, begin, (goal,)):
+    elif unreachable_goals(derived, begin, goals, Circumstances()):
         verdict = Verdict.NONE_AT_ALL
     else:
         # The goal is seen at the beginning of a tick: one more than there are transitions.
         search = Search(derived, supervisor, tuple(derived.abilities.values()), frozenset())
         try:
-            plan = search.plan(begin, (goal,), longest + 1, began + deadline)
+            plan = search.plan(begin, goals, Circumstances(), longest + 1, Budget(began + deadline))
             transitions = None if plan is None else tuple(name for _, name in plan.starts)
         except SearchTimeoutError as late:
             searched = max(late.searched - 1, 0)

@@ -6,10 +6,46 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
 
+from sequence_planner.automaton.structure import Automaton, Operation
+from sequence_planner.expressions.syntax import TRUE, Expression
 from sequence_planner.expressions.types import Value
 
-# What is said of a station that the planner would not do justice to.
-NO_FORMULAS = "plans do not keep to `local` formulas yet, so this station is not run: say it as a specification"
+
+class Contract(StrEnum):
+    """What is wanted of a plan."""
+
+    MINIMAL = "minimal"  # the fewest ticks, then the fewest starts, proven
+    FAST = "fast"  # soon, nearly as short, and without needless starts
+
+
+@dataclass(frozen=True)
+class Goal:
+    """A predicate that shall hold after step 3 of some tick, and what a run must keep to until then.
+
+    `local` is a formula of LTL over finite traces. Its positions are the states after step 3 and after each start, up
+    to the first after step 3 that satisfies `predicate`; those up to now have brought its automaton
+    (`monitor.monitor_of`) to the state `at`. Of goals that cannot be reached together, those of lowest `priority` are
+    left out.
+    """
+
+    name: str
+    predicate: Expression
+    local: Expression = TRUE
+    at: int = 0
+    priority: int = 0
+
+
+@dataclass(frozen=True)
+class Circumstances:
+    """What a plan must cope with besides the state.
+
+    Abilities of `offline` resources do not start and their effects do not happen. With `restart`, restart abilities may
+    start. No state after step 3 or after a start may satisfy one of `avoid`, nor leave it open.
+    """
+
+    offline: frozenset[str] = frozenset()
+    restart: bool = False
+    avoid: tuple[Expression, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -36,27 +72,55 @@ class Plan:
 
 @dataclass(frozen=True)
 class PlanRequest:
-    """A state to plan from and the operations whose goals shall be reached, until `deadline` seconds have passed."""
+    """A state to plan from and the goals that shall be reached, until `deadline` seconds have passed."""
 
     state: Mapping[str, Value | None]
-    goals: tuple[str, ...]
+    goals: tuple[Goal, ...]
     deadline: float = 5.0
     longest: int = 60
+    contract: Contract = Contract.MINIMAL
+    circumstances: Circumstances = Circumstances()
 
 
 class Verdict(StrEnum):
     """What kind of answer it is."""
 
     FOUND = "found"
-    NONE_UP_TO = "none up to"  # none within the searched number of ticks, or in time
+    NONE_UP_TO = "none up to"  # none within the searched number of ticks
     NONE_AT_ALL = "none at all"  # proven
+    LATE = "deadline"  # neither a plan nor a proof in time
+
+
+@dataclass(frozen=True)
+class Literal:
+    """A variable or flag has the value, or with `equal` false any other; unknown variables satisfy neither."""
+
+    name: str
+    value: Value
+    equal: bool = True
+
+
+Clause = tuple[Literal, ...]
+
+
+@dataclass(frozen=True)
+class Proof:
+    """Why there is no plan at all: an inductive invariant of the state to plan from, in which no goal is reached.
+
+    Every tick leads from states that satisfy all `invariant` clauses into such states, and the goals that are reached
+    on the way never are all of them. `by` is the method that found it; each was checked by a solver of its own.
+    """
+
+    by: str
+    invariant: tuple[Clause, ...]
 
 
 @dataclass(frozen=True)
 class PlanAnswer:
     """An answer. `left_out` are goals that could not be planned together with the others, lowest priority first.
 
-    `searched` is the number of ticks up to which the search is complete; `seconds` is the time it took.
+    `searched` is the number of ticks up to which it is proven that there is no shorter plan; `engine` gave the answer,
+    and `seconds` is the time it took.
     """
 
     verdict: Verdict
@@ -65,6 +129,8 @@ class PlanAnswer:
     left_out: tuple[str, ...]
     searched: int
     seconds: float
+    engine: str = ""
+    proof: Proof | None = None
 
 
 @dataclass(frozen=True)
@@ -116,3 +182,13 @@ Answer = PlanAnswer | WayBackAnswer
 def starts_of(ticks: Iterable[PlanTick]) -> tuple[tuple[int, str], ...]:
     """All starts, each with the number of its tick, counted from 1."""
     return tuple((number, name) for number, tick in enumerate(ticks, 1) for name in tick.starts)
+
+
+def goal_of(operation: Operation, at: int = 0) -> Goal:
+    """The goal of an active operation whose local formula's automaton has come to the state `at`."""
+    return Goal(operation.name, operation.goal, operation.local or TRUE, at, operation.priority)
+
+
+def goals_of(automaton: Automaton, names: Iterable[str]) -> tuple[Goal, ...]:
+    """The goals of operations by name, before the first position of their runs."""
+    return tuple(goal_of(automaton.operations[name]) for name in names)

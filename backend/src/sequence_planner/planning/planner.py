@@ -6,10 +6,10 @@ import time
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.expressions.evaluation import holds
+from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Plan, PlanAnswer, PlanRequest, Verdict
 from sequence_planner.planning.relaxation import unreachable_goals
-from sequence_planner.planning.replay import Replay
+from sequence_planner.planning.replay import Replay, missing
 from sequence_planner.planning.search import Searches, SearchTimeoutError
 from sequence_planner.planning.sweep import sweep_order
 
@@ -32,34 +32,33 @@ class Planner:
         Raises `PlannerError` when a plan does not replay.
         """
         began = time.monotonic()
-        deadline = began + request.deadline
-        impossible = unreachable_goals(self._automaton, request.state, request.goals)
+        budget = Budget(began + request.deadline)
+        impossible = unreachable_goals(self._automaton, request.state, request.goals, request.circumstances)
         goals = sorted(
-            (goal for goal in request.goals if goal not in impossible),
-            key=lambda goal: (-self._automaton.operations[goal].priority, goal),
+            (goal for goal in request.goals if goal not in impossible), key=lambda goal: (-goal.priority, goal.name)
         )
         verdict = Verdict.NONE_AT_ALL
         searched = 0
         plan: Plan | None = None
         while goals and plan is None:
-            missing = [goal for goal in goals if not holds(self._automaton.operations[goal].goal, request.state)]
-            if not missing:
+            left = missing(goals, request.state)
+            if not left:
                 plan = Plan((), minimal_ticks=True, minimal_starts=True)
                 break
-            # Each attempt gets half of what is left, so that fewer goals still have their turn.
-            now = time.monotonic()
             try:
+                # Each attempt gets half of what is left, so that fewer goals still have their turn.
                 plan = self._searches.search(request.state).plan(
-                    request.state, missing, request.longest, now + max((deadline - now) / 2, 0.05)
+                    request.state, left, request.circumstances, request.longest, budget.part(0.5)
                 )
                 searched = request.longest
             except SearchTimeoutError as late:
                 searched = late.searched
             if plan is None:
                 verdict = Verdict.NONE_UP_TO
-                goals = goals[:-1] if time.monotonic() < deadline else []
+                goals = [] if budget.spent else goals[:-1]
         seconds = time.monotonic() - began
-        left_out = tuple(goal for goal in request.goals if goal not in goals)
+        names = tuple(goal.name for goal in goals)
+        left_out = tuple(goal.name for goal in request.goals if goal not in goals)
         if plan is None:
             return PlanAnswer(verdict, None, (), left_out, searched, seconds)
         tightened = self._replay.tightened(request.state, goals, plan)
@@ -68,4 +67,4 @@ class Planner:
                 raise PlannerError(f"the plan {each} for {goals} does not replay from {dict(request.state)}")
         plan = tightened
         seconds = time.monotonic() - began
-        return PlanAnswer(Verdict.FOUND, plan, tuple(goals), left_out, len(plan.ticks), seconds)
+        return PlanAnswer(Verdict.FOUND, plan, names, left_out, len(plan.ticks), seconds)

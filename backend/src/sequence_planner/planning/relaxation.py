@@ -28,6 +28,7 @@ from sequence_planner.expressions.syntax import (
     variables,
 )
 from sequence_planner.expressions.types import Value
+from sequence_planner.planning.plan import Circumstances, Goal
 
 Possible = Mapping[str, set[Value | None]]
 
@@ -35,14 +36,25 @@ Possible = Mapping[str, set[Value | None]]
 _MOST_COMBINATIONS = 4096
 
 
-def unreachable_goals(automaton: Automaton, state: State, goals: Iterable[str]) -> frozenset[str]:
-    """Those of the operations `goals` whose goal no run from `state` can ever reach."""
-    counted = [transition for transition in transitions(automaton) if not (transition.fault or transition.restart)]
+def unreachable_goals(
+    automaton: Automaton, state: State, goals: Iterable[Goal], circumstances: Circumstances
+) -> frozenset[Goal]:
+    """Those of `goals` whose predicate no run from `state` can ever reach."""
     first: dict[str, set[Value | None]] = {name: {value} for name, value in state.items()}
     # Plans take what is active as it is, but a run may change it: only without that is there a proof.
     first |= {name: {False, True} for name in automaton.names(Kind.ACTIVITY)}
-    reached = Relaxation(automaton, first, counted)
-    return frozenset(goal for goal in goals if not reached.may(automaton.operations[goal].goal))
+    reached = Relaxation(automaton, first, counted_on(automaton, circumstances))
+    return frozenset(goal for goal in goals if not reached.may(goal.predicate))
+
+
+def counted_on(automaton: Automaton, circumstances: Circumstances) -> tuple[Transition, ...]:
+    """The transitions a plan may be made of: no faults, and nothing that an offline resource would have to do."""
+    offline = circumstances.offline
+    idle = {effect.name for effect in automaton.effects if effect.fault or effect.resource in offline}
+    for ability in automaton.abilities.values():
+        if ability.resource in offline or (ability.restart and not circumstances.restart):
+            idle.add(f"{ability.name}.start")
+    return tuple(transition for transition in transitions(automaton) if transition.name not in idle)
 
 
 class Relaxation:

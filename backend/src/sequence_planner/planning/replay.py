@@ -21,7 +21,8 @@ from sequence_planner.automaton.tick import (
 )
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.plan import Plan, PlanTick
+from sequence_planner.planning.plan import Goal, Plan, PlanTick
+from sequence_planner.planning.pursuit import Goals, moved, settled
 
 # Nodes an eager search may visit: what is followed is looked at in every tick, and a tick must not be held up.
 LOOKAHEAD = 400
@@ -33,47 +34,46 @@ class _Node:
 
     state: State
     published: State
-    goals: frozenset[str]
+    goals: Goals
     order: tuple[str, ...]
     ticks: tuple[PlanTick, ...]
 
 
 @dataclass(frozen=True)
 class Replay:
-    """Replays plans of one automaton under one supervisor. Goals are names of operations."""
+    """Replays plans of one automaton under one supervisor."""
 
     automaton: Automaton
     supervisor: Supervisor
 
     def exactly(
-        self, state: State, published: State, goals: Iterable[str], now: Sequence[str], ticks: Sequence[PlanTick]
+        self, state: State, published: State, goals: Iterable[Goal], now: Sequence[str], ticks: Sequence[PlanTick]
     ) -> bool:
         """Whether the starts `now` in the tick under way, then `ticks` as they are written, reach `goals`.
 
         `state` is one after step 3 or a start; `published` has the outputs as last published.
         """
         effects = {effect.name: effect for effect in self.automaton.effects}
-        missing = self._missing(frozenset(goals), state)
-        current = self._started(published, state, now)
+        current = self._started(published, state, missing(goals, state), now)
         for tick in ticks:
-            sensed = None if current is None else apply_effects(current, [effects[name] for name in tick.effects])
+            sensed = None if current is None else apply_effects(current[0], [effects[name] for name in tick.effects])
             if current is None or sensed is None:
                 return False
             after = self._settled(sensed)
-            missing = self._missing(missing, after)
-            current = self._started(current, after, tick.starts)
-        return current is not None and not missing
+            left = settled(current[1], after)
+            current = None if left is None else self._started(current[0], after, left, tick.starts)
+        return current is not None and not current[1]
 
-    def eagerly(self, state: State, published: State, goals: Iterable[str], order: Sequence[str]) -> bool:
+    def eagerly(self, state: State, published: State, goals: Iterable[Goal], order: Sequence[str]) -> bool:
         """Whether `order`, each start taken now or later, reaches `goals` when all that can happen happens at once.
 
         `state` is one after step 3 or a start; `published` has the outputs as last published.
         """
-        root = _Node(state, published, self._missing(frozenset(goals), state), tuple(order), (PlanTick((), ()),))
+        root = _Node(state, published, missing(goals, state), tuple(order), (PlanTick((), ()),))
         return self._search(root, in_order=True, longest=None) is not None
 
     def still_reaches(
-        self, state: State, published: State, goals: Iterable[str], order: Sequence[str], ticks: Sequence[PlanTick]
+        self, state: State, published: State, goals: Iterable[Goal], order: Sequence[str], ticks: Sequence[PlanTick]
     ) -> bool:
         """Whether there is still a timing, of ours or of the environment, in which `order` reaches `goals`.
 
@@ -88,7 +88,7 @@ class Replay:
         before: State,
         after: State,
         published: State,
-        goals: Iterable[str],
+        goals: Iterable[Goal],
         order: Sequence[str],
         ticks: Sequence[PlanTick],
     ) -> bool:
@@ -100,10 +100,10 @@ class Replay:
             return True
         return not self._everything(before) and self.exactly(after, published, goals, _now(order, ticks), ticks)
 
-    def tightened(self, state: State, goals: Iterable[str], plan: Plan) -> Plan:
+    def tightened(self, state: State, goals: Iterable[Goal], plan: Plan) -> Plan:
         """`plan` with every start as early as it can be in an eager environment, or as it is if that takes longer."""
         order = tuple(name for _, name in plan.starts)
-        root = _Node(state, state, self._missing(frozenset(goals), state), order, ())
+        root = _Node(state, state, missing(goals, state), order, ())
         ticks = self._search(root, in_order=False, longest=len(plan.ticks))
         return plan if ticks is None else replace(plan, ticks=ticks)
 
@@ -124,39 +124,45 @@ class Replay:
                 continue
             reached[key] = len(node.ticks)
             if longest is None or len(node.ticks) < longest:
-                pending.append(self._waited(node))
+                later = self._waited(node)
+                if later is not None:
+                    pending.append(later)
             if node.ticks:
                 pending.extend(reversed(self._starts(node, in_order)))
         return None
 
-    def _waited(self, node: _Node) -> _Node:
+    def _waited(self, node: _Node) -> _Node | None:
         effects = self._everything(node.state)
         later = self._settled(apply_effects(node.state, effects) or node.state)
+        goals = settled(node.goals, later)
         tick = PlanTick(tuple(effect.name for effect in effects), ())
-        return _Node(later, node.state, self._missing(node.goals, later), node.order, (*node.ticks, tick))
+        return None if goals is None else _Node(later, node.state, goals, node.order, (*node.ticks, tick))
 
     def _starts(self, node: _Node, in_order: bool) -> list[_Node]:
         nodes: list[_Node] = []
         for name in node.order[:1] if in_order else dict.fromkeys(node.order):
             if name in node.ticks[-1].starts:
                 continue  # an ability starts once in a tick
-            after = self._started(node.published, node.state, (name,))
+            after = self._started(node.published, node.state, node.goals, (name,))
             if after is not None:
                 index = node.order.index(name)
                 last = node.ticks[-1]
                 ticks = (*node.ticks[:-1], PlanTick(last.effects, (*last.starts, name)))
                 order = node.order[:index] + node.order[index + 1 :]
-                nodes.append(_Node(after, node.published, node.goals, order, ticks))
+                nodes.append(_Node(after[0], node.published, after[1], order, ticks))
         return nodes
 
-    def _started(self, published: State, state: State, names: Iterable[str]) -> State | None:
+    def _started(
+        self, published: State, state: State, goals: Goals, names: Iterable[str]
+    ) -> tuple[State, Goals] | None:
         for name in names:
             ability = self.automaton.abilities[name]
             after = supervised_start(self.automaton, self.supervisor, published, state, ability)
-            if after is None:
+            left = None if after is None else moved(goals, after)
+            if after is None or left is None:
                 return None
-            state = after
-        return state
+            state, goals = after, left
+        return state, goals
 
     def _settled(self, sensed: State) -> State:
         """Steps 2 and 3."""
@@ -175,10 +181,10 @@ class Replay:
                 together |= written
         return chosen
 
-    def _missing(self, goals: frozenset[str], state: State) -> frozenset[str]:
-        """The operations of `goals` whose goal does not hold in `state`, one after step 3."""
-        operations = self.automaton.operations
-        return frozenset(name for name in goals if not holds(operations[name].goal, state))
+
+def missing(goals: Iterable[Goal], state: State) -> Goals:
+    """The goals that are not met already; those that are need no plan."""
+    return tuple(goal for goal in goals if not holds(goal.predicate, state))
 
 
 def _now(order: Sequence[str], ticks: Sequence[PlanTick]) -> Sequence[str]:

@@ -6,8 +6,6 @@ the number of starts are assumptions.
 
 from __future__ import annotations
 
-import threading
-import time
 from collections import OrderedDict
 from collections.abc import Callable, Sequence
 
@@ -16,9 +14,12 @@ from pysat.solvers import Solver
 
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
+from sequence_planner.expressions.syntax import Expression
 from sequence_planner.planning.circuit import Circuit
 from sequence_planner.planning.encoding import Encoding, SymbolicTick
-from sequence_planner.planning.plan import Plan, PlanTick
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.plan import Circumstances, Goal, Plan, PlanTick
+from sequence_planner.planning.tracking import Progress, Tracker, beginning
 
 # A solver for each set of unknown variables; topics come and go in few combinations.
 _KEPT_SEARCHES = 4
@@ -45,24 +46,35 @@ class Search:
         self._encoding = Encoding(automaton, supervisor, self._circuit, unknown)
         self._start = self._encoding.initial(unknown)
         self._ticks: list[SymbolicTick] = []
-        self._reached: dict[str, list[int]] = {}
+        self._tracker = Tracker(self._circuit)
+        self._progress: dict[Goal, list[Progress]] = {}
+        self._avoided: dict[Expression, list[int]] = {}
         self._bounds: dict[int, ITotalizer] = {}
 
     def close(self) -> None:
         """Give the solver's memory back."""
         self._solver.delete()
 
-    def plan(self, state: State, goals: Sequence[str], longest: int, deadline: float) -> Plan | None:
+    def plan(
+        self, state: State, goals: Sequence[Goal], circumstances: Circumstances, longest: int, budget: Budget
+    ) -> Plan | None:
         """A plan with the fewest ticks, then the fewest starts; None if there is none of at most `longest` ticks.
 
-        `deadline` is on the clock of `time.monotonic`. Raises `SearchTimeoutError` when it passes before any plan is
-        found; a plan found in time whose starts could not be proven fewest says so.
+        Raises `SearchTimeoutError` when the budget is spent before any plan is found; a plan found in time whose starts
+        could not be proven fewest says so.
         """
         return self._shortest(
-            state, lambda length: [self._goal(goal, length) for goal in goals], longest, deadline, last_starts=False
+            state,
+            circumstances,
+            lambda length: [self._reached(goal, length) for goal in goals],
+            longest,
+            budget,
+            last_starts=False,
         )
 
-    def plan_into(self, states: StateSet, state: State, longest: int, deadline: float) -> Plan | None:
+    def plan_into(
+        self, states: StateSet, state: State, circumstances: Circumstances, longest: int, budget: Budget
+    ) -> Plan | None:
         """The same for a run into `states`, none of whose variables is unknown, after step 3 or after a start.
 
         What its last tick starts counts as well.
@@ -73,31 +85,38 @@ class Search:
             members = (self._encoding.reading.member(states, each) for each in (last.synchronised, last.end))
             return [self._circuit.disjunction(members)]
 
-        return self._shortest(state, inside, longest, deadline, last_starts=True)
+        return self._shortest(state, circumstances, inside, longest, budget, last_starts=True)
 
     def _shortest(
-        self, state: State, wanted: Callable[[int], list[int]], longest: int, deadline: float, last_starts: bool
+        self,
+        state: State,
+        circumstances: Circumstances,
+        wanted: Callable[[int], list[int]],
+        longest: int,
+        budget: Budget,
+        last_starts: bool,
     ) -> Plan | None:
         """`wanted` has the literals that say so many ticks are enough; without `last_starts` the last has none."""
-        given = self._given(state)
+        given = [*self._given(state), *self._encoding.assumptions(circumstances)]
         for length in range(1, longest + 1):
             self._unroll(length)
+            given += [self._avoids(condition, length) for condition in circumstances.avoid]
             assumptions = [*given, *wanted(length)]
-            answer = self._solve(assumptions, deadline)
+            answer = self._solve(assumptions, budget)
             if answer is None:
                 raise SearchTimeoutError(length - 1)
             if answer:
-                return self._fewest_starts(assumptions, length, length if last_starts else length - 1, deadline)
+                return self._fewest_starts(assumptions, length, length if last_starts else length - 1, budget)
         return None
 
-    def _fewest_starts(self, assumptions: list[int], length: int, starting: int, deadline: float) -> Plan:
+    def _fewest_starts(self, assumptions: list[int], length: int, starting: int, budget: Budget) -> Plan:
         """Of the runs of `length` ticks, of which the first `starting` have starts."""
         while True:
             ticks = self._read(length, starting)
             count = sum(len(tick.starts) for tick in ticks)
             if count == 0:
                 return Plan(ticks, minimal_ticks=True, minimal_starts=True)
-            answer = self._solve([*assumptions, *self._at_most(count - 1, starting)], deadline)
+            answer = self._solve([*assumptions, *self._at_most(count - 1, starting)], budget)
             if not answer:
                 return Plan(ticks, minimal_ticks=True, minimal_starts=answer is False)
 
@@ -116,14 +135,26 @@ class Search:
             # A needless choice is one that the solver makes without being asked.
             self._solver.set_phases([-literal for literal in (*tick.effects.values(), *(c for _, c in tick.starts))])
 
-    def _goal(self, operation: str, length: int) -> int:
-        """The literal that says the goal held after step 3 of one of the first `length` ticks."""
-        reached = self._reached.setdefault(operation, [])
-        goal = self._automaton.operations[operation].goal
-        while len(reached) < length:
-            holds = self._encoding.reading.truth(goal, self._ticks[len(reached)].synchronised).yes
-            reached.append(self._circuit.disjunction((holds, *reached[-1:])))
-        return reached[length - 1]
+    def _reached(self, goal: Goal, length: int) -> int:
+        """The literal that says the goal was reached in one of the first `length` ticks."""
+        progress = self._progress.setdefault(goal, [beginning(goal)])
+        while len(progress) <= length:
+            progress.append(self._tracker.after(goal, progress[-1], self._ticks[len(progress) - 1]))
+        return progress[length].reached
+
+    def _avoids(self, condition: Expression, length: int) -> int:
+        """The literal that says no position of the tick at `length` satisfies `condition` or leaves it open."""
+        avoided = self._avoided.setdefault(condition, [])
+        while len(avoided) < length:
+            tick = self._ticks[len(avoided)]
+            positions = ((self._circuit.TRUE, tick.synchronised), *tick.positions)
+            avoided.append(
+                self._circuit.conjunction(
+                    self._circuit.disjunction((-chosen, self._encoding.reading.truth(condition, each).no))
+                    for chosen, each in positions
+                )
+            )
+        return avoided[length - 1]
 
     def _at_most(self, bound: int, starting: int) -> list[int]:
         """The literals that bound the number of starts in the first `starting` ticks."""
@@ -138,18 +169,13 @@ class Search:
             self._bounds[starting] = counter
         return [-counter.rhs[bound]]
 
-    def _solve(self, assumptions: list[int], deadline: float) -> bool | None:
-        remaining = deadline - time.monotonic()
-        if remaining <= 0:
+    def _solve(self, assumptions: list[int], budget: Budget) -> bool | None:
+        if budget.spent:
             return None
-        alarm = threading.Timer(remaining, self._solver.interrupt)
-        alarm.start()
-        try:
-            return self._solver.solve_limited(assumptions, expect_interrupt=True)
-        finally:
-            alarm.cancel()
-            alarm.join()
-            self._solver.clear_interrupt()
+        with budget.interrupting(self._solver.interrupt):
+            answer = self._solver.solve_limited(assumptions, expect_interrupt=True)
+        self._solver.clear_interrupt()
+        return answer
 
     def _read(self, length: int, starting: int) -> tuple[PlanTick, ...]:
         model = self._solver.get_model()

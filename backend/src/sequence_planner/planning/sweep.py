@@ -24,7 +24,7 @@ from sequence_planner.planning.encoding import Encoding
 
 def sweep_order(automaton: Automaton, supervisor: Supervisor) -> tuple[Ability, ...]:
     """An order of the abilities, with repetitions if need be, of which every possible order of starts is a part."""
-    abilities = [ability for ability in automaton.abilities.values() if not ability.restart]
+    abilities = list(automaton.abilities.values())
     before: dict[str, set[str]] = {ability.name: set() for ability in abilities}
     used = {ability.name: _used(automaton, supervisor, ability) for ability in abilities}
     written = {ability.name: frozenset(map(target, ability.start_actions)) for ability in abilities}

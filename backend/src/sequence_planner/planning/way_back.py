@@ -13,11 +13,12 @@ from functools import cached_property
 
 from sequence_planner.automaton.cone import cone_of_influence, read_variables
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import Automaton, Operation, State
+from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import apply_effects, finish, supervised_start, synchronise
 from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.syntax import TRUE, Or, Variable
-from sequence_planner.planning.plan import Plan, PlanTick, WayBack, WayBackAnswer, WayBackRequest
+from sequence_planner.expressions.syntax import Or, Variable
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.plan import Circumstances, Goal, Plan, PlanTick, WayBack, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.planner import PlannerError
 from sequence_planner.planning.search import Searches, SearchTimeoutError
 from sequence_planner.planning.sweep import sweep_order
@@ -26,7 +27,6 @@ from sequence_planner.planning.sweep import sweep_order
 _SHARE = 0.75
 
 _UNSUPERVISED = Supervisor(StateSet((), ()), {})
-_VIOLATED = "violated"
 
 
 class WaysBack:
@@ -44,7 +44,9 @@ class WaysBack:
         unknown = frozenset(name for name in self._automaton.variables if state[name] is None)
         safe = self._safe.for_all(unknown)
         try:
-            plan = self._ways.search(state).plan_into(safe, state, request.longest, began + _SHARE * request.deadline)
+            plan = self._ways.search(state).plan_into(
+                safe, state, Circumstances(), request.longest, Budget(began + _SHARE * request.deadline)
+            )
         except SearchTimeoutError as late:
             searched = late.searched
         threatened = self._threatened(state, request.longest, began + request.deadline)
@@ -60,21 +62,21 @@ class WaysBack:
 
     @cached_property
     def _threats(self) -> Searches:
-        """Runs without starts in which anything may happen, faults too; the goal is a violated specification."""
+        """Runs without starts in which anything may happen, faults too; a threat is a plan for a violated specification."""
         automaton = self._automaton
-        forbidden = Or(tuple(specification.forbidden for specification in automaton.specifications.values()))
         everything = replace(
             automaton,
             effects=tuple(replace(effect, fault=False) for effect in automaton.effects),
-            operations={_VIOLATED: Operation(_VIOLATED, _VIOLATED, TRUE, forbidden)},
         )
         return Searches(everything, _UNSUPERVISED, ())
 
     def _threatened(self, state: State, longest: int, deadline: float) -> tuple[str, ...]:
         if not self._automaton.specifications or violated(self._automaton, state):
             return ()
+        forbidden = Or(tuple(specification.forbidden for specification in self._automaton.specifications.values()))
+        goals = (Goal("violated", forbidden),)
         try:
-            plan = self._threats.search(state).plan(state, (_VIOLATED,), longest, deadline)
+            plan = self._threats.search(state).plan(state, goals, Circumstances(), longest, Budget(deadline))
         except SearchTimeoutError:
             return ()
         if plan is None:

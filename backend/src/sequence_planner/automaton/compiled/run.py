@@ -8,6 +8,7 @@ and the step that needs them looks at those noted. A note too many costs time an
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
+from copy import copy
 from dataclasses import dataclass
 from heapq import heappop, heappush
 
@@ -46,6 +47,21 @@ class CompiledRun:
         self._recorded: frozenset[str] | None = None
         self._starts = set(compiled.start_guards)
         self._startable: set[str] = set()
+        self._effects = set(compiled.effect_guards)
+        self._possible: dict[str, Writes] = {}  # what each enabled effect would change
+
+    def fork(self) -> CompiledRun:
+        """A run of its own that goes on from here."""
+        fork = copy(self)
+        fork._values = self._values.copy()
+        fork._levels = self._levels.copy()
+        fork._flags = {level: set(flags) for level, flags in self._flags.items()}
+        fork._finishes, fork._due = self._finishes.copy(), self._due.copy()
+        fork._operations = self._operations.copy()
+        fork._activating, fork._completing = self._activating.copy(), self._completing.copy()
+        fork._starts, fork._startable = self._starts.copy(), self._startable.copy()
+        fork._effects, fork._possible = self._effects.copy(), self._possible.copy()
+        return fork
 
     @property
     def state(self) -> State:
@@ -124,6 +140,22 @@ class CompiledRun:
         self._starts.clear()
         return self._startable
 
+    def effects(self) -> Mapping[str, Writes]:
+        """The effects, faults apart, that are enabled and would change something, each with what it would change.
+
+        An unknown variable stays unknown. What is returned is true until a change.
+        """
+        compiled, values = self._compiled, self._values
+        for name in self._effects:
+            writes = compiled.effect_actions[name].writes(values) if compiled.effect_guards[name](values) else None
+            changes = {n: v for n, v in (writes or {}).items() if values[n] is not None and values[n] != v}
+            if changes:
+                self._possible[name] = changes
+            else:
+                self._possible.pop(name, None)
+        self._effects.clear()
+        return self._possible
+
     def start(self, name: str) -> bool:
         """Step 5, one start: its actions, then synchronise. False, and nothing done, when they are undetermined."""
         written = self._compiled.start_actions[name].writes(self._values)
@@ -146,12 +178,13 @@ class CompiledRun:
     def _set(self, name: str, value: Value | None) -> None:
         self._values[name] = value
         self._snapshot = None
-        flags, finishes, operations, starts = self._compiled.dependants[name]
+        flags, finishes, operations, starts, effects = self._compiled.dependants[name]
         for level, readers in flags:
             self._note_flags(level, readers)
         self._finishes.update(finishes)
         self._operations.update(operations)
         self._starts.update(starts)
+        self._effects.update(effects)
 
     def _note_flags(self, level: int, flags: Iterable[str]) -> None:
         noted = self._flags.get(level)

@@ -34,6 +34,7 @@ class Dependants(NamedTuple):
     finishes: tuple[str, ...]
     operations: tuple[str, ...]
     starts: tuple[str, ...]
+    effects: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -82,6 +83,9 @@ class CompiledTick:
         self.activities = tuple((o.name, o.activity) for o in operations.values() if o.activity in automaton.variables)
         self.start_guards = _by_name(compiler.predicates, {a.name: _start_guard(a) for a in abilities.values()})
         self.start_actions = _actions(compiler, {a.name: a.start_actions for a in abilities.values()})
+        effects = {effect.name: effect for effect in automaton.effects if not effect.fault}
+        self.effect_guards = _by_name(compiler.predicates, {name: e.guard for name, e in effects.items()})
+        self.effect_actions = _actions(compiler, {name: e.actions for name, e in effects.items()})
 
 
 def _start_guard(ability: Ability) -> Expression:
@@ -130,7 +134,7 @@ def _levels(flag_reads: Mapping[str, frozenset[str]]) -> dict[str, int]:
 def _dependants(
     automaton: Automaton, names: Iterable[str], flag_reads: Mapping[str, frozenset[str]], level: Mapping[str, int]
 ) -> dict[str, Dependants]:
-    flags, finishes, operations, starts = (defaultdict[str, list[str]](list) for _ in range(4))
+    flags, finishes, operations, starts, effects = (defaultdict[str, list[str]](list) for _ in range(5))
     for flag, read in flag_reads.items():
         _note(flags, flag, read)
     for ability in automaton.abilities.values():
@@ -142,9 +146,17 @@ def _dependants(
             _note(finishes, ability.name, _reads(ability.finish_guard).union(touched))
     for operation in automaton.operations.values():
         _note(operations, operation.name, _reads(operation.goal, operation.precondition))
+    for effect in automaton.effects:
+        if not effect.fault:
+            touched = (each for action in effect.actions for each in (target(action), *reads(action)))
+            _note(effects, effect.name, _reads(effect.guard).union(touched))
     return {
         name: Dependants(
-            _by_level(flags[name], level), tuple(finishes[name]), tuple(operations[name]), tuple(starts[name])
+            _by_level(flags[name], level),
+            tuple(finishes[name]),
+            tuple(operations[name]),
+            tuple(starts[name]),
+            tuple(effects[name]),
         )
         for name in names
     }

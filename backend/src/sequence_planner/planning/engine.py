@@ -1,0 +1,49 @@
+"""What an engine is asked, and what it finds: several of them stand behind one interface."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from sequence_planner.automaton.structure import State
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.plan import Circumstances, Contract, Plan, Proof
+from sequence_planner.planning.pursuit import Goals
+
+
+@dataclass(frozen=True)
+class Task:
+    """Reach all of `goals`, none of which holds in `state`, in at most `longest` ticks."""
+
+    state: State
+    goals: Goals
+    circumstances: Circumstances = Circumstances()
+    contract: Contract = Contract.MINIMAL
+    longest: int = 60
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A plan, or a proof that there is none, or neither. It is known that no plan has at most `searched` ticks, or, when
+    there is a plan, that none has fewer than `searched`.
+    """
+
+    plan: Plan | None = None
+    proof: Proof | None = None
+    searched: int = 0
+
+    @property
+    def decided(self) -> bool:
+        """Whether there is nothing more to find for a fast plan."""
+        return self.plan is not None or self.proof is not None
+
+
+class Engine(Protocol):
+    """Works on one task at a time, in one thread, and may keep what it learns for the next."""
+
+    @property
+    def name(self) -> str:
+        """What answers say it was."""
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        """What is found before the budget is spent; nothing, when the engine is none for such a task."""

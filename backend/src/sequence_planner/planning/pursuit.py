@@ -1,0 +1,39 @@
+"""Goals followed along a run, position by position: the explicit counterpart of `tracking`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+
+from sequence_planner.automaton.structure import State
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.syntax import TRUE
+from sequence_planner.planning.monitor import monitor_of
+from sequence_planner.planning.plan import Goal
+
+Goals = tuple[Goal, ...]
+
+
+def settled(goals: Iterable[Goal], state: State) -> Goals | None:
+    """The goals that are still missing after step 3 has led to `state`; None when one can never be reached any more."""
+    missing: list[Goal] = []
+    for goal in goals:
+        if not holds(goal.predicate, state):
+            missing.append(goal)
+        elif goal.local != TRUE and not monitor_of(goal.local).satisfied(goal.at, state):
+            return None
+    return moved(missing, state)
+
+
+def moved(goals: Iterable[Goal], state: State) -> Goals | None:
+    """The same goals after a start that has led to `state`; None when one can never be reached any more."""
+    after: list[Goal] = []
+    for goal in goals:
+        if goal.local != TRUE:
+            monitor = monitor_of(goal.local)
+            at = monitor.step(goal.at, state)
+            if at in monitor.hopeless:
+                return None
+            goal = replace(goal, at=at)
+        after.append(goal)
+    return tuple(after)
