@@ -13,7 +13,8 @@ from pathlib import Path
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton
 from sequence_planner.automaton.tick import finish, initial_state, synchronise
-from sequence_planner.planning.plan import Plan
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.plan import Circumstances, Plan, goals_of
 from sequence_planner.planning.replay import Replay
 from sequence_planner.planning.search import Search
 from sequence_planner.planning.sweep import sweep_order
@@ -57,10 +58,10 @@ def measure_plans(
     """Plan the tightening of `pairs` from a station at home, with a warm solver and with fresh ones."""
     bolts = {f"bolts[{pair}]": "placed" for pair in pairs}
     state = synchronise(automaton, {**initial_state(automaton), **bolts})
-    goals = [f"tighten_bolt_pair({pair})" for pair in pairs]
+    goals = goals_of(automaton, (f"tighten_bolt_pair({pair})" for pair in pairs))
 
     def plan(search: Search) -> Plan:
-        found = search.plan(state, goals, 60, time.monotonic() + 60)
+        found = search.plan(state, goals, Circumstances(), 60, Budget.seconds(60))
         assert found is not None
         return found
 

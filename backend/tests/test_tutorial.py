@@ -150,7 +150,7 @@ def test_the_first_robot_fills_the_buffer_and_rests(tmp_path: Path) -> None:
     assert rig.started[:7] == [*once, "robot_1.move_to(infeed)", *once]
     assert rig.completed == ["refill_buffer"]
     assert rig.value("parts_on_buffer") == 2
-    assert rig.execution.plan_status is PlanStatus.IDLE
+    assert rig.execution.plan.status is PlanStatus.IDLE
 
 
 def test_the_guard_of_the_first_robot_alone_goes_with_the_second(tmp_path: Path) -> None:
@@ -181,7 +181,7 @@ def test_a_fault_without_a_way_out_forbids_the_beginning(tmp_path: Path) -> None
     rig.start_production()
     rig.run(1)
     assert rig.started == []
-    assert rig.execution.plan_status is PlanStatus.NONE
+    assert rig.execution.plan.status is PlanStatus.NONE
 
 
 def test_the_last_step_is_the_model() -> None:

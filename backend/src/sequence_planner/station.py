@@ -9,12 +9,13 @@ from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.collection import collection_put_off
+from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.model.loading import load_station
 from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.pipelines.building import build_pipelines, load_messages
 from sequence_planner.pipelines.inference import with_inferred_variables
 from sequence_planner.pipelines.pipeline import StationPipelines
-from sequence_planner.planning.plan import NO_FORMULAS
+from sequence_planner.planning.monitor import TooManyStatesError, monitor_of
 from sequence_planner.ros.messages import MessageRegistry
 
 
@@ -34,12 +35,17 @@ def prepare_station(folder: Path) -> ReadyStation:
     registry = load_messages(written)
     station = with_inferred_variables(written, registry)
     automaton = ground(station)
+    _require_plannable(automaton)
     return ReadyStation(automaton, build_pipelines(station, automaton, registry), registry)
 
 
-def require_runnable(station: ReadyStation) -> None:
-    """Raises `ModelError` when the model says something that a running station would not keep to."""
-    automaton = station.automaton
-    formulas = [f"{OPERATION}.{o.name}.local" for o in automaton.operations.values() if o.local is not None]
-    if formulas:
-        raise ModelError([Finding(automaton.places[formula], NO_FORMULAS) for formula in formulas])
+def _require_plannable(automaton: Automaton) -> None:
+    """Raises `ModelError` for formulas whose automata are too large to be followed."""
+    findings: list[Finding] = []
+    for operation in automaton.operations.values():
+        try:
+            monitor_of(operation.local or TRUE)
+        except TooManyStatesError as error:
+            findings.append(Finding(automaton.places[f"{OPERATION}.{operation.name}.local"], str(error)))
+    if findings:
+        raise ModelError(findings)

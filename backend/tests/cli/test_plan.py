@@ -6,6 +6,8 @@ import json
 import shutil
 from pathlib import Path
 
+from pytest import MonkeyPatch
+
 from cli.commands import EXAMPLE, as_json, command, plain
 
 PLACED = json.dumps({"state": {"bolts": "placed"}})
@@ -14,8 +16,9 @@ PLACED = json.dumps({"state": {"bolts": "placed"}})
 def test_the_plan_of_the_worked_example() -> None:
     """Six ticks and three starts, as the semantics says."""
     code, document = as_json("plan", EXAMPLE, "--state", "-", given=PLACED)
-    assert (code, document["verdict"], document["goals"]) == (0, "found", ["tighten_bolt_pair"])
-    assert [sorted(tick["starts"]) for tick in document["ticks"]] == [
+    assert (code, document["status"], document["contract"]) == (0, "plan", "minimal")
+    assert (document["goals"], document["left_out"], document["ticks"]) == (["tighten_bolt_pair"], [], 6)
+    assert [sorted(tick["starts"]) for tick in document["schedule"]] == [
         ["nutrunner.run_nut", "robot.move(above)"],
         [],
         ["robot.move(bolt_pair)"],
@@ -23,31 +26,73 @@ def test_the_plan_of_the_worked_example() -> None:
         [],
         [],
     ]
+    assert sorted(document["starts"]) == ["nutrunner.run_nut", "robot.move(above)", "robot.move(bolt_pair)"]
+    assert document["engine"]
+
+
+def test_a_fast_plan_says_so_or_is_minimal() -> None:
+    code, document = as_json("plan", EXAMPLE, "--state", "-", "--contract", "fast", given=PLACED)
+    assert (code, document["status"]) == (0, "plan")
+    assert document["contract"] in ("fast", "minimal")
+    assert document["ticks"] >= 6
+    assert document["searched"] <= 6
 
 
 def test_a_plan_for_people() -> None:
+    """A lane for each resource that does something."""
     code, out, err = command("plan", EXAMPLE, "tighten_bolt_pair", "--state", "-", given=PLACED)
     assert (code, err) == (0, "")
-    lines = out.splitlines()
-    assert {"  1  start     nutrunner.run_nut", "     start     robot.move(above)"} <= set(lines) or {
-        "  1  start     robot.move(above)",
-        "     start     nutrunner.run_nut",
-    } <= set(lines)
-    assert lines[-2] == "  6  expected  nutrunner.run_nut.torque_is_reached"
-    assert lines[-1].startswith("planned in ")
-    assert lines[-1].endswith(": tighten_bolt_pair")
+    *lanes, said = [line.split() for line in out.splitlines()]
+    assert lanes[0] == ["tick", "nutrunner", "robot"]
+    assert lanes[1] == ["1", "run_nut", "move(above)"]
+    assert lanes[-1] == ["6", "└", "done"]
+    text = "tighten_bolt_pair: 6 ticks and 3 starts, the fewest ticks, then the fewest starts ("
+    assert " ".join(said).startswith(text)
+
+
+def test_what_is_expected_is_shown_when_asked_for() -> None:
+    _, out, _ = command("plan", EXAMPLE, "tighten_bolt_pair", "--state", "-", "--expected", given=PLACED)
+    assert out.splitlines()[-3].split() == ["6", "~", "run_nut.torque_is_reached"]
+
+
+def test_lanes_that_do_not_fit_become_one(monkeypatch: MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "30")
+    _, out, _ = command("plan", EXAMPLE, "tighten_bolt_pair", "--state", "-", given=PLACED)
+    assert out.splitlines()[1] in ("      robot.move(above)", "      nutrunner.run_nut")
+
+
+def test_goals_by_expression() -> None:
+    code, document = as_json("plan", EXAMPLE, "--goal", "robot.pose == above", "--goal", "bolts == placed")
+    assert (code, set(document["goals"])) == (0, {"robot.pose == above", "bolts == placed"})
+    assert sorted(document["starts"]) == ["operator.place_bolt", "robot.move(above)"]
+    code, _, err = command("plan", EXAMPLE, "--goal", "robot.pose = above")
+    assert (code, err.startswith("--goal 'robot.pose = above': ")) == (2, True)
+
+
+def test_circumstances() -> None:
+    goal = ("plan", EXAMPLE, "--goal", "robot.pose == above")
+    assert as_json(*goal)[1]["status"] == "plan"
+    code, document = as_json(*goal, "--offline", "robot")
+    assert (code, document["status"]) == (1, "none")
+    assert document["proof"]["invariant"]
+    assert as_json(*goal, "--avoid", "robot.target_pose == above")[1]["status"] == "none"
+    assert command("plan", EXAMPLE, "--offline", "robo")[0::2] == (
+        2,
+        "there is no resource `robo`; did you mean `robot`?\n",
+    )
 
 
 def test_nothing_to_plan_for() -> None:
     code, _, err = command("plan", EXAMPLE)
-    assert (code, err) == (2, "no operation is active in this state: name one whose goal to plan\n")
+    assert (code, err) == (2, "no operation is active in this state: name one whose goal to plan, or give a --goal\n")
 
 
 def test_no_plan() -> None:
     """With the acknowledgement unknown nobody can place a bolt."""
     given = json.dumps({"state": {"operator.acknowledged": None}})
     code, out, _ = command("plan", EXAMPLE, "tighten_bolt_pair", "--state", "-", given=given)
-    assert (code, out) == (1, "no plan at all, proven: tighten_bolt_pair\n")
+    assert code == 1
+    assert out.startswith("no plan at all, proven: tighten_bolt_pair (")
 
 
 def test_an_operation_that_is_none() -> None:
@@ -57,12 +102,15 @@ def test_an_operation_that_is_none() -> None:
 
 def test_a_plain_automaton(tmp_path: Path) -> None:
     file = plain(tmp_path)
-    assert command("plan", file)[0::2] == (2, "no goal of it has the form `F p`\n")
+    assert command("plan", file)[0::2] == (2, "no goal of it has the form `F p`: give a --goal\n")
     text = file.read_text(encoding="utf-8")
     file.write_text(text.replace('"marked"', '"goal": ["F (user == has)"], "marked"'), encoding="utf-8")
     code, document = as_json("plan", file)
-    assert (code, document["verdict"], document["goal"]) == (0, "found", "goal_1")
-    assert document["transitions"] == ["ask", "grab"]
+    assert (code, document["status"], document["goals"], document["contract"]) == (0, "plan", ["goal_1"], "minimal")
+    assert document["starts"] == document["transitions"] == ["ask", "grab"]
+    code, document = as_json("plan", file, "--goal", "user == has and free")
+    assert (code, document["status"]) == (1, "none")
+    assert command("plan", file, "--restart")[0] == 2
 
 
 def asking(folder: Path, condition: str) -> Path:
@@ -77,19 +125,26 @@ def asking(folder: Path, condition: str) -> Path:
 
 def test_what_is_planned_for_is_active(tmp_path: Path) -> None:
     code, document = as_json("plan", asking(tmp_path, "operation.place.active"))
-    assert (code, document["verdict"]) == (0, "found")
+    assert (code, document["status"]) == (0, "plan")
 
 
-def test_that_a_run_could_change_what_is_active_is_no_proof(tmp_path: Path) -> None:
-    code, document = as_json("plan", asking(tmp_path, "not operation.place.active"), "--deadline", "2")
-    assert (code, document["verdict"]) == (1, "none up to")
+def test_what_is_active_stays_so_while_planning(tmp_path: Path) -> None:
+    code, document = as_json("plan", asking(tmp_path, "not operation.place.active"))
+    assert (code, document["status"]) == (1, "none")
 
 
-def test_formulas_that_plans_do_not_keep_to(tmp_path: Path) -> None:
+def test_plans_keep_to_formulas(tmp_path: Path) -> None:
+    """The bolt is placed only once the robot has been above."""
     copy = asking(tmp_path, "true")
-    (copy / "operations.yaml").write_text(
-        "place: {precondition: true, goal: bolts == placed, local: G bolts == empty}\n"
-    )
+    operation = "place: {{precondition: true, goal: bolts == placed, local: {}}}\n"
+    file = copy / "operations.yaml"
+    file.write_text(operation.format("'bolts == empty and F (robot.pose == above and X (F robot.pose == home))'"))
+    code, document = as_json("plan", copy)
+    assert (code, document["status"]) == (0, "plan")
+    moves = [name for name in document["starts"] if name.startswith("robot.")]
+    assert moves == ["robot.move(above)", "robot.move(home)"]
+    file.write_text(operation.format("G bolts == empty"))
+    assert as_json("plan", copy)[1]["status"] == "none"
+    file.write_text(operation.format("X false"))
     code, _, err = command("plan", copy)
-    assert code == 2
-    assert "plans do not keep to `local` formulas yet" in err
+    assert (code, err) == (2, "the local formula of `place` is violated in this state already\n")

@@ -14,6 +14,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.execution import Execution, TickOutcome
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.questions import BETTER_EVERY
 from sequence_planner.control.tasks import Task, TaskDesk
 from sequence_planner.emulation.devices import EmulatedDevices
 from sequence_planner.expressions.evaluation import holds
@@ -62,6 +63,7 @@ class Rig:
     step: float = 0.1
     now: float = 1000.0
     thinking: int = 0  # ticks that pass until the planner answers
+    improves: bool = True  # whether better plans are asked for
     folder: Path = TRUCK_ENGINE
     silent: set[str] = field(default_factory=set)  # topics from which nothing comes
     started: list[str] = field(default_factory=list)
@@ -70,6 +72,7 @@ class Rig:
 
     def __post_init__(self) -> None:
         self._asked: tuple[PlanRequest, int] | None = None
+        self._next_better = self.now
         self.station, supervisor, self.planner = ready(self.folder)
         self.execution = Execution(self.station.automaton, supervisor)
         self.desk = TaskDesk(self.station.automaton)
@@ -112,11 +115,19 @@ class Rig:
 
     def plan(self) -> None:
         """Ask for a plan, and adopt the answer `thinking` ticks later."""
-        if self._asked is None and (request := self.execution.request(deadline=20)) is not None:
+        if self._asked is None and (request := self._question()) is not None:
             self._asked = (request, len(self.ticks) + self.thinking)
         if self._asked is not None and len(self.ticks) >= self._asked[1]:
             request, self._asked = self._asked[0], None
             self.execution.adopt(request, self.planner.answer(request))
+
+    def _question(self) -> PlanRequest | None:
+        """As the controller asks: for a plan that is needed, and now and then for a better one."""
+        request = self.execution.request(deadline=20)
+        if request is None and self.improves and self.now >= self._next_better:
+            self._next_better = self.now + BETTER_EVERY
+            request = self.execution.better(deadline=20)
+        return request
 
     def check_law(self, outcome: TickOutcome) -> None:
         """What must hold after every tick: no start leads out of the safe set, so nothing forbidden comes of one."""

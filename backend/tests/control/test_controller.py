@@ -72,7 +72,7 @@ def test_a_planner_that_is_killed_over_a_question_is_asked_again() -> None:
         with arm.saying("home"):
             await on.until(lambda: value(on, "arm.pose") == "home")
             await on.start()
-            await on.until(lambda: on.controller.execution.plan_status is PlanStatus.PLANNING)
+            await on.until(lambda: on.controller.execution.plan.status is PlanStatus.PLANNING)
             end_planner()
             await on.until(lambda: alarm(on, "planner"))
             await on.until(lambda: "out" in arm.commands)
@@ -93,9 +93,9 @@ def test_a_tick_that_raises_has_not_happened_and_is_taken_once_it_can_be(monkeyp
         with arm.saying("home"):
             await on.until(lambda: value(on, "arm.pose") == "home")
             await on.start()
-            await on.until(lambda: execution.plan_status is PlanStatus.PLANNING)
-            monkeypatch.setattr(execution, "_look_at_plan", broken)
-            await on.until(lambda: execution.plan_status is PlanStatus.FOLLOWED)
+            await on.until(lambda: execution.plan.status is PlanStatus.PLANNING)
+            monkeypatch.setattr(execution, "_update_operations", broken)
+            await on.until(lambda: execution.plan.status is PlanStatus.FOLLOWED)
             await on.until(lambda: alarm(on, "controller:a tick"))
             ticks = execution.ticks
             await asyncio.sleep(0.3)
@@ -104,8 +104,8 @@ def test_a_tick_that_raises_has_not_happened_and_is_taken_once_it_can_be(monkeyp
             assert "RuntimeError: a rare case" in shown.text
             assert set(arm.commands) == {"home"}
             assert value(on, "arm.goto") == "home"
-            assert execution.order.names == ("arm.move(out)",)
-            assert not execution.order.running
+            assert execution.plan.order.names == ("arm.move(out)",)
+            assert not execution.plan.order.running
             assert execution.ticks == ticks
             monkeypatch.undo()
             await on.until(lambda: "out" in arm.commands)
@@ -127,7 +127,7 @@ def test_a_command_that_cannot_be_sent_is_owed_and_nothing_is_started_meanwhile(
             with monkeypatch.context() as broken:
                 broken.setattr(on.transport, "publish", refuses.__get__(on.transport))
                 await on.start()
-                await on.until(lambda: on.controller.execution.plan_status is PlanStatus.FOLLOWED)
+                await on.until(lambda: on.controller.execution.plan.status is PlanStatus.FOLLOWED)
                 await asyncio.sleep(0.2)
                 shown = on.controller.view()
                 assert shown.alarms[f"command:{COMMAND}"].priority is Priority.HIGH
@@ -163,7 +163,7 @@ def test_nothing_is_started_while_another_commands_the_same_devices() -> None:
         other.advertise(COMMAND, COMMAND_TYPE, QualityOfService.RELIABLE)
         await on.until(lambda: alarm(on, f"rival:{COMMAND}"))
         with arm.saying("home"):
-            await on.until(lambda: on.controller.execution.plan_status is PlanStatus.FOLLOWED)
+            await on.until(lambda: on.controller.execution.plan.status is PlanStatus.FOLLOWED)
             await asyncio.sleep(0.2)
             assert value(on, "arm.goto") == "home"
             assert "/other also publishes" in on.controller.view().plan.steps[0].waits_for[0]
@@ -230,7 +230,7 @@ def test_a_mode_is_taken_at_once_and_keeps_the_plan() -> None:
         await on.controller.command(SetMode(actor="local", mode=Mode.PAUSED))
         with arm.saying("home"):
             await on.start()
-            await on.until(lambda: on.controller.execution.plan_status is PlanStatus.FOLLOWED)
+            await on.until(lambda: on.controller.execution.plan.status is PlanStatus.FOLLOWED)
             await asyncio.sleep(0.2)
             assert set(arm.commands) == {"home"}
             (step,) = on.controller.view().plan.steps

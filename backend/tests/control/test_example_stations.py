@@ -83,7 +83,7 @@ def test_without_the_assembler_the_agv_waits_docked_with_the_kit() -> None:
     assert rig.completed == ["fetch_kit"]
     assert [task.text for task in rig.desk.open.values()] == ["Take the kit off the AGV and put it on the bench."]
     assert rig.value("dock.locked") is True
-    assert rig.execution.plan_status is PlanStatus.FOLLOWED
+    assert rig.execution.plan.status is PlanStatus.FOLLOWED
 
 
 def test_a_kit_is_handed_over_only_when_it_is_gone() -> None:

@@ -66,7 +66,7 @@ def test_paused_lets_the_running_finish_and_starts_nothing() -> None:
     assert rig.run(60, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
     rig.execution.mode = Mode.PAUSED
     before = len(rig.started)
-    assert rig.run(30, until=lambda: not [s for s in rig.execution.order.running if s.ability in MOVES])
+    assert rig.run(30, until=lambda: not [s for s in rig.execution.plan.order.running if s.ability in MOVES])
     rig.run(10)
     assert len(rig.started) == before
     assert waits_for(rig.execution, "nutrunner.run_nut", {}) == ["automatic mode: the station is paused"]
@@ -125,7 +125,7 @@ def test_a_departure_that_breaks_the_plan_is_answered_with_a_new_one() -> None:
     rig.execution.state = {**rig.execution.state, f"bolts[{pair}]": "empty"}
     rig.acknowledges = never
     rig.run(0.3)
-    assert rig.execution.plan_status is PlanStatus.FOLLOWED
+    assert rig.execution.plan.status is PlanStatus.FOLLOWED
     assert f"place_bolt_pair({pair})" in rig.execution.active
     rig.acknowledges = at_once
     assert rig.run(120, until=lambda: engines(rig) >= 1)
@@ -136,7 +136,7 @@ def test_the_next_step_says_what_it_waits_for() -> None:
     rig.start_production()
     rig.run(5)
     feeds = rig.station.pipelines.feeds
-    assert waits_for(rig.execution, rig.execution.order.names[0], feeds) == ["operator.requested_pair == none"]
+    assert waits_for(rig.execution, rig.execution.plan.order.names[0], feeds) == ["operator.requested_pair == none"]
     rig.silent = {"/ur10/state"}
     rig.run(0.2)
     assert "a message on /ur10/state" in waits_for(rig.execution, "robot.move_to_position(above_engine)", feeds)
@@ -157,7 +157,7 @@ def test_a_start_taken_while_the_planner_thought_is_not_planned_again() -> None:
     rig.start_production()
 
     def planned_again() -> bool:
-        order = rig.execution.order
+        order = rig.execution.plan.order
         return any(step.ability in order.names for step in order.running if step.ability.startswith("operator"))
 
     rig.run(90, until=lambda: planned_again() or engines(rig) >= 2)

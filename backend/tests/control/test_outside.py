@@ -231,6 +231,6 @@ def test_outside_the_safe_states_plans_are_made_as_before_and_nothing_is_started
                 await on.until(lambda: on.controller.view().plan.status is PlanStatus.FOLLOWED)
                 await on.until(lambda: "devices could violate “never”" in on.controller.view().alarms[UNSAFE].text)
                 assert "fetch(right)" in execution.active
-                assert not execution.order.past
+                assert not execution.plan.order.past
 
     asyncio.run(scenario())

@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import multiprocessing
 import os
 import signal
+import subprocess
+import sys
 import time
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from functools import partial
 from multiprocessing.process import BaseProcess
+from pathlib import Path
 
 import pytest
 
-from control.bench import cell, until
+from control.bench import CELL, cell, until
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.control import planner_process
 from sequence_planner.control.planner_process import Listener, PlannerProcess
-from sequence_planner.planning.plan import Answer, PlanAnswer, PlanRequest, Verdict
+from sequence_planner.expressions.syntax import Variable
+from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.planning.engines import LANES
+from sequence_planner.planning.plan import Answer, Goal, PlanAnswer, PlanRequest, Verdict, goals_of
 
 
 @dataclass
@@ -28,7 +35,12 @@ class Asking:
     failures: list[tuple[str, bool]] = field(default_factory=list)
 
     def ask(self, goal: str = "fetch(left)") -> None:
-        self.planner.ask(PlanRequest(dict(initial_state(cell()[0].automaton)), (goal,)))
+        automaton = cell()[0].automaton
+        self.planner.ask(PlanRequest(dict(initial_state(automaton)), goals_of(automaton, (goal,))))
+
+    def ask_nonsense(self) -> None:
+        nonsense = Goal("fetch(left)", Variable("no such variable", BOOLEAN))
+        self.planner.ask(PlanRequest(dict(initial_state(cell()[0].automaton)), (nonsense,)))
 
 
 def run(scenario: Callable[[Asking], Awaitable[None]]) -> None:
@@ -74,7 +86,7 @@ def test_a_question_asked_at_once_is_answered() -> None:
 
 def test_an_error_nobody_thought_of_is_told_and_the_next_question_is_answered() -> None:
     async def scenario(asking: Asking) -> None:
-        asking.ask("no such operation")
+        asking.ask_nonsense()
         await until(lambda: bool(asking.failures))
         ((why, again),) = asking.failures
         assert "KeyError" in why
@@ -109,14 +121,13 @@ def test_one_that_is_killed_is_replaced_without_a_question_too() -> None:
 
 
 def test_one_that_stands_still_holds_up_nothing_and_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(planner_process, "GRACE", -4.5)  # with the deadline, half a second
-
     async def scenario(asking: Asking) -> None:
         asking.ask()
         await until(lambda: bool(asking.answers))
         (still,) = processes()
         assert still.pid is not None
         os.kill(still.pid, signal.SIGSTOP)
+        monkeypatch.setattr(planner_process, "GRACE", -4.5)  # with the deadline, half a second
         began = time.monotonic()
         asking.ask()
         assert time.monotonic() - began < 0.1
@@ -143,3 +154,70 @@ def test_one_that_dies_again_and_again_is_replaced_ever_later() -> None:
         assert asking.planner.trouble == "the planner has ended and is started again"
 
     run(scenario)
+
+
+def test_a_question_that_is_called_off_is_not_answered_and_the_next_one_is() -> None:
+    async def scenario(asking: Asking) -> None:
+        asking.planner.call_off()  # there is nothing to call off
+        for _ in range(3):
+            asking.ask()
+            asking.planner.call_off()
+            assert not asking.planner.busy
+        asking.ask()
+        await until(lambda: not asking.planner.busy)
+        await asyncio.sleep(0.2)
+        assert len(asking.answers) == 1
+        assert asking.failures == []
+
+    run(scenario)
+
+
+# The process of a planner that is asked something, and all that it has started, as its parent sees them.
+PARENT = f"""
+import threading, time
+from pathlib import Path
+from sequence_planner.planning.companion import Companion
+from sequence_planner.planning.worker import Model, work
+from sequence_planner.station import prepare_station
+from sequence_planner.synthesis.supervision import synthesise
+
+if __name__ == "__main__":
+    automaton = prepare_station(Path({str(CELL)!r})).automaton
+    ready = threading.Event()
+    model = Model(automaton, synthesise(automaton))
+    planner = Companion(work, model, lambda word: ready.set(), "planner", daemon=False)
+    ready.wait()
+    print("ready", flush=True)
+    time.sleep(60)
+"""
+
+
+def descendants(pid: int) -> set[int]:
+    """The processes that it has started, and those have."""
+    children: dict[int, list[int]] = {}
+    for folder in Path("/proc").glob("[0-9]*"):
+        with contextlib.suppress(OSError):
+            parent = int((folder / "stat").read_text().rpartition(")")[2].split()[1])
+            children.setdefault(parent, []).append(int(folder.name))
+    found: set[int] = set()
+    pending = [pid]
+    while pending:
+        new = children.get(pending.pop(), [])
+        found.update(new)
+        pending += new
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="only Linux says which process started which")
+@pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
+def test_nothing_is_left_of_it_when_its_parent_is_killed(how: signal.Signals) -> None:
+    with subprocess.Popen([sys.executable, "-c", PARENT], stdout=subprocess.PIPE, stderr=subprocess.DEVNULL) as parent:
+        assert parent.stdout is not None
+        assert parent.stdout.readline() == b"ready\n"
+        left = descendants(parent.pid)
+        assert len(left) > len(LANES)
+        parent.send_signal(how)
+    end = time.monotonic() + 5
+    while any(Path(f"/proc/{pid}").exists() for pid in left):
+        assert time.monotonic() < end, "it has not ended"
+        time.sleep(0.05)

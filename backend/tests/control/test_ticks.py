@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NoReturn
 
 import pytest
@@ -52,7 +53,7 @@ def told(outcome: TickOutcome) -> tuple[object, object, object]:
 
 
 def status(execution: Execution) -> PlanStatus:
-    return execution.plan_status
+    return execution.plan.status
 
 
 def follow(execution: Execution, answer: PlanAnswer) -> None:
@@ -99,7 +100,7 @@ def test_an_output_that_a_finish_has_set_is_published_before_a_start_takes_it_ba
     assert told(third) == ((), ("shine",), {"lamp"})
 
 
-@pytest.mark.parametrize("failing", ["_start", "_look_at_plan"])
+@pytest.mark.parametrize("failing", ["_start", "_update_operations"])
 def test_a_tick_that_raises_has_not_happened(failing: str, monkeypatch: pytest.MonkeyPatch) -> None:
     def breaks(*_: object, **__: object) -> NoReturn:
         raise RuntimeError("a rare case")
@@ -108,17 +109,17 @@ def test_a_tick_that_raises_has_not_happened(failing: str, monkeypatch: pytest.M
     rig.start_production()
     assert rig.run(60, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
     execution = rig.execution
-    before = (execution.state, execution.published, execution.active, execution.ticks, execution.plan_status)
-    past, ahead = [*execution.order.past], execution.order.names
-    running = [step.ended for step in execution.order.past]
+    before = (execution.state, execution.published, execution.active, execution.ticks, execution.plan.status)
+    past, ahead = [*execution.plan.order.past], execution.plan.order.names
+    running = [step.ended for step in execution.plan.order.past]
     measured = {**rig.measured(), **rig.desk.measured(), "nutrunner.programmed_torque_reached": True}
     with monkeypatch.context() as broken:
         broken.setattr(execution, failing, breaks)
         with pytest.raises(RuntimeError):
             execution.tick(measured, NOW)
-    assert before == (execution.state, execution.published, execution.active, execution.ticks, execution.plan_status)
-    assert [step.ended for step in execution.order.past] == running
-    assert (len(execution.order.past), execution.order.names) == (len(past), ahead)
+    assert before == (execution.state, execution.published, execution.active, execution.ticks, execution.plan.status)
+    assert [step.ended for step in execution.plan.order.past] == running
+    assert (len(execution.plan.order.past), execution.plan.order.names) == (len(past), ahead)
     assert "nutrunner.run_nut" in execution.tick(measured, NOW).ended
 
 
@@ -128,13 +129,13 @@ def test_what_is_left_of_a_plan_is_not_started_once_its_goals_are_met() -> None:
     rig.run(1)
     placed = dict.fromkeys([f"bolts[{pair}]" for pair in PAIRS], "placed")
     rig.execution.state = {**rig.execution.state, **placed}
-    assert rig.run(5, until=lambda: len(rig.execution.order.ahead) > 1)
+    assert rig.run(5, until=lambda: len(rig.execution.plan.order.ahead) > 1)
     tightened = dict.fromkeys(placed, "tightened")
     rig.execution.state = {**rig.execution.state, **tightened}
     outcome = rig.execution.tick({**rig.measured(), **rig.desk.measured()}, Moment(rig.now, rig.now))
     assert outcome.completed
     assert outcome.started == ()
-    assert rig.execution.order.names == ()
+    assert rig.execution.plan.order.names == ()
 
 
 def test_that_there_is_no_plan_stays_said_while_another_state_is_asked_about() -> None:
@@ -153,6 +154,22 @@ def test_that_there_is_no_plan_stays_said_while_another_state_is_asked_about() -
     assert status(execution) is PlanStatus.NONE
 
 
+@pytest.mark.parametrize(
+    ("verdict", "said"),
+    [
+        (Verdict.NONE_AT_ALL, "no plan at all, proven: nothing the station can do from here reaches any of the goals"),
+        (Verdict.NONE_UP_TO, "no plan of up to 60 ticks: there may be a longer one"),
+        (Verdict.LATE, "no answer in time: no plan of up to 60 ticks, and longer ones may exist"),
+    ],
+)
+def test_it_is_said_what_is_known_when_there_is_no_plan(verdict: Verdict, said: str) -> None:
+    execution = Execution(LAMP, EVERYTHING_IS_SAFE)
+    execution.start_production()
+    execution.tick({"lit": False}, NOW)
+    follow(execution, replace(none(), verdict=verdict))
+    assert execution.plan.reason == said
+
+
 def test_no_plan_for_want_of_knowledge_is_forgotten_with_the_knowledge() -> None:
     execution = Execution(LAMP, EVERYTHING_IS_SAFE)
     execution.start_production()
@@ -161,7 +178,7 @@ def test_no_plan_for_want_of_knowledge_is_forgotten_with_the_knowledge() -> None
     request = execution.request(5)
     assert request is not None
     assert execution.adopt(request, none())
-    assert execution.plan_reason == "no plan while measured values are unknown"
+    assert execution.plan.reason == "no plan while measured values are unknown"
     execution.tick({"lit": False}, NOW)
     assert execution.request(5) is not None
     assert status(execution) is PlanStatus.PLANNING
@@ -186,7 +203,7 @@ def test_a_plan_for_a_state_long_gone_is_not_followed() -> None:
     request = execution.request(5)
     assert request is not None
     assert not execution.adopt(request, found("shine")), "no effect ever lights the lamp, so it does not reach the goal"
-    assert execution.order.names == ()
+    assert execution.plan.order.names == ()
     assert execution.request(5) is not None
 
 
@@ -196,9 +213,9 @@ def test_a_question_without_an_answer_is_asked_again_only_if_that_may_help(again
     execution.start_production()
     execution.tick({"lit": False}, NOW)
     assert execution.request(5) is not None
-    execution.unanswered("the planner has ended", again)
+    execution.plan.unanswered("the planner has ended", again)
     assert status(execution) is PlanStatus.NONE
-    assert execution.plan_reason == "no plan: the planner has ended"
+    assert execution.plan.reason == "no plan: the planner has ended"
     assert (execution.request(5) is not None) == again
 
 
@@ -207,7 +224,7 @@ def test_what_is_active_before_production_is_shown_with_the_reason_for_no_plan()
     execution.production = Production.WAITING
     execution.tick({"lit": False}, NOW)
     assert execution.active == {"light"}
-    assert execution.plan_reason == "production has not been started"
+    assert execution.plan.reason == "production has not been started"
     assert execution.request(5) is None
 
 
@@ -227,7 +244,7 @@ def test_what_is_active_is_known_to_the_flags_and_starts_of_the_same_tick() -> N
     assert (execution.state[active], execution.state["shine.finished"]) == (True, True)
     after = execution.startable("shine")
     assert after is not None
-    assert (after["lamp"], after["shine.finished"]) == (True, True)
+    assert (after.values["lamp"], after.values["shine.finished"]) == (True, True)
     assert execution.state["lamp"] is False  # looked at, and not taken
 
     assert execution.tick({"lit": True}, NOW).completed == {"light"}

@@ -1,7 +1,7 @@
 """Plans by breadth-first search on the reference tick: every set of effects, every sequence of starts, tick by tick.
 
 A start that has been taken in a tick is not taken again in the same one. The fewest starts are kept for each state and
-set of goals already reached, so the first layer in which all goals are reached has the fewest ticks, then the fewest
+what is still missing of the goals, so the first layer in which nothing is missing has the fewest ticks, then the fewest
 starts. Goals that are met already need no plan.
 """
 
@@ -10,10 +10,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.automaton.tick import supervised_start
-from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.types import Value
+from sequence_planner.planning.plan import Circumstances
+from sequence_planner.planning.pursuit import Goals, moved, settled
+from sequence_planner.planning.replay import missing
 
 from .explicit import outcomes
 
@@ -30,35 +33,45 @@ class Shortest:
 
 @dataclass(frozen=True)
 class _Node:
+    """A state at the end of a tick, what is missing then, and the starts so far."""
+
     state: State
-    reached: frozenset[str]
+    goals: Goals
     starts: int
 
 
 def shortest(
-    automaton: Automaton, supervisor: Supervisor, state: State, goals: frozenset[str], longest: int
+    automaton: Automaton,
+    supervisor: Supervisor,
+    state: State,
+    goals: Goals,
+    longest: int,
+    circumstances: Circumstances = Circumstances(),
 ) -> Shortest | None:
     """The shortest plan from `state`, or None if there is none of at most `longest` ticks."""
-    helpful = [effect for effect in automaton.effects if not effect.fault]
-    seen: set[tuple[Key, frozenset[str]]] = set()
-    met = frozenset(goal for goal in goals if holds(automaton.operations[goal].goal, state))
-    if met == goals:
+    helpful = [e for e in automaton.effects if not e.fault and e.resource not in circumstances.offline]
+    abilities = [a for a in automaton.abilities.values() if may_start(a, circumstances)]
+    seen: set[tuple[Key, Goals]] = set()
+    if not missing(goals, state):
         return Shortest(0, 0)
-    layer = [_Node(state, met, 0)]
+    layer = [_Node(state, missing(goals, state), 0)]
     for ticks in range(1, longest + 1):
         done: list[int] = []
-        following: dict[tuple[Key, frozenset[str]], _Node] = {}
+        following: dict[tuple[Key, Goals], _Node] = {}
         for node in layer:
             for after in outcomes(automaton, node.state, helpful):
-                reached = node.reached | {g for g in goals if holds(automaton.operations[g].goal, after)}
-                if reached == goals:
+                left = settled(node.goals, after)
+                if left is None or not permitted(after, circumstances):
+                    continue
+                if not left:
                     done.append(node.starts)
                     continue
-                for end, starts in _ends(automaton, supervisor, node.state, after):
-                    key = (_key(end), reached)
-                    total = node.starts + starts
+                root = _Node(after, left, 0)
+                for end in _ends(automaton, supervisor, abilities, node.state, root, circumstances):
+                    key = (_key(end.state), end.goals)
+                    total = node.starts + end.starts
                     if key not in seen and (key not in following or total < following[key].starts):
-                        following[key] = _Node(end, reached, total)
+                        following[key] = _Node(end.state, end.goals, total)
         if done:
             return Shortest(ticks, min(done))
         seen |= following.keys()
@@ -66,22 +79,40 @@ def shortest(
     return None
 
 
-def _ends(automaton: Automaton, supervisor: Supervisor, published: State, state: State) -> list[tuple[State, int]]:
-    """Every state in which the tick can end after step 3 has led to `state`, with the number of starts."""
-    found = {(_key(state), frozenset[str]()): (state, 0)}
-    pending = [(state, frozenset[str]())]
+def may_start(ability: Ability, circumstances: Circumstances) -> bool:
+    """Whether `circumstances` let the ability start."""
+    return ability.resource not in circumstances.offline and (circumstances.restart or not ability.restart)
+
+
+def permitted(position: State, circumstances: Circumstances) -> bool:
+    """Whether nothing that is to be avoided holds there, nor is open."""
+    return all(evaluate(condition, position) is False for condition in circumstances.avoid)
+
+
+def _ends(
+    automaton: Automaton,
+    supervisor: Supervisor,
+    abilities: list[Ability],
+    published: State,
+    root: _Node,
+    circumstances: Circumstances,
+) -> list[_Node]:
+    """Every way in which the tick can end after step 3 has led to `root`, with the number of starts."""
+    found = {(_key(root.state), root.goals, frozenset[str]()): root}
+    pending = [(root, frozenset[str]())]
     while pending:
         current, taken = pending.pop()
-        for ability in automaton.abilities.values():
-            if ability.restart or ability.name in taken:
+        for ability in abilities:
+            if ability.name in taken:
                 continue
-            after = supervised_start(automaton, supervisor, published, current, ability)
-            if after is None:
+            after = supervised_start(automaton, supervisor, published, current.state, ability)
+            goals = None if after is None else moved(current.goals, after)
+            if after is None or goals is None or not permitted(after, circumstances):
                 continue
             now = taken | {ability.name}
-            if (_key(after), now) not in found:
-                found[_key(after), now] = (after, len(now))
-                pending.append((after, now))
+            if (key := (_key(after), goals, now)) not in found:
+                found[key] = _Node(after, goals, len(now))
+                pending.append((found[key], now))
     return list(found.values())
 
 

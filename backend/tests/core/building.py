@@ -16,8 +16,8 @@ from sequence_planner.automaton.structure import (
     Specification,
     VariableDeclaration,
 )
-from sequence_planner.expressions.parser import parse, parse_assignment
-from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_predicate
+from sequence_planner.expressions.parser import parse, parse_assignment, parse_formula
+from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_formula, resolve_predicate
 from sequence_planner.expressions.types import BOOLEAN, Type, Value
 
 FLAGS = ("enabled", "executing", "finished")
@@ -48,6 +48,7 @@ def automaton(
     faults: Iterable[str] = (),
     goals: Mapping[str, str] | None = None,
     priorities: Mapping[str, int] | None = None,
+    local: Mapping[str, str] | None = None,
     forbidden: Mapping[str, str] | None = None,
     rest: str | None = None,
 ) -> Automaton:
@@ -91,6 +92,7 @@ def automaton(
                 resolve_predicate(parse("true"), scope),
                 resolve_predicate(parse(goal), scope),
                 (priorities or {}).get(name, 0),
+                None if name not in (local or {}) else resolve_formula(parse_formula((local or {})[name]), scope),
             )
             for name, goal in (goals or {}).items()
         },

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 
 from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
+from sequence_planner.automaton.compiled.closures import Closures
 from sequence_planner.automaton.compiled.functions import Compiler
 from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import initial_state
@@ -18,6 +19,7 @@ from sequence_planner.expressions.syntax import (
     Comparison,
     Constant,
     Expression,
+    Implies,
     Membership,
     Not,
     Or,
@@ -83,6 +85,7 @@ def summed(depth: int) -> Expression:
     return Comparison(">", total, Constant(depth + 3))
 
 
+@pytest.mark.parametrize("compiler", [Compiler(("a", "b", "n")), Closures()], ids=("compiled", "closures"))
 @pytest.mark.parametrize(
     "expression",
     [
@@ -94,13 +97,18 @@ def summed(depth: int) -> Expression:
         Membership(NUMBER, tuple(Constant(number) for number in range(2000))),
         Membership(Arithmetic("-", NUMBER, Constant(5)), (Constant(0), NUMBER)),
         Membership(And((A, B)), (Constant(True),)),
+        Membership(NUMBER, (Constant(0), Constant(7))),
         *(Comparison(relation, Constant(5), NUMBER) for relation in RELATIONS),
+        *(Comparison(relation, NUMBER, Constant(5)) for relation in RELATIONS),
+        *(Comparison(relation, A, B) for relation in ("==", "!=")),
+        Implies(A, B),
         Comparison("<", Constant(1), Constant(2)),
     ],
     ids=lambda _: "",
 )
-def test_an_expression_of_any_size_and_shape_means_what_it_meant(expression: Expression) -> None:
-    compiler = Compiler(("a", "b", "n"))
+def test_an_expression_of_any_size_and_shape_means_what_it_meant(
+    expression: Expression, compiler: Compiler | Closures
+) -> None:
     [predicate], [truth], [value] = (
         make([expression]) for make in (compiler.predicates, compiler.truths, compiler.values)
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable
 from typing import Any
 
 import pytest
@@ -10,22 +11,43 @@ from hypothesis import given
 
 from sequence_planner.automaton.plain.meaning import event_of, plain_automaton
 from sequence_planner.automaton.plain.steps import plain_transitions, step
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.printing import print_value
 from sequence_planner.model.plain_documents import read_plain
 from sequence_planner.model.source import ModelError
-from sequence_planner.planning.plain import plan_transitions
-from sequence_planner.planning.plan import Verdict
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.one_at_a_time import OneAtATime
+from sequence_planner.planning.plain import for_planning, plan_transitions
+from sequence_planner.planning.plan import Contract, Goal, Verdict, goals_of
+from sequence_planner.planning.pursuit import Goals
+from sequence_planner.planning.replay import missing
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
 
 from .budget import examples
-from .choices import made_by
-from .explicit_plain import ExplicitPlain, Key
+from .choices import Choices, made_by
+from .explicit_plain import ExplicitPlain, Key, type_of
 from .random_plain import document
 
 LONGEST = 8
+
+
+def document_with_goals(choices: Choices) -> dict[str, Any]:
+    """A document that now and then has further goals."""
+    first = document(choices)
+    more = (
+        [f"F ({name} == {value})" for name, value in values(choices, first["variables"])] if choices.chance(2) else []
+    )
+    return {**first, "goal": [*first["goal"], *more]}
+
+
+def values(choices: Choices, variables: dict[str, object]) -> list[tuple[str, str]]:
+    """Some variables, each with a value of its domain as it is written."""
+    chosen = choices.different(list(variables), 1, 2)
+    return [(name, print_value(choices.pick(type_of(variables[name]).domain))) for name in chosen]
 
 
 def read(written: dict[str, Any]) -> Automaton:
@@ -102,21 +124,81 @@ def test_safe_and_reachable_states_are_those_of_the_definition(written: dict[str
             synthesise(automaton)
 
 
-@examples(120)
-@given(made_by(document))
-def test_a_goal_has_a_plan_when_breadth_first_search_finds_one(written: dict[str, Any]) -> None:
+def distance(explicit: ExplicitPlain, begin: Key, goals: Goals) -> int | None:
+    """The fewest transitions of a supervised run from `begin` in which each goal holds somewhere, if there is one.
+
+    The search is over states together with the goals that are missing still.
+    """
+
+    def missing_in(key: Key, left: Goals) -> Goals:
+        return tuple(goal for goal in left if not holds(goal.predicate, explicit.valuation(key)))
+
+    layer = {(begin, missing_in(begin, goals))}
+    seen, steps = set(layer), 0
+    while layer:
+        if any(not left for _, left in layer):
+            return steps
+        following = {
+            (after, missing_in(after, left))
+            for key, left in layer
+            for after in explicit.steps[False][key] | (explicit.steps[True][key] & explicit.safe)
+        }
+        layer, steps = following - seen, steps + 1
+        seen |= layer
+    return None
+
+
+@examples(150)
+@given(made_by(document_with_goals))
+def test_plans_have_the_fewest_transitions_and_there_is_none_exactly_where_exhaustive_search_finds_none(
+    written: dict[str, Any],
+) -> None:
     explicit, automaton = meant(written)
     if automaton is None or not explicit.initial <= explicit.safe:
         return
-    supervisor, goal = synthesise(automaton), automaton.operations["goal_1"].goal
+    supervisor, goals = synthesise(automaton), goals_of(automaton, automaton.operations)
     for key in sorted(explicit.initial, key=str)[:2]:
-        distances = explicit.distances([key], supervised=True)
-        reached = [steps for state, steps in distances.items() if holds(goal, explicit.valuation(state))]
-        answer = plan_transitions(automaton, supervisor, "goal_1", explicit.valuation(key), LONGEST, deadline=60)
-        if answer.verdict is Verdict.FOUND:
-            assert reached
-            assert len(answer.transitions) >= min(reached)
-        elif answer.verdict is Verdict.NONE_AT_ALL:
-            assert not reached
-        else:
-            assert not reached or min(reached) > LONGEST
+        begin, least = explicit.valuation(key), distance(explicit, key, goals)
+        answer = plan_transitions(automaton, supervisor, goals, begin, budget=Budget.seconds(60))
+        fast = plan_transitions(automaton, supervisor, goals, begin, Contract.FAST, budget=Budget.seconds(60))
+        if least is None:
+            assert answer.verdict is fast.verdict is Verdict.NONE_AT_ALL
+            continue
+        assert answer.verdict is fast.verdict is Verdict.FOUND
+        assert answer.minimal
+        assert len(answer.transitions) == answer.searched == least
+        assert fast.searched <= least <= len(fast.transitions)
+        for each in (answer, fast):
+            assert reaches(automaton, supervisor, begin, each.transitions, goals)
+
+
+@examples(60)
+@given(made_by(document_with_goals))
+def test_the_unrolled_run_finds_as_few_transitions_as_exhaustive_search(written: dict[str, Any]) -> None:
+    """As it does where there are too many states for the other engines."""
+    explicit, automaton = meant(written)
+    if automaton is None or not explicit.initial <= explicit.safe:
+        return
+    supervisor, goals = synthesise(automaton), goals_of(automaton, automaton.operations)
+    key = min(explicit.initial, key=str)
+    begin, least = explicit.valuation(key), distance(explicit, key, goals)
+    order, bound = OneAtATime(for_planning(automaton), supervisor, begin, goals).fewest(0, LONGEST, Budget.seconds(60))
+    if least is None or least > LONGEST:
+        assert (order, bound) == (None, LONGEST + 1)
+    else:
+        assert order is not None
+        assert len(order) == bound == least
+        assert reaches(automaton, supervisor, begin, order, goals)
+
+
+def reaches(
+    automaton: Automaton, supervisor: Supervisor, state: State, plan: Iterable[str], goals: Iterable[Goal]
+) -> bool:
+    """Whether each transition of `plan` can be taken under the supervisor, and each goal holds somewhere on the way."""
+    transitions, left = plain_transitions(automaton), missing(goals, state)
+    for name in plan:
+        after = step(state, transitions[name])
+        if after is None or (transitions[name].controllable and not supervisor.allows(state, after)):
+            return False
+        state, left = after, missing(left, after)
+    return not left

@@ -9,12 +9,13 @@ from typing import Any
 import pytest
 
 from sequence_planner.automaton.plain.meaning import plain_automaton
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.planning.plain import plan_transitions
-from sequence_planner.planning.plan import Verdict
+from sequence_planner.planning.plain import PlainAnswer, plan_transitions
+from sequence_planner.planning.plan import Verdict, goals_of
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
 
@@ -75,6 +76,12 @@ def philosophers(number: int) -> Automaton:
     )
 
 
+def planned(
+    automaton: Automaton, goal: str, supervisor: Supervisor | None = None, state: State | None = None
+) -> PlainAnswer:
+    return plan_transitions(automaton, supervisor or synthesise(automaton), goals_of(automaton, (goal,)), state)
+
+
 def test_the_second_user_must_wait_until_the_first_has_given_the_thing_back() -> None:
     automaton = two_users()
     supervisor = synthesise(automaton)
@@ -99,9 +106,9 @@ def test_an_update_out_of_range_disables_its_transition() -> None:
 def test_plans_are_sequences_of_events_in_which_the_environment_helps() -> None:
     automaton = two_users()
     supervisor = synthesise(automaton)
-    answer = plan_transitions(automaton, supervisor, "goal_1")
+    answer = planned(automaton, "goal_1", supervisor)
     assert answer.events == ("u1_asks", "u1_grabs")
-    thrice = plan_transitions(automaton, supervisor, "goal_3")
+    thrice = planned(automaton, "goal_3", supervisor)
     assert [e.partition("_")[2] for e in thrice.events].count("grabs") == 3
     # Only those of the form F p can be planned; all are kept.
     assert set(automaton.operations) == {"goal_1", "goal_2", "goal_3", "goal_5"}
@@ -110,15 +117,19 @@ def test_plans_are_sequences_of_events_in_which_the_environment_helps() -> None:
 
 def test_no_plan_goes_against_the_supervisor() -> None:
     automaton = two_users()
-    assert plan_transitions(automaton, synthesise(automaton), "goal_5", longest=12).verdict is Verdict.NONE_UP_TO
+    answer = planned(automaton, "goal_5")
+    assert answer.verdict is Verdict.NONE_AT_ALL
+    assert answer.proof is not None
+    assert answer.transitions == ()
 
 
 def test_a_goal_that_holds_needs_no_transition_and_outside_the_safe_set_nothing_is_planned() -> None:
     automaton = two_users()
     state = dict(automaton.initial_valuation) | {"u1": "has", "free": False}
-    assert plan_transitions(automaton, synthesise(automaton), "goal_1", state).transitions == ()
+    answer = planned(automaton, "goal_1", state=state)
+    assert (answer.verdict, answer.transitions, answer.minimal) == (Verdict.FOUND, (), True)
     with pytest.raises(ValueError, match="outside the safe set"):
-        plan_transitions(automaton, synthesise(automaton), "goal_1", state | {"u2": "has"})
+        planned(automaton, "goal_1", state=state | {"u2": "has"})
 
 
 @pytest.mark.parametrize("number", [2, 3])
@@ -129,7 +140,7 @@ def test_philosophers_never_each_hold_one_fork(number: int) -> None:
     removed = found.reachable(supervised=False) & ~found.reachable(supervised=True)
     [state] = found.plant.diagrams.exported(removed, automaton.variables).members()
     assert {state[f"p{i}"] for i in range(number)} == {"L"}
-    assert plan_transitions(automaton, synthesise(automaton), "goal_1").events == ("left1", "right1")
+    assert planned(automaton, "goal_1").events == ("left1", "right1")
 
 
 def test_of_two_transitions_that_exclude_each_other_only_one_happens() -> None:
@@ -151,7 +162,7 @@ def test_of_two_transitions_that_exclude_each_other_only_one_happens() -> None:
         transitions=[event("left", "not b", {"a": True}, False), event("right", "not a", {"b": True}, False)],
         goal=["F (a and b)"],
     )
-    assert plan_transitions(free, synthesise(free), "goal_1", longest=6).verdict is Verdict.NONE_UP_TO
+    assert planned(free, "goal_1").verdict is Verdict.NONE_AT_ALL
 
 
 def test_every_initial_state_must_be_safe() -> None:

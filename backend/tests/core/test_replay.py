@@ -16,10 +16,10 @@ from sequence_planner.automaton.tick import (
     supervised_start,
     synchronise,
 )
-from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType
-from sequence_planner.planning.plan import Plan, PlanRequest, PlanTick
+from sequence_planner.planning.plan import Plan, PlanRequest, PlanTick, goals_of
 from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.pursuit import moved, settled
 from sequence_planner.planning.replay import Replay
 from sequence_planner.synthesis.supervision import synthesise
 
@@ -29,7 +29,6 @@ from .building import Does, automaton
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 
-GOAL = ("reach",)
 PLACES = EnumerationType(("home", "away", "out"))
 
 
@@ -61,7 +60,7 @@ class Followed:
         self.replay = Replay(station, supervisor)
         self.state = self.published = initial_state(station) if state is None else state
         self.plan, self.ahead = plan, [name for _, name in plan.starts]
-        self.missing = frozenset(station.operations)
+        self.goals = self.missing = goals_of(station, station.operations)
 
     def rest(self, order: list[str]) -> tuple[PlanTick, ...]:
         """The ticks of the plan behind the one of the last start taken."""
@@ -88,12 +87,14 @@ class Followed:
         sensed = apply_effects(before, [effect for effect in self.station.effects if effect.name in effects])
         assert sensed is not None
         self.state = synchronise(self.station, finish(self.station, sensed).state)
-        goals = self.station.operations
-        self.missing = frozenset(name for name in self.missing if not holds(goals[name].goal, self.state))
-        self.published = before
+        missing = settled(self.missing, self.state)
+        assert missing is not None
+        self.missing, self.published = missing, before
         started = []
         while self.ahead and (after := self.may_start(self.ahead[0])) is not None:
-            self.state = after
+            going_on = moved(self.missing, after)
+            assert going_on is not None
+            self.state, self.missing = after, going_on
             started.append(self.ahead.pop(0))
         return started
 
@@ -106,7 +107,9 @@ class Followed:
 def arm() -> Followed:
     station = armed_robot()
     supervisor = synthesise(station)
-    answer = Planner(station, supervisor).answer(PlanRequest(initial_state(station), GOAL))
+    answer = Planner(station, supervisor).answer(
+        PlanRequest(initial_state(station), goals_of(station, station.operations))
+    )
     assert answer.plan is not None
     return Followed(station, supervisor, answer.plan)
 
@@ -117,7 +120,7 @@ def test_retract_wait_for_the_arm_move(arm: Followed) -> None:
     assert arm.tick() == ["retract"]
     moved = supervised_start(arm.station, arm.supervisor, arm.published, arm.state, arm.station.abilities["move"])
     assert moved is not None, "no guard keeps the robot from moving"
-    assert not arm.replay.still_reaches(moved, arm.published, GOAL, (), arm.rest([]))
+    assert not arm.replay.still_reaches(moved, arm.published, arm.goals, (), arm.rest([]))
 
     assert arm.tick() == []  # the arm takes its time
     assert arm.tick() == []
@@ -129,22 +132,24 @@ def test_retract_wait_for_the_arm_move(arm: Followed) -> None:
 
 def test_a_plan_whose_starts_were_all_taken_at_once_does_not_replay(arm: Followed) -> None:
     greedy = [PlanTick((), ("retract", "move")), *(PlanTick(tick.effects, ()) for tick in arm.plan.ticks[1:])]
-    assert arm.replay.exactly(arm.state, arm.state, GOAL, (), arm.plan.ticks)
-    assert not arm.replay.exactly(arm.state, arm.state, GOAL, (), greedy)
+    assert arm.replay.exactly(arm.state, arm.state, arm.goals, (), arm.plan.ticks)
+    assert not arm.replay.exactly(arm.state, arm.state, arm.goals, (), greedy)
 
 
 def test_a_plan_with_a_start_that_is_not_allowed_does_not_replay_even_if_its_goals_are_reached(arm: Followed) -> None:
     done = synchronise(arm.station, {**arm.state, "at": "out", "extended": False, "target": "out"})
-    assert arm.replay.exactly(done, done, GOAL, (), ())
-    assert not arm.replay.exactly(done, done, GOAL, ("move",), ())
-    assert not arm.replay.exactly(done, done, GOAL, (), [PlanTick((), ("move",))])
-    assert not arm.replay.exactly(done, done, GOAL, (), [PlanTick(("robot_leaves",), ())])
+    assert arm.replay.exactly(done, done, arm.goals, (), ())
+    assert not arm.replay.exactly(done, done, arm.goals, ("move",), ())
+    assert not arm.replay.exactly(done, done, arm.goals, (), [PlanTick((), ("move",))])
+    assert not arm.replay.exactly(done, done, arm.goals, (), [PlanTick(("robot_leaves",), ())])
 
 
 def test_with_nothing_to_wait_for_both_start_in_one_tick() -> None:
     station = armed_robot(interlock="true")
     supervisor = synthesise(station)
-    answer = Planner(station, supervisor).answer(PlanRequest(initial_state(station), GOAL))
+    answer = Planner(station, supervisor).answer(
+        PlanRequest(initial_state(station), goals_of(station, station.operations))
+    )
     assert answer.plan is not None
     assert sorted(Followed(station, supervisor, answer.plan).tick()) == ["move", "retract"]
 
@@ -172,7 +177,7 @@ def test_a_plan_that_does_not_know_what_it_waits_for_is_broken(arm: Followed) ->
 def test_starts_left_over_once_the_goals_are_reached_break_nothing(arm: Followed) -> None:
     """Somebody has brought the robot out by hand."""
     done = synchronise(arm.station, {**arm.state, "at": "out", "extended": False, "target": "out"})
-    assert arm.replay.still_reaches(done, done, GOAL, ("retract", "move"), arm.plan.ticks)
+    assert arm.replay.still_reaches(done, done, arm.goals, ("retract", "move"), arm.plan.ticks)
 
 
 def test_a_fault_is_not_counted_on() -> None:
@@ -185,7 +190,7 @@ def test_a_fault_is_not_counted_on() -> None:
         goals={"reach": "done"},
     )
     replay, state = Replay(station, synthesise(station)), initial_state(station)
-    assert not replay.eagerly(state, state, GOAL, ("go",))
+    assert not replay.eagerly(state, state, goals_of(station, station.operations), ("go",))
 
 
 def passing_part(others: dict[str, tuple[str, tuple[str, ...]]]) -> Automaton:
@@ -213,11 +218,11 @@ def test_a_start_that_needs_a_device_to_be_slow_is_taken_only_when_nothing_happe
 ) -> None:
     station = passing_part(others)
     supervisor, state = synthesise(station), initial_state(station)
-    answer = Planner(station, supervisor).answer(PlanRequest(state, GOAL))
+    answer = Planner(station, supervisor).answer(PlanRequest(state, goals_of(station, station.operations)))
     assert answer.plan is not None
     followed = Followed(station, supervisor, answer.plan)
     assert followed.ahead == ["release", "drill"]
-    assert not followed.replay.eagerly(state, state, GOAL, followed.ahead)
+    assert not followed.replay.eagerly(state, state, followed.goals, followed.ahead)
     assert followed.reachable
     assert (followed.may_start("release") is not None) is taken
 
@@ -226,7 +231,9 @@ def test_a_start_that_needs_a_device_to_be_slow_is_taken_only_when_nothing_happe
 def tightening(worked_example: Automaton, supervisor: Supervisor) -> tuple[Plan, State]:
     """A plan for the worked example, and the state it begins in."""
     placed = synchronise(worked_example, {**initial_state(worked_example), "bolts": "placed"})
-    answer = Planner(worked_example, supervisor).answer(PlanRequest(placed, ("tighten_bolt_pair",)))
+    answer = Planner(worked_example, supervisor).answer(
+        PlanRequest(placed, goals_of(worked_example, ("tighten_bolt_pair",)))
+    )
     assert answer.plan is not None
     return answer.plan, placed
 
@@ -262,7 +269,7 @@ def an_order(choices: Choices) -> tuple[Problem, list[str]]:
 @given(made_by(an_order))
 def test_what_an_order_reaches_eagerly_can_be_reached(given_: tuple[Problem, list[str]]) -> None:
     (station, supervisor, state), order = (given_[0].automaton, given_[0].supervisor, given_[0].state), given_[1]
-    goals = frozenset(station.operations)
+    goals = goals_of(station, station.operations)
     if Replay(station, supervisor).eagerly(state, state, goals, order):
         best = shortest(station, supervisor, state, goals, longest=1000)
         assert best is not None

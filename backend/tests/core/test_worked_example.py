@@ -20,7 +20,7 @@ from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import Expression
-from sequence_planner.planning.plan import Plan, PlanRequest, Verdict
+from sequence_planner.planning.plan import Plan, PlanRequest, Verdict, goals_of
 from sequence_planner.planning.planner import Planner
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.supervision import Supervision
@@ -52,7 +52,9 @@ def placed(worked_example: Automaton) -> State:
 
 @pytest.fixture(scope="module")
 def plan(worked_example: Automaton, supervisor: Supervisor, placed: State) -> Plan:
-    answer = Planner(worked_example, supervisor).answer(PlanRequest(placed, ("tighten_bolt_pair",), deadline=60))
+    answer = Planner(worked_example, supervisor).answer(
+        PlanRequest(placed, goals_of(worked_example, ("tighten_bolt_pair",)), deadline=60)
+    )
     assert answer.verdict is Verdict.FOUND
     assert answer.plan is not None
     return answer.plan

@@ -21,6 +21,7 @@ from sequence_planner.control.view import (
     VariableKind,
     VariableView,
 )
+from sequence_planner.planning.plan import Contract
 
 
 def ability(resource: str, title: str) -> AbilityView:
@@ -112,6 +113,8 @@ def example_view(**changes: object) -> StationView:
             minimal_ticks=True,
             minimal_starts=True,
             replanned=0,
+            contract=Contract.MINIMAL,
+            engine="bounded model checking",
             milliseconds=1.5,
         ),
         tasks={

@@ -399,6 +399,12 @@ export interface components {
          */
         ClientMessage: components["schemas"]["Resync"];
         /**
+         * Contract
+         * @description What is wanted of a plan.
+         * @enum {string}
+         */
+        Contract: "minimal" | "fast";
+        /**
          * ControllerState
          * @description Whether the server hears the controller. While it is lost, what was shown before is old.
          * @enum {string}
@@ -597,6 +603,9 @@ export interface components {
          * @description The live plan: what is done, what runs, what comes next and what that waits for.
          */
         PlanView: {
+            contract: components["schemas"]["Contract"] | null;
+            /** Engine */
+            engine: string;
             /** Milliseconds */
             milliseconds: number | null;
             /** Minimal Starts */

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.syntax import Assignment, Expression, Variable, variables
 from sequence_planner.expressions.types import BOOLEAN, Type, Value
-from sequence_planner.model.source import Place
 
 # A state gives every variable and every ability flag a value; None is unknown. Never changed once made.
 State = Mapping[str, Value | None]

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from sequence_planner.automaton.structure import Automaton, Kind, VariableDeclaration, target
 from sequence_planner.checking.growth import every_move
 from sequence_planner.checking.warning import ModelWarning, families, listed, place
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.syntax import variables
-from sequence_planner.model.source import Place
 
 
 @dataclass(frozen=True)

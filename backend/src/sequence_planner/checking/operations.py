@@ -1,4 +1,4 @@
-"""Local specifications of operations: those that say nothing about the run, and what becomes of the others."""
+"""Local specifications of operations that say nothing about the run."""
 
 from __future__ import annotations
 
@@ -8,17 +8,15 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.warning import ModelWarning, families, place
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import Constant, variables
-from sequence_planner.planning.plan import NO_FORMULAS
 
 
 def check_operations(automaton: Automaton) -> Iterator[ModelWarning]:
-    """Operations whose local specification reads nothing at all, and those that keep the station from being run."""
+    """Operations whose local specification reads nothing at all."""
     for family, names in families(automaton.operations).items():
         local = automaton.operations[names[0]].local
         if local is None:
             continue
         where = place(automaton, f"operation.{names[0]}.local")
-        yield ModelWarning(where, "formula-not-planned", NO_FORMULAS)
         if not isinstance(local, Constant) and not any(variables(local)):
             message = (
                 f"the local specification `{print_expression(local)}` of `{family}` reads no variable, so it only says "

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.warning import ModelWarning, listed
-from sequence_planner.model.source import Place
+from sequence_planner.expressions.place import Place
 from sequence_planner.synthesis.minimal_conflict import Conflict, minimal_conflict
 from sequence_planner.synthesis.unmeetable import Unmeetable
 

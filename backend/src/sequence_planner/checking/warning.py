@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 
 from sequence_planner.automaton.grounding.findings import without_arguments
 from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.printing import print_value
-from sequence_planner.model.source import Place
 from sequence_planner.synthesis.traces import Trace
 
 MOST_NAMED = 4  # of several names in a message

@@ -1,121 +1,184 @@
-"""`plan`: how the goals of operations would be reached, without a running station."""
+"""`plan`: how goals would be reached, without a running station."""
 
 from __future__ import annotations
 
+import shutil
 from collections.abc import Sequence
 from typing import Annotated
 
 import typer
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import record_activity, update_operations
 from sequence_planner.cli.analysing import supervisor_of
+from sequence_planner.cli.lanes import lanes
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.moments import Moment, StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
-from sequence_planner.model.source import ModelError
-from sequence_planner.planning.plain import PlainAnswer, plan_transitions
-from sequence_planner.planning.plan import PlanAnswer, PlanRequest, Verdict
+from sequence_planner.cli.plan_answers import because, document, plain_document, said, said_of_plain
+from sequence_planner.expressions.parser import parse
+from sequence_planner.expressions.resolution import Scope, resolve_predicate
+from sequence_planner.expressions.syntax import Expression, ExpressionError
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.diagnosis import Diagnosis, diagnose
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.plain import plan_transitions
+from sequence_planner.planning.plan import (
+    Circumstances,
+    Contract,
+    Goal,
+    PlanAnswer,
+    PlanRequest,
+    Verdict,
+    goal_of,
+)
 from sequence_planner.planning.planner import Planner
-from sequence_planner.station import require_runnable
+from sequence_planner.planning.pursuit import moved
+from sequence_planner.planning.replay import missing
+from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import SynthesisError
 
-Goals = Annotated[
+Operations = Annotated[
     list[str] | None,
-    typer.Argument(metavar="[OPERATION]...", help="Whose goals to reach; else those that are active then."),
+    typer.Argument(metavar="[OPERATION]...", help="Whose goals to reach; without any goal, those active then."),
 ]
+GoalTexts = Annotated[
+    list[str] | None, typer.Option("--goal", metavar="EXPR", help="A predicate to reach as well. Repeatable.")
+]
+Wanted = Annotated[Contract, typer.Option("--contract", help="The fewest ticks and starts, proven; or a plan soon.")]
 Deadline = Annotated[
-    float, typer.Option(min=0.01, max=86_400, help="Seconds to look for the safe states, and for a plan.")
+    float, typer.Option(min=0.01, max=86_400, help="Seconds to look for the safe states, and then for the answer.")
 ]
+Restart = Annotated[bool, typer.Option("--restart", help="Restart abilities may start, too.")]
+Offline = Annotated[
+    list[str] | None, typer.Option("--offline", metavar="RESOURCE", help="A resource that does nothing. Repeatable.")
+]
+Avoid = Annotated[
+    list[str] | None, typer.Option("--avoid", metavar="EXPR", help="What must not hold on the way. Repeatable.")
+]
+Expected = Annotated[bool, typer.Option("--expected", help="Show what devices and people are expected to do, too.")]
 
 
 def plan(
-    model: AnyModel, goals: Goals = None, state: StateFile = None, deadline: Deadline = 10.0, json: AsJson = False
+    model: AnyModel,
+    operations: Operations = None,
+    goal: GoalTexts = None,
+    state: StateFile = None,
+    contract: Wanted = Contract.MINIMAL,
+    deadline: Deadline = 10.0,
+    restart: Restart = False,
+    offline: Offline = None,
+    avoid: Avoid = None,
+    expected: Expected = False,
+    json: AsJson = False,
 ) -> None:
     """Plan the goals of operations from the initial state, or from that of --state: what `tick --json` prints.
 
-    Of a plan, each tick shows the effects that are expected and the starts. The goals of a plain automaton are goal_1,
-    goal_2 and so on; one of them is planned. The exit code is 1 when there is no plan for all of the goals.
+    Time runs down, and each resource has a lane. The goals of a plain automaton are goal_1, goal_2 and so on, or else
+    all of them. The exit code is 1 when there is no plan for all of the goals.
     """
-    found_model = usable_model(model)
-    automaton = found_model.automaton
+    automaton = usable_model(model).automaton
     before = moment(automaton, state)
     try:
-        if found_model.station is not None:
-            require_runnable(found_model.station)
         supervisor = supervisor_of(automaton, deadline)
-    except (SynthesisError, ModelError) as error:
+    except SynthesisError as error:
         refuse(str(error))
+    circumstances = _circumstances(automaton, offline or [], restart, avoid or [])
+    start, goals = _asked(automaton, before, operations or [], goal or [])
+    request = PlanRequest(start, goals, deadline, contract=contract, circumstances=circumstances)
     if automaton.one_at_a_time:
-        found = _of_plain(automaton, supervisor, before, goals or list(automaton.operations)[:1], deadline, json)
+        found = _of_plain(automaton, supervisor, request, json)
     else:
-        found = _of_station(automaton, supervisor, before, goals or [], deadline, json)
+        found = _of_station(automaton, supervisor, request, expected, json)
     if not found:
         raise typer.Exit(FINDINGS)
 
 
-def _of_station(
-    automaton: Automaton, supervisor: Supervisor, before: Moment, goals: Sequence[str], deadline: float, json: bool
-) -> bool:
-    chosen = frozenset(named(automaton.operations, goal, "operation").name for goal in goals)
-    wanted = chosen or update_operations(automaton, before.state, before.active)
-    if not wanted:
-        refuse("no operation is active in this state: name one whose goal to plan")
-    # What has just become active is, as in step 4 of a tick.
-    state = record_activity(automaton, before.state, before.active | wanted)
-    request = PlanRequest(state, tuple(sorted(wanted)), deadline)
+def _of_station(automaton: Automaton, supervisor: Supervisor, request: PlanRequest, expected: bool, json: bool) -> bool:
     answer = Planner(automaton, supervisor).answer(request)
-    ticks = () if answer.plan is None else answer.plan.ticks
+    diagnosis = _diagnosis(automaton, supervisor, request, answer)
     if json:
-        print_json(
-            {
-                "verdict": answer.verdict.value,
-                "goals": answer.goals,
-                "left_out": answer.left_out,
-                "ticks": [{"effects": tick.effects, "starts": tick.starts} for tick in ticks],
-                "seconds": answer.seconds,
-            }
-        )
-    else:
-        for number, tick in enumerate(ticks, 1):
-            lines = [*(f"expected  {name}" for name in tick.effects), *(f"start     {name}" for name in tick.starts)]
-            for place, line in enumerate(lines or ["nothing"]):
-                typer.echo(f"{'' if place else number:>3}  {line}")
-        typer.echo(_said(answer))
+        print_json(document(answer, diagnosis))
+        return answer.plan is not None and not answer.left_out
+    if answer.plan is not None:
+        width = shutil.get_terminal_size().columns
+        for line in lanes(automaton, request.state, answer.plan.ticks, expected, width):
+            typer.echo(line)
+    typer.echo(said(answer))
+    for line in because(diagnosis):
+        typer.echo(line)
     return answer.plan is not None and not answer.left_out
 
 
-def _of_plain(
-    automaton: Automaton, supervisor: Supervisor, before: Moment, goals: Sequence[str], deadline: float, json: bool
-) -> bool:
-    if len(goals) != 1:
-        refuse("name one goal of the form `F p`, such as goal_1" if goals else "no goal of it has the form `F p`")
-    goal = named(automaton.operations, goals[0], "goal").name
+def _diagnosis(
+    automaton: Automaton, supervisor: Supervisor, request: PlanRequest, answer: PlanAnswer
+) -> Diagnosis | None:
+    """Why there is no plan at all, in the time that is left."""
+    if answer.verdict is not Verdict.NONE_AT_ALL:
+        return None
+    task = Task(request.state, missing(request.goals, request.state), request.circumstances)
+    budget = Budget.seconds(request.deadline - answer.seconds)
+    return diagnose(automaton, supervisor, FewerSpecifications(automaton, supervisor), task, budget)
+
+
+def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest, json: bool) -> bool:
+    if request.circumstances != Circumstances():
+        refuse("a plain automaton has no resources, modes or ticks: --offline, --restart and --avoid are for stations")
+    budget = Budget.seconds(request.deadline)
     try:
-        answer = plan_transitions(automaton, supervisor, goal, before.state, deadline=deadline)
+        answer = plan_transitions(automaton, supervisor, request.goals, request.state, request.contract, budget=budget)
     except ValueError as error:
         refuse(str(error))
     if json:
-        document = {"verdict": answer.verdict.value, "goal": goal, "transitions": answer.transitions}
-        print_json({**document, "seconds": answer.seconds})
+        print_json(plain_document(answer, request.goals))
     else:
         for number, name in enumerate(answer.transitions, 1):
-            typer.echo(f"{number:>3}  {name}")
-        typer.echo(_verdict(answer, goal, "transitions"))
+            typer.echo(f"{number:>4}  {name}")
+        typer.echo(said_of_plain(answer, request.goals))
     return answer.verdict is Verdict.FOUND
 
 
-def _said(answer: PlanAnswer) -> str:
-    said = _verdict(answer, ", ".join(answer.goals or answer.left_out), "ticks")
-    return f"{said}; left out: {', '.join(answer.left_out)}" if answer.goals and answer.left_out else said
+def _circumstances(automaton: Automaton, offline: Sequence[str], restart: bool, avoid: Sequence[str]) -> Circumstances:
+    for name in offline:
+        named(automaton.resources, name, "resource")
+    conditions = tuple(_predicate(automaton, text, "--avoid") for text in avoid)
+    return Circumstances(frozenset(offline), restart, conditions)
 
 
-def _verdict(answer: PlanAnswer | PlainAnswer, goals: str, unit: str) -> str:
-    match answer.verdict:
-        case Verdict.FOUND:
-            return f"planned in {answer.seconds:.2f} s: {goals}"
-        case Verdict.NONE_AT_ALL:
-            return f"no plan at all, proven: {goals}"
-        case Verdict.NONE_UP_TO:
-            return f"no plan of up to {answer.searched} {unit}: {goals}"
+def _asked(
+    automaton: Automaton, before: Moment, operations: Sequence[str], texts: Sequence[str]
+) -> tuple[State, tuple[Goal, ...]]:
+    """The state to plan from, and the goals. What is planned for has just become active, as in step 4 of a tick."""
+    chosen = frozenset(named(automaton.operations, name, "operation").name for name in operations)
+    if not chosen and not texts:
+        chosen = _active(automaton, before)
+    state = record_activity(automaton, before.state, before.active | chosen)
+    goals: list[Goal] = []
+    for name in sorted(chosen):
+        goal = goal_of(automaton.operations[name])
+        # The state at its activation is the first position of its formula.
+        begun = moved((goal,), state)
+        if begun is None:
+            refuse(f"the local formula of `{name}` is violated in this state already")
+        goals += begun
+    goals += (Goal(text, _predicate(automaton, text, "--goal")) for text in texts)
+    return state, tuple(goals)
+
+
+def _active(automaton: Automaton, before: Moment) -> frozenset[str]:
+    if automaton.one_at_a_time:
+        if not automaton.operations:
+            refuse("no goal of it has the form `F p`: give a --goal")
+        return frozenset(automaton.operations)
+    wanted = update_operations(automaton, before.state, before.active)
+    if not wanted:
+        refuse("no operation is active in this state: name one whose goal to plan, or give a --goal")
+    return wanted
+
+
+def _predicate(automaton: Automaton, text: str, option: str) -> Expression:
+    try:
+        return resolve_predicate(parse(text), Scope(automaton.types))
+    except ExpressionError as error:
+        refuse(f"{option} {text!r}: {error.message}")

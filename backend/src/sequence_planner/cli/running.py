@@ -26,7 +26,7 @@ from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.exclusivity import DISCOVERY
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import QualityOfService, Transport, TransportError
-from sequence_planner.station import ReadyStation, prepare_station, require_runnable
+from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.web.settings import Settings, SettingsError
 
 TransportOption = Annotated[
@@ -50,7 +50,7 @@ def run(
     """Run a station: controller, server and page."""
     if start and not emulator:
         refuse("--start is for emulated devices: with real ones a person starts production on the page")
-    _runnable(model)
+    _prepare(model)
     try:
         raise typer.Exit(launch(Launch(model, host, port, transport, emulator, start, emulator_speed)))
     except SettingsError as error:
@@ -107,7 +107,7 @@ def controller(
     from sequence_planner.control.process import Running, control  # noqa: PLC0415
 
     _begin(launched, socket.parent)
-    station = _runnable(model)
+    station = _prepare(model)
     _until_interrupted(
         lambda connect: control(Running(station, socket, connect, emulated, start)), station.registry, transport
     )
@@ -139,15 +139,6 @@ def _prepare(folder: Path) -> ReadyStation:
         return prepare_station(folder)
     except ModelError as error:
         refuse(str(error))
-
-
-def _runnable(folder: Path) -> ReadyStation:
-    station = _prepare(folder)
-    try:
-        require_runnable(station)
-    except ModelError as error:
-        refuse(str(error))
-    return station
 
 
 def _until_interrupted(

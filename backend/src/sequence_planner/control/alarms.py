@@ -11,6 +11,7 @@ from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
+from sequence_planner.control.plan_reasons import violation
 from sequence_planner.control.view import AlarmView, PlanStatus, Priority, Production
 
 
@@ -47,7 +48,7 @@ class Alarms:
         self._conflicts = {c for c in self._conflicts if gone_on.isdisjoint(c[:2])} | set(outcome.conflicts)
         self._reacted = {
             step.number
-            for step in self._execution.order.running
+            for step in self._execution.plan.order.running
             if step.number in self._reacted or self._executes(step.ability)
         }
 
@@ -149,16 +150,28 @@ def _plan(execution: Execution, planner_trouble: str | None) -> Iterator[Cause]:
         return  # that there is no plan has this cause
     if execution.production is not Production.STARTED:
         return
-    if execution.plan_status is PlanStatus.NONE and not execution.blind:  # a silent topic has an alarm of its own
-        yield Cause("no-plan", Priority.MEDIUM, execution.plan_reason, "See what the active operations need.")
-    elif execution.answer is not None and execution.active & set(execution.answer.left_out):
-        titles = [execution.automaton.operations[n].title for n in execution.answer.left_out if n in execution.active]
+    for name, since in execution.pursued.violated.items():
+        active = name in execution.active
+        yield Cause(
+            f"local:{name}:{since.epoch}",
+            Priority.MEDIUM,
+            f"The local specification {violation(execution.automaton, name)}",
+            "It is not planned for any more: bring its goal about by hand."
+            if active
+            else "Its goal was reached all the same: check what was made meanwhile.",
+        )
+    if execution.plan.status is PlanStatus.NONE and not execution.blind:  # a silent topic has an alarm of its own
+        yield Cause("no-plan", Priority.MEDIUM, execution.plan.reason, "See what the active operations need.")
+    elif execution.plan.answer is not None and execution.active & set(execution.plan.answer.left_out):
+        titles = [
+            execution.automaton.operations[n].title for n in execution.plan.answer.left_out if n in execution.active
+        ]
         text = f"Left out of the plan: {', '.join(titles)}"
         yield Cause("left-out", Priority.LOW, text, "These goals cannot be reached together with the others for now.")
 
 
 def _overdue(execution: Execution, reacted: set[int], monotonic: float) -> Iterator[Cause]:
-    for step in execution.order.running:
+    for step in execution.plan.order.running:
         ability = execution.automaton.abilities[step.ability]
         if step.started is None:
             continue

@@ -26,12 +26,12 @@ from sequence_planner.control.feeds import Feeds, one_per_topic
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
-from sequence_planner.control.planner_process import Listener, PlannerProcess
+from sequence_planner.control.questions import Questions
 from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.view import Production, StationIdentity, StationView
 from sequence_planner.control.viewing import Viewing
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.plan import Answer, PlanAnswer, PlanRequest, Request, WayBackAnswer, WayBackRequest
+from sequence_planner.planning.plan import Circumstances
 from sequence_planner.ros.transport import Sample, Transport
 from sequence_planner.station import ReadyStation
 from sequence_planner.synthesis.guards import Guard
@@ -40,8 +40,6 @@ LOG = structlog.get_logger(__name__)
 
 LOOK_EVERY = 0.05  # seconds between two looks at the clock
 GRAPH_EVERY = 1.0  # seconds between two looks at the ROS graph
-PLAN_DEADLINE = 5.0  # seconds a plan may take
-WAY_BACK_DEADLINE = 2.0  # seconds a way back into the safe states may take
 MOST_TICKS = 100  # in a row without anything new; then the station is taken to be restless
 
 
@@ -66,11 +64,7 @@ class Controller:
         self._outside = Outside(self.execution)
         self._alarms = Alarms(self.execution, self._outside, self.feeds, self.network, self._commander)
         self._viewing = Viewing(identity, self.execution, self._outside, self.feeds, self.network)
-        self._questions: deque[Callable[[], Request | None]] = deque(
-            (lambda: self.execution.request(PLAN_DEADLINE), lambda: self._outside.request(WAY_BACK_DEADLINE))
-        )
-        listener = Listener(self._take_answer, self._miss_answer)
-        self._planner = PlannerProcess(automaton, supervisor, asyncio.get_running_loop(), listener)
+        self._questions = Questions(self.execution, self._outside, self._take)
         self._samples: deque[Sample] = deque()
         self._measured: dict[str, Value | None] = {}
         self._wake = asyncio.Event()
@@ -93,7 +87,7 @@ class Controller:
                     self._wake.clear()
                     await _first(self._wake, LOOK_EVERY)
         finally:
-            self._planner.close()
+            self._questions.close()
 
     async def command(self, command: Command) -> None:
         """Carry out a command. Raises `CommandRefused`."""
@@ -110,7 +104,7 @@ class Controller:
     def view(self) -> StationView:
         """What there is to show now."""
         moment = Moment.now()
-        alarms = self._alarms.current(self._planner.trouble, moment)
+        alarms = self._alarms.current(self._questions.trouble, moment)
         return self._viewing.view(self.desk, self._commander, alarms, moment)
 
     def know(self, analysis: AnalysisDocument, guards: Mapping[str, Guard] | None) -> None:
@@ -161,29 +155,27 @@ class Controller:
             self._attempt("a tick", partial(self._tick, part, moment, part[-1].received))
         self._attempt("a tick", lambda: self._tick((), moment, moment.monotonic))
         self._attempt("sending commands", lambda: self._repeat(moment))
-        self._attempt("asking the planner", self._ask)
+        self._attempt("asking the planner", lambda: self._questions.ask(moment.monotonic))
 
     def _repeat(self, moment: Moment) -> None:
         if self.execution.production is Production.STARTED:
             self._commander.repeat(self.execution.published, moment.monotonic)
-
-    def _ask(self) -> None:
-        """Ask the planner for a plan or for a way back, in turn: neither waits for more than one of the other."""
-        for question in () if self._planner.busy else tuple(self._questions):
-            self._questions.rotate(-1)
-            if (request := question()) is not None:
-                self._planner.ask(request)
-                return
 
     def _tick(self, samples: Sequence[Sample], moment: Moment, monotonic: float) -> None:
         """Take messages of `monotonic`, of which no topic has more than one, and tick if that is something new."""
         self.feeds.take(samples)
         measured = self.feeds.measured(monotonic) | self.desk.measured()
         obstacles = self._obstacles()
-        news = measured != self._measured or obstacles != self.execution.obstacles
+        circumstances = Circumstances(self.feeds.offline(monotonic))
+        news = (measured, obstacles, circumstances) != (
+            self._measured,
+            self.execution.obstacles,
+            self.execution.circumstances,
+        )
         if not news and not self._due:
             return
         self._measured, self.execution.obstacles = measured, obstacles
+        self.execution.face(circumstances)
         self._due = True  # until it is done
         outcome = self.execution.tick(measured, moment)
         self._due = outcome.changed  # what a tick changed can make another possible at once
@@ -214,28 +206,10 @@ class Controller:
         else:
             self._alarms.failures.pop(what, None)
 
-    def _take_answer(self, request: Request, answer: Answer) -> None:
-        match request, answer:
-            case PlanRequest(), PlanAnswer():
-                self._attempt("adopting a plan", lambda: self._adopt(request, answer))
-                self._tick_again()
-            case WayBackRequest(), WayBackAnswer():
-                self._outside.take(request, answer)
-                self._wake.set()
-                LOG.info("way back", found=answer.way is not None, searched=answer.searched)
-
-    def _adopt(self, request: PlanRequest, answer: PlanAnswer) -> None:
-        if self.execution.adopt(request, answer):
-            starts = [name for _, name in answer.plan.starts] if answer.plan else []
-            LOG.info("plan", verdict=str(answer.verdict), starts=starts)
-
-    def _miss_answer(self, request: Request, why: str, again: bool) -> None:
-        match request:
-            case PlanRequest():
-                self.execution.unanswered(why, again)
-            case WayBackRequest():
-                self._outside.unanswered(request, why, again)
-        self._wake.set()
+    def _take(self, news: Callable[[], None]) -> None:
+        """Take note of what the planner says."""
+        self._attempt("hearing the planner", news)
+        self._tick_again()
 
 
 def _log(outcome: TickOutcome) -> None:

@@ -84,6 +84,10 @@ class Feeds:
         """The topics that are not fresh."""
         return [name for name, feed in self.topics.items() if not feed.fresh(now)]
 
+    def offline(self, now: float) -> frozenset[str]:
+        """The resources of which a topic is not fresh."""
+        return frozenset(self.topics[name].pipeline.topic.resource for name in self.awaited(now))
+
 
 def one_per_topic(samples: Iterable[Sample]) -> Iterator[list[Sample]]:
     """Cut a batch so that in each part every topic speaks at most once: one part is one tick.

@@ -91,6 +91,8 @@ def preparing_view(
         minimal_ticks=False,
         minimal_starts=False,
         replanned=0,
+        contract=None,
+        engine="",
         milliseconds=None,
     )
     return StationView(

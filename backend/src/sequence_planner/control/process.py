@@ -12,6 +12,7 @@ from pathlib import Path
 import structlog
 
 from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.collection import keep_everything
 from sequence_planner.control.commands import Command, CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.link import ControllerLink
@@ -69,6 +70,7 @@ async def control(running: Running) -> None:
         transport = running.connect(NODE)
         try:
             controller = Controller(_identity(running, transport.name), running.station, supervisor, transport)
+            keep_everything()  # a running station must not be held up
             preparation.give(controller)
             async with contextlib.AsyncExitStack() as stack:
                 await stack.enter_async_context(_beside(_show(controller, link)))

@@ -12,6 +12,7 @@ from enum import StrEnum
 from pydantic import BaseModel, ConfigDict
 
 from sequence_planner.analysis.document import AnalysisDocument
+from sequence_planner.planning.plan import Contract
 
 Value = bool | int | str
 
@@ -150,6 +151,8 @@ class PlanView(View):
     minimal_ticks: bool
     minimal_starts: bool
     replanned: int
+    contract: Contract | None  # what it is: the shortest, proven, or one found soon
+    engine: str  # of the planner, which gave the answer
     milliseconds: float | None  # how long the planner took
 
 

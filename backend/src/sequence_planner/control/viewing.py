@@ -33,6 +33,7 @@ from sequence_planner.control.viewing_outside import way_back
 from sequence_planner.control.waiting import waits_for
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.types import Value
+from sequence_planner.planning.plan import Contract, Plan
 from sequence_planner.synthesis.guards import Guard
 
 # How many coming steps a task names as what moves next.
@@ -115,7 +116,7 @@ class Viewing:
         return views
 
     def _abilities(self) -> dict[str, AbilityView]:
-        running = {step.ability: _epoch(step.started) for step in self._execution.order.running}
+        running = {step.ability: _epoch(step.started) for step in self._execution.plan.order.running}
         state = self._execution.state
         return {
             ability.name: AbilityView(
@@ -133,7 +134,7 @@ class Viewing:
 
     def _operations(self) -> dict[str, OperationView]:
         execution = self._execution
-        left_out = set(execution.answer.left_out) if execution.answer else set()
+        left_out = set(execution.plan.answer.left_out) if execution.plan.answer else set()
         return {
             operation.name: OperationView(
                 title=operation.title,
@@ -149,18 +150,20 @@ class Viewing:
 
     def _plan(self) -> PlanView:
         execution = self._execution
-        order, plan, answer = execution.order, execution.order.plan, execution.answer
+        order, plan, answer = execution.plan.order, execution.plan.order.plan, execution.plan.answer
         steps = [self._step(step, StepStatus.DONE if step.ended else StepStatus.RUNNING) for step in order.past]
         for index, step in enumerate(order.ahead):
             steps.append(self._step(step, StepStatus.PLANNED if index else StepStatus.NEXT))
         return PlanView(
-            status=execution.plan_status,
-            reason=execution.plan_reason,
+            status=execution.plan.status,
+            reason=execution.plan.reason,
             steps=steps,
             ticks=len(plan.ticks) if plan else 0,
             minimal_ticks=plan is not None and plan.minimal_ticks,
             minimal_starts=plan is not None and plan.minimal_starts,
-            replanned=execution.replanned,
+            replanned=execution.plan.replanned,
+            contract=_contract(plan),
+            engine=answer.engine if answer else "",
             milliseconds=answer.seconds * 1000 if answer else None,
         )
 
@@ -185,7 +188,7 @@ class Viewing:
 
     def _tasks(self, desk: TaskDesk) -> dict[str, TaskView]:
         abilities = self._execution.automaton.abilities
-        moves = [abilities[name].title for name in self._execution.order.names if abilities[name].human is None]
+        moves = [abilities[name].title for name in self._execution.plan.order.names if abilities[name].human is None]
         return {
             id_: TaskView(
                 revision=task.revision,
@@ -223,6 +226,13 @@ class Viewing:
                 trouble=self._network.rivals.get(name) or self._network.troubles.get(name) or command.owed,
             )
         return views
+
+
+def _contract(plan: Plan | None) -> Contract | None:
+    """What the plan is: one that is proven to be the shortest, or one that was found soon."""
+    if plan is None:
+        return None
+    return Contract.MINIMAL if plan.minimal_ticks and plan.minimal_starts else Contract.FAST
 
 
 def _epoch(moment: Moment | None) -> float | None:

@@ -50,7 +50,7 @@ def _reasons(execution: Execution, ability: Ability, feeds: Mapping[str, str], g
         yield "the station to be back in a safe state"
     elif not execution.supervisor.safe.includes(after):
         yield _unsafe(execution, after, guard)
-    elif not execution.may_go_on(after):
+    elif not execution.may_go_on(ability.name):
         yield "the right moment: started now, the rest of the plan would not reach its goals"
 
 

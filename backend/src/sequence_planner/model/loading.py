@@ -11,6 +11,7 @@ from typing import TypeVar
 
 from pydantic import BaseModel, ValidationError
 
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.model.documents import (
     OperationDocument,
@@ -20,7 +21,7 @@ from sequence_planner.model.documents import (
     WorkMasterDocument,
 )
 from sequence_planner.model.reading import Document, EntryPath, read_yaml
-from sequence_planner.model.source import Finding, ModelError, Place, SourceText
+from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.validation import findings_of, shown
 
 D = TypeVar("D", bound=BaseModel)

@@ -9,8 +9,9 @@ from pathlib import Path
 from ruamel.yaml.error import MarkedYAMLError
 from ruamel.yaml.reader import ReaderError
 
+from sequence_planner.expressions.place import Place
 from sequence_planner.model.composing import Node, compose
-from sequence_planner.model.source import Finding, ModelError, Place, SourceText
+from sequence_planner.model.source import Finding, ModelError, SourceText
 
 EntryPath = tuple[str | int, ...]
 

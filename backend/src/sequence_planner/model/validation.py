@@ -11,9 +11,10 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.model.reading import Document, EntryPath
-from sequence_planner.model.source import Finding, Place
+from sequence_planner.model.source import Finding
 
 # What was expected, by the first word of pydantic's name for the error.
 _EXPECTED = {

@@ -6,12 +6,13 @@ import re
 from collections.abc import Iterable
 
 from sequence_planner.automaton.structure import Automaton, Kind, VariableDeclaration
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.types import BooleanType, EnumerationType, IntegerRange, Type
 from sequence_planner.model.documents import Coordinates as CoordinatesDocument
 from sequence_planner.model.documents import StageDocument, TopicDocument
 from sequence_planner.model.loading import Station
-from sequence_planner.model.source import Finding, ModelError, Place, SourceText
+from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.pipelines.pipeline import IncomingPipeline, OutgoingPipeline, StationPipelines, Topic
 from sequence_planner.pipelines.stages import (
     ConstantStage,

@@ -13,7 +13,7 @@ from typing import Protocol
 class ClauseSink(Protocol):
     """Where clauses go."""
 
-    def add_clause(self, clause: Sequence[int]) -> object:
+    def add_clause(self, clause: list[int], /) -> object:
         """Add one clause."""
 
 
@@ -24,10 +24,10 @@ class Circuit:
     FALSE = -1
 
     def __init__(self, sink: ClauseSink) -> None:
-        self._sink = sink
+        self._add = sink.add_clause
         self._top = 1
         self._gates: dict[tuple[int, ...], int] = {}
-        sink.add_clause([self.TRUE])
+        self._add([self.TRUE])
 
     @property
     def top(self) -> int:
@@ -45,32 +45,61 @@ class Circuit:
 
     def require(self, *literals: int) -> None:
         """Demand that at least one of `literals` is true."""
-        if self.TRUE not in literals:
-            self._sink.add_clause([literal for literal in literals if literal != self.FALSE])
+        if 1 not in literals:
+            self._add([literal for literal in literals if literal != -1])
 
     def conjunction(self, literals: Iterable[int]) -> int:
         """The literal that is true exactly when all of `literals` are."""
-        parts = sorted(set(literals) - {self.TRUE})
-        if self.FALSE in parts or any(-part in parts for part in parts if part > 0):
-            return self.FALSE
+        parts = set(literals)
+        parts.discard(1)
+        if -1 in parts:
+            return -1
         if len(parts) < 2:
-            return parts[0] if parts else self.TRUE
-        key = tuple(parts)
-        if key not in self._gates:
-            gate = self._gates[key] = self.fresh()
-            for part in parts:
-                self._sink.add_clause([-gate, part])
-            self._sink.add_clause([gate, *(-part for part in parts)])
-        return self._gates[key]
+            return parts.pop() if parts else 1
+        if not parts.isdisjoint([-part for part in parts]):
+            return -1
+        key = tuple(sorted(parts))
+        gate = self._gates.get(key)
+        if gate is None:
+            self._top = gate = self._top + 1
+            self._gates[key] = gate
+            for part in key:
+                self._add([-gate, part])
+            self._add([gate, *[-part for part in key]])
+        return gate
 
     def disjunction(self, literals: Iterable[int]) -> int:
         """The literal that is true exactly when one of `literals` is."""
-        return -self.conjunction(-literal for literal in literals)
+        return -self.conjunction([-literal for literal in literals])
 
     def choice(self, condition: int, then: int, otherwise: int) -> int:
         """`then` where `condition` is true, else `otherwise`."""
-        if then == otherwise or condition == self.TRUE:
+        if then == otherwise or condition == 1:
             return then
-        if condition == self.FALSE:
+        if condition == -1:
             return otherwise
         return self.disjunction((self.conjunction((condition, then)), self.conjunction((-condition, otherwise))))
+
+    def at_most_one(self, literals: Sequence[int]) -> None:
+        """Demand that no two of `literals` are true: each tells the next that one was (Sinz 2005)."""
+        before = self.FALSE
+        for literal in literals:
+            self.require(-before, -literal)
+            before = self.disjunction((before, literal))
+
+    def counted(self, literals: Sequence[int], most: int) -> list[int]:
+        """For each number from 1 to `most`, the literal that says that at least so many of `literals` are true.
+
+        A tree of sums (Bailleux and Boufkhad 2003).
+        """
+        if len(literals) <= 1:
+            return list(literals[:most])
+        middle = len(literals) // 2
+        one, other = self.counted(literals[:middle], most), self.counted(literals[middle:], most)
+        return [
+            self.disjunction(
+                self.conjunction(((one[i - 1] if i else self.TRUE), (other[total - i - 1] if total > i else self.TRUE)))
+                for i in range(max(total - len(other), 0), min(total, len(one)) + 1)
+            )
+            for total in range(1, min(len(one) + len(other), most) + 1)
+        ]

@@ -93,7 +93,7 @@ class Monitor:
 def monitor_of(formula: Expression) -> Monitor:
     """The automaton of a resolved `formula`, the same in every process. Raises `TooManyStatesError`."""
     parts = _Parts()
-    first = _reduced([frozenset({parts.number(_negation_normal(formula, negated=False))})])
+    first = _reduced(parts.alternatives(_negation_normal(formula, negated=False)))
     numbers = {first: 0}
     steps: list[Decision] = []
     ends: list[Decision] = []
@@ -138,11 +138,20 @@ class _Parts:
         self._numbers: dict[Expression, int] = {}
         self._formulas: list[Expression] = []
 
-    def number(self, formula: Expression) -> int:
-        if formula not in self._numbers:
-            self._numbers[formula] = len(self._formulas)
+    def alternatives(self, formula: Expression) -> list[frozenset[int]]:
+        """The sets of formulas of which one must be satisfied, all together."""
+        match formula:
+            case Constant(value):
+                return [frozenset()] if value else []
+            case Or(operands) if first_temporal(formula):
+                return [each for operand in operands for each in self.alternatives(operand)]
+            case And(operands) if first_temporal(formula):
+                ways = product(*map(self.alternatives, operands))
+                return [frozenset[int]().union(*each) for each in ways]
+        number = self._numbers.setdefault(formula, len(self._formulas))
+        if number == len(self._formulas):
             self._formulas.append(formula)
-        return self._numbers[formula]
+        return [frozenset({number})]
 
     def after(self, remains: _Remains, last: bool) -> list[_Term]:
         """The ways in which a position, and the run behind it, satisfy what remains."""
@@ -161,7 +170,7 @@ class _Parts:
             """By a run that goes on and satisfies `rest`, or, with `without`, by one that does not go on."""
             if last:
                 return [_Term((), frozenset())] if without else []
-            return [_Term((), frozenset({self.number(rest)}))]
+            return [_Term((), each) for each in self.alternatives(rest)]
 
         match formula:
             case And(operands) if first_temporal(formula):

@@ -1,8 +1,8 @@
 """Plans for plain automata: sequences of transitions, in which the environment helps.
 
-The planner unrolls ticks. Seen as abilities that are done at their start, the transitions of one tick happen one after
-another, so that any sequence of transitions is a run of ticks, and the other way round. The fewest ticks are not the
-fewest transitions: several fit into one tick if they come in the order of declaration.
+Seen as abilities that are done at their start, the transitions of one tick happen one after another, so that any
+sequence of transitions is a run of ticks, and the other way round. Heuristic search finds some plan; A*, and where
+there are too many states the unrolled run, find the fewest transitions or prove that there are no fewer.
 """
 
 from __future__ import annotations
@@ -16,25 +16,39 @@ from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, Flag, State
 from sequence_planner.automaton.tick import synchronise
-from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import FALSE, TRUE
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plan import Circumstances, Verdict, goals_of
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.heuristic.best_first import HeuristicSearch
+from sequence_planner.planning.heuristic.fewest import FewestStarts
+from sequence_planner.planning.one_at_a_time import OneAtATime
+from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.plan import Circumstances, Contract, Goal, Proof, Verdict, starts_of
 from sequence_planner.planning.planner import PlannerError
-from sequence_planner.planning.relaxation import unreachable_goals
-from sequence_planner.planning.search import Search, SearchTimeoutError
+from sequence_planner.planning.pursuit import Goals
+from sequence_planner.planning.relaxation import reachable, unreached
+from sequence_planner.planning.replay import missing
+
+_LONGEST = 1000  # transitions, unless it is said otherwise
+_SECONDS = 5.0
 
 
 @dataclass(frozen=True)
 class PlainAnswer:
-    """Whether there is a plan, and its transitions by name; `searched` is the number of transitions up to which the
-    search is complete.
+    """Whether there is a plan, and its transitions by name; `minimal` says that it is proven that none has fewer.
+
+    No plan has up to `searched` transitions, or, when there is a plan, none has fewer than `searched`. `engine` gave
+    the answer. That there is none at all is proven by `proof`, or, without one, by having looked at all that can be
+    reached.
     """
 
     verdict: Verdict
     transitions: tuple[str, ...]
+    minimal: bool
     searched: int
     seconds: float
+    engine: str = ""
+    proof: Proof | None = None
 
     @property
     def events(self) -> tuple[str, ...]:
@@ -58,53 +72,126 @@ def for_planning(automaton: Automaton) -> Automaton:
 def plan_transitions(
     automaton: Automaton,
     supervisor: Supervisor,
-    goal: str,
+    goals: Sequence[Goal],
     state: State | None = None,
-    longest: int = 60,
-    deadline: float = 5.0,
+    contract: Contract = Contract.MINIMAL,
+    longest: int = _LONGEST,
+    budget: Budget | None = None,
 ) -> PlainAnswer:
-    """A way of the plain `automaton` from `state`, or else from its declared initial state, to the operation `goal`.
+    """A way of the plain `automaton` from `state`, or else from its declared initial state, on which each of `goals`
+    holds in some state.
 
-    Searches up to `longest` transitions, for at most `deadline` seconds. Raises ValueError when `state` is not safe,
-    and `PlannerError` when a plan is none by the steps of the automaton.
+    A minimal plan has the fewest transitions, at most `longest`. Without a budget there are five seconds. Raises
+    ValueError when `state` is not safe and for goals with a local formula, and `PlannerError` when a plan is none by
+    the steps of the automaton.
     """
     began = time.monotonic()
     start = automaton.initial_valuation if state is None else state
     if not supervisor.safe.includes(start):
         raise ValueError(f"no plan begins outside the safe set: {dict(start)}")
-    derived = for_planning(automaton)
-    begin = synchronise(derived, {**dict.fromkeys(derived.types), **start})
-    goals = goals_of(automaton, (goal,))
-    transitions: tuple[str, ...] | None = None
-    verdict, searched = Verdict.NONE_UP_TO, longest
-    if holds(automaton.operations[goal].goal, start):
-        transitions = ()
-    elif unreachable_goals(derived, begin, goals, Circumstances()):
-        verdict = Verdict.NONE_AT_ALL
+    if local := [goal.name for goal in goals if goal.local != TRUE]:
+        raise ValueError(f"transitions cannot be planned within local formulas: those of {', '.join(local)}")
+    left = missing(goals, start)
+    if left:
+        question = _Question(for_planning(automaton), supervisor, start, left, contract, longest)
+        found = question.answer(budget or Budget.seconds(_SECONDS))
     else:
-        # The goal is seen at the beginning of a tick: one more than there are transitions.
-        search = Search(derived, supervisor, tuple(derived.abilities.values()), frozenset())
-        try:
-            plan = search.plan(begin, goals, Circumstances(), longest + 1, Budget(began + deadline))
-            transitions = None if plan is None else tuple(name for _, name in plan.starts)
-        except SearchTimeoutError as late:
-            searched = max(late.searched - 1, 0)
-        finally:
-            search.close()
-    if transitions is None:
-        return PlainAnswer(verdict, (), searched, time.monotonic() - began)
-    _verify(automaton, supervisor, goal, start, transitions)
-    return PlainAnswer(Verdict.FOUND, transitions, searched, time.monotonic() - began)
+        found = _Found((), least=0)
+    _verify(automaton, supervisor, goals, start, found.order or ())
+    seconds = time.monotonic() - began
+    if found.order is not None:
+        length = len(found.order)
+        searched = min(found.least, length)
+        return PlainAnswer(Verdict.FOUND, found.order, searched == length, searched, seconds, found.engine)
+    verdict = Verdict.NONE_UP_TO if found.least > longest else Verdict.LATE
+    if found.none_at_all:
+        verdict = Verdict.NONE_AT_ALL
+    return PlainAnswer(verdict, (), False, max(found.least - 1, 0), seconds, found.engine, found.proof)
 
 
-def _verify(automaton: Automaton, supervisor: Supervisor, goal: str, start: State, plan: Sequence[str]) -> None:
+@dataclass(frozen=True)
+class _Found:
+    """What is known: some order, that none has fewer than `least` transitions, or that there is none at all."""
+
+    order: tuple[str, ...] | None = None
+    least: int = 1
+    engine: str = ""
+    none_at_all: bool = False
+    proof: Proof | None = None
+
+
+@dataclass(frozen=True)
+class _Question:
+    """Goals that do not hold in `start`, asked of all engines one after the other."""
+
+    derived: Automaton
+    supervisor: Supervisor
+    start: State
+    goals: Goals
+    contract: Contract
+    longest: int
+
+    def answer(self, budget: Budget) -> _Found:
+        """The best answer that there is time for."""
+        begin = synchronise(self.derived, {**dict.fromkeys(self.derived.types), **self.start})
+        relaxed = reachable(self.derived, begin, Circumstances())
+        if not all(relaxed.may(goal.predicate) for goal in self.goals):
+            proof = unreached(self.derived, relaxed)
+            return _Found(engine="relaxation", none_at_all=True, proof=proof)
+        # The flags of abilities that are done at their start say nothing, and cost time.
+        bare = replace(self.derived, flags=())
+        task = Task({name: begin[name] for name in bare.variables}, self.goals, contract=self.contract)
+        found = self._some(bare, task, budget.part(0.3))
+        if found.order is not None and (self.contract is Contract.FAST or budget.spent):
+            return found
+        found = self._fewest(bare, task, found, budget.part(0.3))
+        if found.order is None:
+            found = self._proven(replace(task, state=begin), found, budget.part(0.5))
+        if found.none_at_all or (found.order is not None and found.least >= len(found.order)):
+            return found
+        return self._bounded(bare, found, budget)
+
+    def _some(self, bare: Automaton, task: Task, budget: Budget) -> _Found:
+        ticks = HeuristicSearch(bare, self.supervisor).solve(replace(task, longest=self.longest + 1), budget).plan
+        order = None if ticks is None else tuple(name for _, name in starts_of(ticks.ticks))
+        return _Found(order if order is not None and len(order) <= self.longest else None, engine=HeuristicSearch.name)
+
+    def _fewest(self, bare: Automaton, task: Task, found: _Found, budget: Budget) -> _Found:
+        most = self.longest if found.order is None else len(found.order) - 1
+        fewest = FewestStarts(bare, self.supervisor).find(task, most, budget)
+        if fewest.order is not None:
+            return _Found(fewest.order, fewest.least, FewestStarts.name)
+        if fewest.exhausted and found.order is None:
+            return _Found(engine=FewestStarts.name, none_at_all=True)
+        return replace(found, least=max(fewest.least, found.least))
+
+    def _proven(self, task: Task, found: _Found, budget: Budget) -> _Found:
+        """With a proof that there is no plan at all, if that can be found."""
+        # Any order of the abilities will do: each transition could be a tick of its own.
+        pdr = Reachability(self.derived, self.supervisor, tuple(self.derived.abilities.values()))
+        proof = pdr.solve(replace(task, contract=Contract.MINIMAL), budget).proof
+        return found if proof is None else replace(found, engine=pdr.name, none_at_all=True, proof=proof)
+
+    def _bounded(self, bare: Automaton, found: _Found, budget: Budget) -> _Found:
+        most = self.longest if found.order is None else len(found.order) - 1
+        unrolled = OneAtATime(bare, self.supervisor, self.start, self.goals)
+        order, least = unrolled.fewest(found.least, most, budget)
+        if order is not None:
+            return _Found(order, least, "bmc")
+        return replace(found, least=least)
+
+
+def _verify(
+    automaton: Automaton, supervisor: Supervisor, goals: Sequence[Goal], start: State, plan: Sequence[str]
+) -> None:
     """Take the steps one by one."""
     transitions = plain_transitions(automaton)
-    current = start
+    current, left = start, missing(goals, start)
     for name in plan:
         after = step(current, transitions[name])
         if after is None or (transitions[name].controllable and not supervisor.allows(current, after)):
-            raise PlannerError(f"the plan {' '.join(plan)} for {goal} fails at {name}, from {dict(current)}")
-        current = after
-    if not holds(automaton.operations[goal].goal, current):
-        raise PlannerError(f"the plan {' '.join(plan)} ends in {dict(current)}, where {goal} is not reached")
+            raise PlannerError(f"the plan {' '.join(plan)} fails at {name}, from {dict(current)}")
+        current, left = after, missing(left, after)
+    if plan and left:
+        unreached_goals = ", ".join(goal.name for goal in left)
+        raise PlannerError(f"the plan {' '.join(plan)} ends in {dict(current)}, and has not reached {unreached_goals}")

@@ -93,7 +93,7 @@ class Verdict(StrEnum):
 
 @dataclass(frozen=True)
 class Literal:
-    """A variable or flag has the value, or with `equal` false any other; unknown variables satisfy neither."""
+    """A variable or flag has the value, or with `equal` false it has not: it has another one, or none."""
 
     name: str
     value: Value
@@ -108,7 +108,9 @@ class Proof:
     """Why there is no plan at all: an inductive invariant of the state to plan from, in which no goal is reached.
 
     Every tick leads from states that satisfy all `invariant` clauses into such states, and the goals that are reached
-    on the way never are all of them. `by` is the method that found it; each was checked by a solver of its own.
+    on the way never are all of them. Of several goals clauses also say whether one has been reached,
+    `goal.<name>.reached`, and of formulas in which state their automata are, `goal.<name>.at`. `by` is the method that
+    found it; each was checked by a solver of its own.
     """
 
     by: str

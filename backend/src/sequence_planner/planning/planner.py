@@ -3,68 +3,176 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import TYPE_CHECKING, Protocol
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.planning.acceptance import Acceptance
+from sequence_planner.planning.attempt import Attempt
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plan import Plan, PlanAnswer, PlanRequest, Verdict
-from sequence_planner.planning.relaxation import unreachable_goals
-from sequence_planner.planning.replay import Replay, missing
-from sequence_planner.planning.search import Searches, SearchTimeoutError
-from sequence_planner.planning.sweep import sweep_order
+from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.planning.engines import ALONE, Engines, Report
+from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, Proof, Verdict
+from sequence_planner.planning.pursuit import Goals
+from sequence_planner.planning.relaxation import reachable, unreached
+from sequence_planner.planning.replay import missing
+
+if TYPE_CHECKING:
+    from sequence_planner.planning.tightening import Tightening
+
+_NOTHING_TO_DO = Finding(Plan((), minimal_ticks=True, minimal_starts=True))
 
 
 class PlannerError(Exception):
-    """A plan did not replay on the reference tick: the planner and the tick disagree, and nothing may be started."""
+    """No engine could answer: each has failed, or its plan did not replay on the reference tick."""
+
+
+class Solvers(Protocol):
+    """Engines that work on one task together."""
+
+    def solve(self, attempt: Attempt, budget: Budget) -> None:
+        """Have them report to `attempt` until that answers, or is not worth waiting for, or the budget is spent."""
+
+
+class InTurn:
+    """Engines that take turns in this thread, where starting processes would cost more than it brings."""
+
+    def __init__(self, engines: Engines) -> None:
+        self._engines = engines
+
+    def solve(self, attempt: Attempt, budget: Budget) -> None:
+        """As `Solvers.solve`; an attempt has no more time than its share of `budget`."""
+        del budget
+        for report in self._engines.work(attempt.task, attempt.share, lambda: attempt.patience):
+            attempt.take(report)
+            if attempt.answered or not attempt.patience:
+                return
+
+
+@dataclass(frozen=True)
+class _Outcome:
+    """The last `attempt`, the goals still to be planned, and of these and those left out the `possible` ones.
+
+    `proof` says why a goal that is not among them is none of them.
+    """
+
+    possible: Goals
+    goals: Goals
+    attempt: Attempt
+    proof: Proof | None = None
+
+    @property
+    def plan(self) -> Plan | None:
+        return self.attempt.plan
+
+    @property
+    def verdict(self) -> Verdict:
+        if self.plan is not None:
+            return Verdict.FOUND
+        if not self.possible:
+            return Verdict.NONE_AT_ALL
+        complete = not self.goals and self.attempt.searched >= self.attempt.task.longest
+        return Verdict.NONE_UP_TO if complete else Verdict.LATE
+
+    def fewer(self) -> _Outcome:
+        """The goals to be tried next: without the lowest priority, or without the one that is proven impossible."""
+        if len(self.goals) > 1 or self.attempt.proof is None:
+            return replace(self, goals=self.goals[:-1])
+        rest = tuple(goal for goal in self.possible if goal not in self.goals)
+        return replace(self, possible=rest, goals=rest, proof=self.attempt.proof)
 
 
 class Planner:
     """Plans for one automaton under one supervisor, warm from question to question."""
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+    def __init__(self, automaton: Automaton, supervisor: Supervisor, solvers: Solvers | None = None) -> None:
         self._automaton = automaton
-        self._replay = Replay(automaton, supervisor)
-        self._searches = Searches(automaton, supervisor, sweep_order(automaton, supervisor))
+        self._supervisor = supervisor
+        self._acceptance = Acceptance(automaton, supervisor)
+        self._solvers = solvers or InTurn(Engines(automaton, supervisor, ALONE))
 
-    def answer(self, request: PlanRequest) -> PlanAnswer:
+    def answer(self, request: PlanRequest, budget: Budget | None = None) -> PlanAnswer:
         """The plan for as many of the goals as can be planned together, the lowest priority given up first.
 
-        Raises `PlannerError` when a plan does not replay.
+        Goals that are proven impossible by themselves are left out before all others. `budget` can be called off from
+        another thread; without one the deadline of the request is kept. Raises `PlannerError`.
         """
         began = time.monotonic()
-        budget = Budget(began + request.deadline)
-        impossible = unreachable_goals(self._automaton, request.state, request.goals, request.circumstances)
-        goals = sorted(
-            (goal for goal in request.goals if goal not in impossible), key=lambda goal: (-goal.priority, goal.name)
+        ordered = tuple(sorted(request.goals, key=lambda goal: (-goal.priority, goal.name)))
+        budget = budget or Budget.seconds(request.deadline)
+        outcome = self._outcome(request, ordered, budget)
+        plan, verdict = self._tightened(outcome, budget), outcome.verdict
+        planned = () if plan is None else outcome.goals
+        proof = outcome.proof if verdict is Verdict.NONE_AT_ALL else None
+        return PlanAnswer(
+            verdict,
+            plan,
+            tuple(goal.name for goal in planned),
+            tuple(goal.name for goal in reversed(ordered) if goal not in planned),
+            outcome.attempt.searched,
+            time.monotonic() - began,
+            outcome.attempt.engine if proof is None else proof.by,
+            proof,
         )
-        verdict = Verdict.NONE_AT_ALL
-        searched = 0
-        plan: Plan | None = None
-        while goals and plan is None:
-            left = missing(goals, request.state)
-            if not left:
-                plan = Plan((), minimal_ticks=True, minimal_starts=True)
+
+    def _outcome(self, request: PlanRequest, ordered: Goals, budget: Budget) -> _Outcome:
+        outcome = _Outcome(ordered, ordered, self._attempt(request, ordered, budget))
+        if outcome.plan is None and not budget.spent:
+            outcome = self._without_unreachable(request, outcome, budget)
+        while outcome.plan is None and outcome.goals:
+            outcome = outcome.fewer()
+            if budget.spent:
                 break
-            try:
-                # Each attempt gets half of what is left, so that fewer goals still have their turn.
-                plan = self._searches.search(request.state).plan(
-                    request.state, left, request.circumstances, request.longest, budget.part(0.5)
-                )
-                searched = request.longest
-            except SearchTimeoutError as late:
-                searched = late.searched
-            if plan is None:
-                verdict = Verdict.NONE_UP_TO
-                goals = [] if budget.spent else goals[:-1]
-        seconds = time.monotonic() - began
-        names = tuple(goal.name for goal in goals)
-        left_out = tuple(goal.name for goal in request.goals if goal not in goals)
-        if plan is None:
-            return PlanAnswer(verdict, None, (), left_out, searched, seconds)
-        tightened = self._replay.tightened(request.state, goals, plan)
-        for each in (plan, tightened):
-            if not self._replay.exactly(request.state, request.state, goals, (), each.ticks):
-                raise PlannerError(f"the plan {each} for {goals} does not replay from {dict(request.state)}")
-        plan = tightened
-        seconds = time.monotonic() - began
-        return PlanAnswer(Verdict.FOUND, plan, names, left_out, len(plan.ticks), seconds)
+            outcome = self._attempted(request, outcome, budget)
+        return outcome
+
+    def _without_unreachable(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
+        """What the delete relaxation excludes is looked at only now: most questions have an answer without."""
+        relaxed = reachable(self._automaton, request.state, request.circumstances)
+        possible = tuple(goal for goal in outcome.goals if relaxed.may(goal.predicate))
+        if possible == outcome.goals:
+            return outcome
+        proof = unreached(self._automaton, relaxed)
+        return self._attempted(request, replace(outcome, possible=possible, goals=possible, proof=proof), budget)
+
+    def _attempted(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
+        if not outcome.goals:
+            return outcome
+        return replace(outcome, attempt=self._attempt(request, outcome.goals, budget))
+
+    def _attempt(self, request: PlanRequest, goals: Goals, budget: Budget) -> Attempt:
+        """All of `goals`, in half of the time that is left if there are several, so that fewer have their turn.
+
+        Where nothing was found fast, the same is asked as for a minimal plan: who looks for those knows how far it is.
+        """
+        left = missing(goals, request.state)
+        share = budget.part(0.5 if len(goals) > 1 else 1.0)
+        for contract in dict.fromkeys((request.contract, Contract.MINIMAL)):
+            task = Task(request.state, left, request.circumstances, contract, request.longest)
+            attempt = Attempt(task, partial(self._acceptance.accepts, task), share)
+            if left:
+                self._solvers.solve(attempt, budget)
+            else:
+                attempt.take(Report("", _NOTHING_TO_DO))
+            if attempt.plan is not None or attempt.proof is not None or share.spent:
+                break
+        if attempt.troubles and not attempt.heard and not share.spent:
+            raise PlannerError("; ".join(attempt.troubles))
+        return attempt
+
+    def _tightened(self, outcome: _Outcome, budget: Budget) -> Plan | None:
+        """The plan; a minimal one, for which somebody waits anyhow, with its starts as early as there is time for."""
+        plan, task = outcome.plan, outcome.attempt.task
+        if plan is None or not plan.starts or task.contract is Contract.FAST:
+            return plan
+        early = self._tightening.tightened(task, plan, budget.part(0.5))
+        return early if self._acceptance.accepts(task, early) else plan
+
+    @cached_property
+    def _tightening(self) -> Tightening:
+        # Not before there is a plan to be tightened: importing it takes a third of the time that importing this takes.
+        from sequence_planner.planning.tightening import Tightening  # noqa: PLC0415
+
+        return Tightening(self._automaton, self._supervisor)

@@ -28,7 +28,7 @@ from sequence_planner.expressions.syntax import (
     variables,
 )
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.plan import Circumstances, Goal
+from sequence_planner.planning.plan import Circumstances, Clause, Goal, Literal, Proof
 
 Possible = Mapping[str, set[Value | None]]
 
@@ -40,11 +40,25 @@ def unreachable_goals(
     automaton: Automaton, state: State, goals: Iterable[Goal], circumstances: Circumstances
 ) -> frozenset[Goal]:
     """Those of `goals` whose predicate no run from `state` can ever reach."""
+    relaxed = reachable(automaton, state, circumstances)
+    return frozenset(goal for goal in goals if not relaxed.may(goal.predicate))
+
+
+def reachable(automaton: Automaton, state: State, circumstances: Circumstances) -> Relaxation:
+    """All that runs from `state` can make of variables and flags, and perhaps more."""
     first: dict[str, set[Value | None]] = {name: {value} for name, value in state.items()}
     # Plans take what is active as it is, but a run may change it: only without that is there a proof.
     first |= {name: {False, True} for name in automaton.names(Kind.ACTIVITY)}
-    reached = Relaxation(automaton, first, counted_on(automaton, circumstances))
-    return frozenset(goal for goal in goals if not reached.may(goal.predicate))
+    return Relaxation(automaton, first, counted_on(automaton, circumstances))
+
+
+def unreached(automaton: Automaton, relaxed: Relaxation) -> Proof:
+    """That no run leaves the relaxation: what has never gained a value does not have it."""
+    clauses: list[Clause] = []
+    for name, type_ in automaton.types.items():
+        never = (value for value in type_.domain if value not in relaxed.possible[name])
+        clauses += [(Literal(name, value, equal=False),) for value in never]
+    return Proof("relaxation", tuple(clauses))
 
 
 def counted_on(automaton: Automaton, circumstances: Circumstances) -> tuple[Transition, ...]:

@@ -8,7 +8,7 @@ with devices that carry on without asking; a start that reaches its goals only i
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Effect, State
@@ -19,9 +19,9 @@ from sequence_planner.automaton.tick import (
     supervised_start,
     synchronise,
 )
-from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.plan import Goal, Plan, PlanTick
+from sequence_planner.planning.plan import Circumstances, Goal, Plan, PlanTick
 from sequence_planner.planning.pursuit import Goals, moved, settled
 
 # Nodes an eager search may visit: what is followed is looked at in every tick, and a tick must not be held up.
@@ -41,10 +41,11 @@ class _Node:
 
 @dataclass(frozen=True)
 class Replay:
-    """Replays plans of one automaton under one supervisor."""
+    """Replays plans of one automaton under one supervisor. `lookahead` does the same for what runs, and is fast."""
 
     automaton: Automaton
     supervisor: Supervisor
+    circumstances: Circumstances = field(default_factory=Circumstances)
 
     def exactly(
         self, state: State, published: State, goals: Iterable[Goal], now: Sequence[str], ticks: Sequence[PlanTick]
@@ -53,14 +54,16 @@ class Replay:
 
         `state` is one after step 3 or a start; `published` has the outputs as last published.
         """
-        effects = {effect.name: effect for effect in self.automaton.effects}
+        effects = {effect.name: effect for effect in self._expected}
         current = self._started(published, state, missing(goals, state), now)
         for tick in ticks:
-            sensed = None if current is None else apply_effects(current[0], [effects[name] for name in tick.effects])
-            if current is None or sensed is None:
+            if current is None or not effects.keys() >= set(tick.effects):
+                return False
+            sensed = apply_effects(current[0], [effects[name] for name in tick.effects])
+            if sensed is None:
                 return False
             after = self._settled(sensed)
-            left = settled(current[1], after)
+            left = settled(current[1], after) if self._allowed(after) else None
             current = None if left is None else self._started(current[0], after, left, tick.starts)
         return current is not None and not current[1]
 
@@ -80,7 +83,7 @@ class Replay:
         `ticks` is the rest of the plan as it was made, which holds the last of `order`.
         """
         return self.eagerly(state, published, goals, order) or self.exactly(
-            state, published, goals, _now(order, ticks), ticks
+            state, published, goals, starts_now(order, ticks), ticks
         )
 
     def may_go_on(
@@ -98,7 +101,7 @@ class Replay:
         """
         if self.eagerly(after, published, goals, order):
             return True
-        return not self._everything(before) and self.exactly(after, published, goals, _now(order, ticks), ticks)
+        return not self._everything(before) and self.exactly(after, published, goals, starts_now(order, ticks), ticks)
 
     def tightened(self, state: State, goals: Iterable[Goal], plan: Plan) -> Plan:
         """`plan` with every start as early as it can be in an eager environment, or as it is if that takes longer."""
@@ -119,7 +122,8 @@ class Replay:
             if not node.goals and (in_order or not node.order):
                 return node.ticks  # in order, what is left of it has become needless
             published = tuple(node.published[name] for name in outputs)
-            key = (bool(node.ticks), tuple(node.state.values()), published, node.order, node.goals)
+            repeated = frozenset(node.order).intersection(node.ticks[-1].starts if node.ticks else ())
+            key = (bool(node.ticks), tuple(node.state.values()), published, node.order, node.goals, repeated)
             if reached.get(key, len(node.ticks) + 1) <= len(node.ticks):
                 continue
             reached[key] = len(node.ticks)
@@ -134,7 +138,7 @@ class Replay:
     def _waited(self, node: _Node) -> _Node | None:
         effects = self._everything(node.state)
         later = self._settled(apply_effects(node.state, effects) or node.state)
-        goals = settled(node.goals, later)
+        goals = settled(node.goals, later) if self._allowed(later) else None
         tick = PlanTick(tuple(effect.name for effect in effects), ())
         return None if goals is None else _Node(later, node.state, goals, node.order, (*node.ticks, tick))
 
@@ -153,27 +157,41 @@ class Replay:
         return nodes
 
     def _started(
-        self, published: State, state: State, goals: Goals, names: Iterable[str]
+        self, published: State, state: State, goals: Goals, names: Sequence[str]
     ) -> tuple[State, Goals] | None:
+        if len(set(names)) < len(names):
+            return None  # an ability starts once in a tick
         for name in names:
             ability = self.automaton.abilities[name]
+            if ability.resource in self.circumstances.offline or (ability.restart and not self.circumstances.restart):
+                return None
             after = supervised_start(self.automaton, self.supervisor, published, state, ability)
-            left = None if after is None else moved(goals, after)
+            left = None if after is None or not self._allowed(after) else moved(goals, after)
             if after is None or left is None:
                 return None
             state, goals = after, left
         return state, goals
+
+    def _allowed(self, state: State) -> bool:
+        """Whether nothing that shall be avoided holds in `state`, or is left open by unknown values."""
+        return all(evaluate(avoided, state) is False for avoided in self.circumstances.avoid)
+
+    @property
+    def _expected(self) -> list[Effect]:
+        """The effects that are counted on."""
+        offline = self.circumstances.offline
+        return [effect for effect in self.automaton.effects if not effect.fault and effect.resource not in offline]
 
     def _settled(self, sensed: State) -> State:
         """Steps 2 and 3."""
         return synchronise(self.automaton, finish(self.automaton, sensed).state)
 
     def _everything(self, state: State) -> list[Effect]:
-        """A largest set of compatible effects enabled in `state`, earlier ones first; faults are not counted on."""
+        """A largest set of compatible effects enabled in `state`, earlier ones first."""
         chosen: list[Effect] = []
         together: dict[str, Value] = {}
-        for effect in self.automaton.effects:
-            written = None if effect.fault else effect_writes(effect, state)
+        for effect in self._expected:
+            written = effect_writes(effect, state)
             if not written or all(state[name] == value for name, value in written.items()):
                 continue
             if all(together.get(name, value) == value for name, value in written.items()):
@@ -187,6 +205,6 @@ def missing(goals: Iterable[Goal], state: State) -> Goals:
     return tuple(goal for goal in goals if not holds(goal.predicate, state))
 
 
-def _now(order: Sequence[str], ticks: Sequence[PlanTick]) -> Sequence[str]:
+def starts_now(order: Sequence[str], ticks: Sequence[PlanTick]) -> Sequence[str]:
     """The starts of `order` that belong into the tick under way: all but those of `ticks`."""
     return order[: len(order) - sum(len(tick.starts) for tick in ticks)]

@@ -7,61 +7,151 @@ pairs do not commute is asked of the solver, over all safe states. Where they de
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Mapping, Set
-from dataclasses import replace
+from functools import cached_property
 from graphlib import TopologicalSorter
-from itertools import permutations
-
-from pysat.solvers import Solver
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, reads, target
-from sequence_planner.expressions.syntax import variables
+from sequence_planner.automaton.structure import Ability, Automaton, target
+from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.circuit import Circuit
 from sequence_planner.planning.encoding import Encoding
+from sequence_planner.planning.solver import Solver
+from sequence_planner.planning.symbolic import SymbolicState
+
+_AS_LONG_AS_IT_TAKES = 1e7  # seconds
+
+Order = tuple[Ability, ...]
 
 
-def sweep_order(automaton: Automaton, supervisor: Supervisor) -> tuple[Ability, ...]:
+def sweep_order(automaton: Automaton, supervisor: Supervisor) -> Order:
     """An order of the abilities, with repetitions if need be, of which every possible order of starts is a part."""
-    abilities = list(automaton.abilities.values())
-    before: dict[str, set[str]] = {ability.name: set() for ability in abilities}
-    used = {ability.name: _used(automaton, supervisor, ability) for ability in abilities}
-    written = {ability.name: frozenset(map(target, ability.start_actions)) for ability in abilities}
-    flags = {ability.name: _flags(automaton, ability) for ability in abilities}
-    for first, second in permutations(abilities, 2):
-        one, other = first.name, second.name
-        if written[one].isdisjoint(used[other]) and written[other].isdisjoint(used[one]):
-            continue
-        concerned = used[one] | used[other] | frozenset(supervisor.safe.names)
-        if _order_matters(_part(automaton, concerned, flags[one] | flags[other]), supervisor, first, second):
-            before[other].add(one)
-    return tuple(automaton.abilities[name] for name in _linear(before))
+    return Sweep(automaton, supervisor).complete(Budget.seconds(_AS_LONG_AS_IT_TAKES))
 
 
-def _part(automaton: Automaton, names: Set[str], flags: Set[str]) -> Automaton:
-    """The automaton with no more than these variables and flags."""
-    kept = {name: variable for name, variable in automaton.variables.items() if name in names}
-    return replace(automaton, variables=kept, flags=tuple(flag for flag in automaton.flags if flag.name in flags))
+class Sweep:
+    """Orders of the abilities of one automaton under one supervisor; what is found out about pairs is kept."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self._automaton = automaton
+        self._supervisor = supervisor
+        self._before: dict[str, set[str]] = {name: set() for name in automaton.abilities}
+        self._written = {a.name: frozenset(map(target, a.start_actions)) for a in automaton.abilities.values()}
+        self._undecided: list[tuple[str, str]] | None = None
+
+    def complete(self, budget: Budget, seen: Set[str] = frozenset()) -> Order:
+        """An order, with repetitions if need be, of which every possible order of starts is a part.
+
+        Of the abilities `seen` every state between two starts matters, so that none of them commute. Raises
+        `SpentError` when the budget is spent before it is known; what is known by then is not asked again.
+        """
+        if self._undecided is None:
+            self._undecided = self._interfering()
+        while self._undecided:
+            budget.require()
+            one, other = self._undecided[-1]
+            if self._pairs.order_matters(one, other):
+                self._before[other].add(one)
+            self._undecided.pop()
+        before = {name: earlier | seen - {name} if name in seen else earlier for name, earlier in self._before.items()}
+        return tuple(self._automaton.abilities[name] for name in _linear(before))
+
+    def writers(self, names: Set[str]) -> frozenset[str]:
+        """The abilities whose starts write one of the variables."""
+        return frozenset(name for name, written in self._written.items() if not written.isdisjoint(names))
+
+    def quick(self) -> Order:
+        """Each ability once, as far as possible after those that write what it reads."""
+        writers: dict[str, list[str]] = defaultdict(list)
+        for name, written in self._written.items():
+            for variable in written:
+                writers[variable].append(name)
+        ordered: dict[str, None] = {}
+        visited: set[str] = set()
+
+        def visit(name: str) -> None:
+            pending = [(name, False)]
+            while pending:
+                current, done = pending.pop()
+                if done:
+                    ordered[current] = None
+                elif current not in visited:
+                    visited.add(current)
+                    pending.append((current, True))
+                    read = _read(self._automaton, self._automaton.abilities[current])
+                    pending += [(writer, False) for variable in sorted(read) for writer in writers[variable]]
+
+        for name in self._automaton.abilities:
+            visit(name)
+        return tuple(self._automaton.abilities[name] for name in ordered)
+
+    def _interfering(self) -> list[tuple[str, str]]:
+        """The pairs, either way round, of which one writes what the other reads, writes or is kept by."""
+        users: dict[str, list[str]] = defaultdict(list)
+        for name, ability in self._automaton.abilities.items():
+            used = _read(self._automaton, ability) | self._written[name]
+            if (guard := self._supervisor.guards.get(name)) is not None:
+                used |= frozenset(guard.names)
+            for variable in used:
+                users[variable].append(name)
+        found: dict[tuple[str, str], None] = {}
+        for name, written in self._written.items():
+            for variable in sorted(written):
+                for other in users[variable]:
+                    if other != name:
+                        found |= {(name, other): None, (other, name): None}
+        return list(found)
+
+    @cached_property
+    def _pairs(self) -> _Pairs:
+        return _Pairs(self._automaton, self._supervisor)
 
 
-def _flags(automaton: Automaton, ability: Ability) -> frozenset[str]:
-    """The flags that a start of `ability` reads, and those that these read."""
-    found: set[str] = set()
-    pending = [ability.flag("enabled"), *variables(ability.enabled), *variables(ability.start_guard)]
-    pending += [name for action in ability.start_actions for name in reads(action)]
-    while pending:
-        name = pending.pop()
-        if name in automaton.flag_predicates and name not in found:
-            found.add(name)
-            pending.extend(variables(automaton.flag_predicates[name]))
-    return frozenset(found)
+class _Pairs:
+    """All safe states in one solver, with the starts of pairs of abilities from them."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self._abilities = automaton.abilities
+        self._solver = Solver()
+        self._circuit = Circuit(self._solver)
+        self._encoding = Encoding(automaton, supervisor, self._circuit, frozenset(), lazily=True)
+        self._state = self._encoding.initial(frozenset(), synchronised=True)
+        self._published = self._encoding.initial(frozenset(), determined=automaton.flag_predicates.keys())
+        self._circuit.require(self._encoding.safe(self._state))
+        self._first: dict[str, tuple[int, SymbolicState]] = {}
+
+    def order_matters(self, one: str, other: str) -> bool:
+        """Whether in some safe state `one` then `other` can start, and the other way round not, or differently."""
+        first_now, between = self._started(one)
+        second_then, end = self._start(other, between)
+        if Circuit.FALSE in (first_now, second_then):
+            return False
+        second_now, between_other = self._started(other)
+        first_then, end_other = self._start(one, between_other)
+        names = {target(action) for name in (one, other) for action in self._abilities[name].start_actions}
+        same = [self._encoding.reading.same(end[name], end_other[name]) for name in sorted(names)]
+        exchangeable = self._circuit.conjunction((second_now, first_then, *same))
+        if exchangeable == Circuit.TRUE or -first_now in (second_then, exchangeable):
+            return False
+        budget = Budget.seconds(_AS_LONG_AS_IT_TAKES)
+        return bool(self._solver.solve([first_now, second_then, -exchangeable], budget))
+
+    def _started(self, name: str) -> tuple[int, SymbolicState]:
+        if name not in self._first:
+            self._first[name] = self._start(name, self._state)
+        return self._first[name]
+
+    def _start(self, name: str, state: SymbolicState) -> tuple[int, SymbolicState]:
+        return self._encoding.start(self._abilities[name], state, self._published, Circuit.TRUE)
 
 
 def _linear(before: Mapping[str, Set[str]]) -> Iterator[str]:
-    """Every name after those that must stand before it; the n members of a circle are repeated n times.
+    """Every name after those that must stand before it; the n members of a circle are repeated.
 
-    Any order of n different starts is a part of n repetitions of them all.
+    Any order of n different starts is a part of n - 1 repetitions of them all and another of the first: only the
+    reverse order takes n, and ends with the first.
     """
     above = {name: _above(name, before) for name in before}
     circles = {
@@ -73,7 +163,7 @@ def _linear(before: Mapping[str, Set[str]]) -> Iterator[str]:
         earlier = (circles[other] for other in before if other in above[name] and name not in above[other])
         order.add(circles[name], *earlier)
     for circle in order.static_order():
-        yield from circle * len(circle)
+        yield from (*circle * (len(circle) - 1), circle[0])
 
 
 def _above(name: str, before: Mapping[str, Set[str]]) -> Set[str]:
@@ -87,34 +177,9 @@ def _above(name: str, before: Mapping[str, Set[str]]) -> Set[str]:
     return found
 
 
-def _used(automaton: Automaton, supervisor: Supervisor, ability: Ability) -> frozenset[str]:
-    """The variables that a start of `ability` reads or writes, and those that decide whether it is allowed."""
-    used = set(read_variables(automaton, (ability.enabled, ability.start_guard)))
-    for action in ability.start_actions:
-        condition = () if action.condition is None else (action.condition,)
-        used |= {target(action), *read_variables(automaton, (action.value, *condition))}
-    if (guard := supervisor.guards.get(ability.name)) is not None:
-        used |= set(guard.names)
-    return frozenset(used)
-
-
-def _order_matters(automaton: Automaton, supervisor: Supervisor, first: Ability, second: Ability) -> bool:
-    """Whether in some safe state `first` then `second` can start, and the other way round not, or differently.
-
-    `automaton` has at least the variables that decide it.
-    """
-    with Solver("minisat22") as solver:
-        circuit = Circuit(solver)
-        encoding = Encoding(automaton, supervisor, circuit, frozenset())
-        state = encoding.initial(frozenset(), synchronised=True)
-        published = encoding.initial(frozenset(), synchronised=True)
-        first_now, between = encoding.start(first, state, published, circuit.TRUE)
-        second_then, end = encoding.start(second, between, published, circuit.TRUE)
-        second_now, between_other = encoding.start(second, state, published, circuit.TRUE)
-        first_then, end_other = encoding.start(first, between_other, published, circuit.TRUE)
-        same = [encoding.reading.same(end[name], end_other[name]) for name in automaton.variables]
-        exchangeable = circuit.conjunction((second_now, first_then, *same))
-        circuit.require(encoding.safe(state))
-        for demanded in (first_now, second_then, -exchangeable):
-            circuit.require(demanded)
-        return bool(solver.solve())
+def _read(automaton: Automaton, ability: Ability) -> frozenset[str]:
+    """The variables that a start of `ability` reads."""
+    actions = ability.start_actions
+    conditions = [action.condition for action in actions if action.condition is not None]
+    values = [action.value for action in actions]
+    return read_variables(automaton, (ability.enabled, ability.start_guard, *conditions, *values))

@@ -7,11 +7,12 @@ and the circuit makes them one gate.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from itertools import product
 
 from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.automaton.structure import Flag
 from sequence_planner.expressions.evaluation import RELATIONS
 from sequence_planner.expressions.syntax import (
     And,
@@ -161,3 +162,22 @@ class Reading:
             sums.setdefault(total, []).append(self._circuit.conjunction((a, b)))
         known = self._circuit.conjunction((left.known, right.known))
         return Symbol({total: self._circuit.disjunction(parts) for total, parts in sums.items()}, known)
+
+
+class FollowingState(dict[str, Symbol]):
+    """A state whose flags equal their predicates; those that are not there yet are read when they are asked for."""
+
+    def __init__(
+        self, state: SymbolicState, changed: Iterable[Flag], predicates: Mapping[str, Expression], reading: Reading
+    ) -> None:
+        """All values of `state` but those of the `changed` flags."""
+        super().__init__(state)
+        for flag in changed:
+            self.pop(flag.name, None)
+        self._predicates = predicates
+        self._reading = reading
+
+    def __missing__(self, name: str) -> Symbol:
+        truth = self._reading.truth(self._predicates[name], self)
+        symbol = self[name] = Symbol({False: truth.no, True: truth.yes})
+        return symbol

@@ -62,7 +62,7 @@ class WaysBack:
 
     @cached_property
     def _threats(self) -> Searches:
-        """Runs without starts in which anything may happen, faults too; a threat is a plan for a violated specification."""
+        """Runs without starts in which anything may happen, faults too; threats are plans to violate something."""
         automaton = self._automaton
         everything = replace(
             automaton,

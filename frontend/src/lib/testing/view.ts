@@ -9,6 +9,8 @@ export const PLAN: Plan = {
 	minimal_ticks: true,
 	minimal_starts: true,
 	replanned: 0,
+	contract: 'minimal',
+	engine: '',
 	milliseconds: null
 };
 

@@ -22,12 +22,19 @@ export function count(n: number, one: string, many = `${one}s`): string {
 	return `${n} ${n === 1 ? one : many}`;
 }
 
-/** What the plan promises: its length, how much of it is ahead, and whether less would do. */
+/** What the plan promises: what kind it is, its length, how much of it is ahead, and whether less would do. */
 export function planLength(plan: Plan): string {
-	const ahead = plan.steps.filter((step) => step.started === null).length;
+	if (plan.contract === null) return '';
+	const ahead = count(plan.steps.filter((step) => step.started === null).length, 'start');
+	if (plan.contract === 'minimal') return `Shortest plan, proven: ${count(plan.ticks, 'tick')}, ${ahead} ahead`;
 	const ticks = `${count(plan.ticks, 'tick')} (${plan.minimal_ticks ? 'fewest possible' : 'maybe not the fewest'})`;
-	const fewest = plan.minimal_starts ? 'fewest possible' : 'maybe not the fewest';
-	return `Plan of ${ticks}, ${count(ahead, 'start')} ahead (${fewest})`;
+	return `Plan found soon: ${ticks}, ${ahead} ahead`;
+}
+
+/** How the answer came about: `answered in 12 ms by pdr`. */
+export function planOrigin(plan: Plan): string {
+	if (plan.milliseconds === null) return '';
+	return `answered in ${plannerTime(plan.milliseconds)}${plan.engine === '' ? '' : ` by ${plan.engine}`}`;
 }
 
 /** Milliseconds the planner took: `0.4 ms`, `12 ms`, `1.2 s`. */

@@ -41,13 +41,14 @@ class CompiledRun:
         self._due: dict[str, Writes] = {}  # of each ability whose finish guard holds
         self._finished = Finished()
         self._written: Writes = {}  # by all that finish
-        self._operations = set(compiled.goals)
+        # What nobody has asked for yet is None, and nothing is noted about it.
+        self._operations: set[str] | None = None
         self._activating: set[str] = set()
         self._completing: set[str] = set()
         self._recorded: frozenset[str] | None = None
-        self._starts = set(compiled.start_guards)
+        self._starts: set[str] | None = None
         self._startable: set[str] = set()
-        self._effects = set(compiled.effect_guards)
+        self._effects: set[str] | None = None
         self._possible: dict[str, Writes] = {}  # what each enabled effect would change
 
     def fork(self) -> CompiledRun:
@@ -57,11 +58,19 @@ class CompiledRun:
         fork._levels = self._levels.copy()
         fork._flags = {level: set(flags) for level, flags in self._flags.items()}
         fork._finishes, fork._due = self._finishes.copy(), self._due.copy()
-        fork._operations = self._operations.copy()
-        fork._activating, fork._completing = self._activating.copy(), self._completing.copy()
-        fork._starts, fork._startable = self._starts.copy(), self._startable.copy()
-        fork._effects, fork._possible = self._effects.copy(), self._possible.copy()
+        if self._operations is not None:
+            fork._operations = self._operations.copy()
+            fork._activating, fork._completing = self._activating.copy(), self._completing.copy()
+        if self._starts is not None:
+            fork._starts, fork._startable = self._starts.copy(), self._startable.copy()
+        if self._effects is not None:
+            fork._effects, fork._possible = self._effects.copy(), self._possible.copy()
         return fork
+
+    @property
+    def values(self) -> State:
+        """The state now, to be read before the next step."""
+        return self._values
 
     @property
     def state(self) -> State:
@@ -113,11 +122,11 @@ class CompiledRun:
     def update_operations(self, active: frozenset[str]) -> frozenset[str]:
         """Step 4: the operations active after it, given those active before."""
         compiled, values = self._compiled, self._values
-        for name in self._operations:
+        for name in compiled.goals if self._operations is None else self._operations:
             goal = compiled.goals[name](values)
             _keep(self._completing, name, goal is True)
             _keep(self._activating, name, goal is False and bool(compiled.preconditions[name](values)))
-        self._operations.clear()
+        self._operations = set()
         if self._activating <= active and self._completing.isdisjoint(active):
             return active
         return (active | self._activating) - self._completing
@@ -135,9 +144,9 @@ class CompiledRun:
     def startable(self) -> Set[str]:
         """The abilities whose `enabled` and written start guard hold. What is returned is true until a change."""
         guards, values = self._compiled.start_guards, self._values
-        for name in self._starts:
+        for name in guards if self._starts is None else self._starts:
             _keep(self._startable, name, bool(guards[name](values)))
-        self._starts.clear()
+        self._starts = set()
         return self._startable
 
     def effects(self) -> Mapping[str, Writes]:
@@ -146,15 +155,27 @@ class CompiledRun:
         An unknown variable stays unknown. What is returned is true until a change.
         """
         compiled, values = self._compiled, self._values
-        for name in self._effects:
+        for name in compiled.effect_guards if self._effects is None else self._effects:
             writes = compiled.effect_actions[name].writes(values) if compiled.effect_guards[name](values) else None
             changes = {n: v for n, v in (writes or {}).items() if values[n] is not None and values[n] != v}
             if changes:
                 self._possible[name] = changes
             else:
                 self._possible.pop(name, None)
-        self._effects.clear()
+        self._effects = set()
         return self._possible
+
+    def effect(self, name: str) -> Writes | None:
+        """What the effect writes if it is enabled; None if it is not, or is a fault. An unknown variable stays so."""
+        compiled, values = self._compiled, self._values
+        if name not in compiled.effect_guards or not compiled.effect_guards[name](values):
+            return None
+        writes = compiled.effect_actions[name].writes(values)
+        return None if writes is None else {n: v for n, v in writes.items() if values[n] is not None}
+
+    def may_start(self, name: str) -> bool:
+        """Whether `name` is among those that are startable, without looking at the others."""
+        return bool(self._compiled.start_guards[name](self._values))
 
     def start(self, name: str) -> bool:
         """Step 5, one start: its actions, then synchronise. False, and nothing done, when they are undetermined."""
@@ -182,9 +203,12 @@ class CompiledRun:
         for level, readers in flags:
             self._note_flags(level, readers)
         self._finishes.update(finishes)
-        self._operations.update(operations)
-        self._starts.update(starts)
-        self._effects.update(effects)
+        if self._operations is not None:
+            self._operations.update(operations)
+        if self._starts is not None:
+            self._starts.update(starts)
+        if self._effects is not None:
+            self._effects.update(effects)
 
     def _note_flags(self, level: int, flags: Iterable[str]) -> None:
         noted = self._flags.get(level)

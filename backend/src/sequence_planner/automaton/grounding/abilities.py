@@ -6,11 +6,12 @@ from sequence_planner.automaton.grounding.declarations import FLAGS
 from sequence_planner.automaton.grounding.findings import Binding, instance_name, readable
 from sequence_planner.automaton.grounding.meaning import Meaning
 from sequence_planner.automaton.structure import Ability, Effect, HumanTask, Kind, Timeouts
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import Scope, suggestion
 from sequence_planner.expressions.syntax import TRUE, conjunction
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.model.documents import AbilityDocument, EffectDocument
-from sequence_planner.model.source import Place, SourceText
+from sequence_planner.model.source import SourceText
 
 _COMMANDS = (Kind.OUTPUT, Kind.ESTIMATED)
 

@@ -9,11 +9,12 @@ from itertools import product
 from sequence_planner.automaton.grounding.findings import Binding, Findings, instance_name
 from sequence_planner.automaton.structure import Kind, VariableDeclaration
 from sequence_planner.expressions.lexer import KEYWORDS, MOST_DIGITS
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value, contains
 from sequence_planner.model.documents import AbilityDocument, Parameters, VariableDocument
 from sequence_planner.model.loading import Station
-from sequence_planner.model.source import Place, SourceText
+from sequence_planner.model.source import SourceText
 
 FLAGS = ("enabled", "executing", "finished")
 OPERATION = "operation"  # the first part of the name of what the tick knows of an operation

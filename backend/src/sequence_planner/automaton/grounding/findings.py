@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.types import EnumerationType
-from sequence_planner.model.source import Finding, Place, SourceText
+from sequence_planner.model.source import Finding, SourceText
 
 # What each parameter is: its value, and the enumeration it is of.
 Binding = Mapping[str, tuple[str, EnumerationType]]

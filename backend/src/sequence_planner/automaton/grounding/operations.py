@@ -9,10 +9,11 @@ from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.findings import instance_name, readable
 from sequence_planner.automaton.grounding.meaning import Meaning
 from sequence_planner.automaton.structure import Kind, Operation, WorkMaster, target
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.syntax import TRUE, Assignment, Constant
 from sequence_planner.model.documents import OperationDocument, Predicate, WorkMasterDocument
-from sequence_planner.model.source import Place, SourceText
+from sequence_planner.model.source import SourceText
 
 
 def ground_operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocument]) -> dict[str, Operation]:

@@ -6,9 +6,10 @@ import re
 
 from sequence_planner.automaton.grounding.declarations import MOST_VALUES
 from sequence_planner.expressions.lexer import KEYWORDS, MOST_DIGITS
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type
 from sequence_planner.model.plain_documents import DomainDocument, PlainModel, RangeDocument
-from sequence_planner.model.source import Finding, Place, SourceText
+from sequence_planner.model.source import Finding, SourceText
 
 _WORD = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 

@@ -21,6 +21,7 @@ from sequence_planner.automaton.structure import (
 )
 from sequence_planner.expressions.lexer import MOST_DIGITS
 from sequence_planner.expressions.parser import parse, parse_formula
+from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.printing import print_expression, print_value
 from sequence_planner.expressions.resolution import (
     Scope,
@@ -48,7 +49,7 @@ from sequence_planner.expressions.syntax import (
 from sequence_planner.expressions.types import IntegerRange, Type, Value, contains
 from sequence_planner.model.documents import Predicate
 from sequence_planner.model.plain_documents import PlainModel, TransitionDocument, UpdateDocument
-from sequence_planner.model.source import Finding, ModelError, Place, SourceText
+from sequence_planner.model.source import Finding, ModelError, SourceText
 
 T = TypeVar("T")
 

@@ -1,0 +1,115 @@
+"""Questions to the planner as circuits in AIGER, the format of hardware model checkers (Biere 2007).
+
+One step of the circuit is a tick. Its inputs choose effects and starts, its latches hold the state and which goals have
+been reached, and one more says that no choice so far was against the rules. Its output is true when all goals have
+been reached by allowed choices, so that a trace of n steps is a plan of n ticks.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from compared.declaring import Problem
+
+from sequence_planner.planning.circuit import Circuit
+from sequence_planner.planning.encoding import Encoding
+from sequence_planner.planning.plan import Circumstances
+from sequence_planner.planning.sweep import sweep_order
+from sequence_planner.planning.tracking import Progress, Tracker
+
+
+class _Gates(Circuit):
+    """A circuit that is not turned into clauses; what it demands is kept."""
+
+    def __init__(self) -> None:
+        self.demanded: list[tuple[int, ...]] = []
+        super().__init__(self)
+
+    def add_clause(self, clause: list[int], /) -> None:
+        """Gates are kept by the circuit itself."""
+
+    def require(self, *literals: int) -> None:
+        """Demand that at least one of `literals` is true."""
+        self.demanded.append(literals)
+
+    @property
+    def gates(self) -> Iterable[tuple[int, tuple[int, ...]]]:
+        """Each gate with what it is the conjunction of, none before its parts."""
+        return ((gate, parts) for parts, gate in self._gates.items())
+
+
+@dataclass(frozen=True)
+class _Latch:
+    literal: int
+    following: int
+    initial: bool
+
+
+def aiger(problem: Problem, question: str) -> bytes:
+    """The question in the binary format. Its goals must be without local formulas."""
+    circuit = _Gates()
+    encoding = Encoding(problem.automaton, problem.supervisor, circuit, frozenset())
+    flags = frozenset(flag.name for flag in problem.automaton.flags)
+    state = encoding.initial(frozenset(), determined=flags)
+    circuit.demanded.clear()  # that a variable has one value is so in the state to begin with, and stays so
+    tick = encoding.tick(state, sweep_order(problem.automaton, problem.supervisor))
+    tracker = Tracker(circuit)
+    latches: dict[int, _Latch] = {}
+    for name, symbol in state.items():
+        for value, literal in symbol.literals.items():
+            if literal > 0 and literal not in latches:
+                latches[literal] = _Latch(literal, tick.end[name].literal(value), problem.state[name] == value)
+    reached: list[int] = []
+    for goal in problem.questions[question]:
+        literal = circuit.fresh()
+        after = tracker.after(goal, Progress(literal, {}), tick).reached
+        latches[literal] = _Latch(literal, after, initial=False)
+        reached.append(after)
+    for literal in encoding.assumptions(Circumstances()):
+        circuit.require(literal)
+    before = circuit.fresh()
+    allowed = circuit.conjunction((before, *map(circuit.disjunction, circuit.demanded)))
+    latches[before] = _Latch(before, allowed, initial=True)
+    return _written(circuit, tuple(latches.values()), circuit.conjunction((allowed, *reached)))
+
+
+def _written(circuit: _Gates, latches: tuple[_Latch, ...], output: int) -> bytes:
+    """Inputs, latches and gates are numbered in this order; a gate of many parts becomes a chain."""
+    gates = tuple(circuit.gates)
+    inner = {gate for gate, _ in gates} | {latch.literal for latch in latches}
+    inputs = [variable for variable in range(2, circuit.top + 1) if variable not in inner]
+    numbers = {Circuit.TRUE: 1}
+    for number, variable in enumerate((*inputs, *(latch.literal for latch in latches)), start=1):
+        numbers[variable] = 2 * number
+    # Latches begin at 0, so one that is true to begin with holds the opposite.
+    numbers |= {latch.literal: numbers[latch.literal] ^ 1 for latch in latches if latch.initial}
+
+    def literal(signed: int) -> int:
+        return numbers[abs(signed)] ^ (signed < 0)
+
+    highest = len(inputs) + len(latches)
+    chain: list[tuple[int, int, int]] = []
+    for gate, parts in gates:
+        current = literal(parts[0])
+        for part in parts[1:]:
+            highest += 1
+            larger, smaller = sorted((current, literal(part)), reverse=True)
+            chain.append((2 * highest, larger, smaller))
+            current = 2 * highest
+        numbers[gate] = current
+    lines = [f"aig {highest} {len(inputs)} {len(latches)} 1 {len(chain)}"]
+    lines += [str(literal(latch.following) ^ latch.initial) for latch in latches]
+    lines.append(str(literal(output)))
+    coded = b"".join(_coded(gate - larger) + _coded(larger - smaller) for gate, larger, smaller in chain)
+    return "\n".join(lines).encode() + b"\n" + coded
+
+
+def _coded(number: int) -> bytes:
+    """Seven bits to the byte, the lowest first."""
+    coded = bytearray()
+    while number >= 128:
+        coded.append(number % 128 + 128)
+        number //= 128
+    coded.append(number)
+    return bytes(coded)

@@ -1,0 +1,56 @@
+"""Fast Downward (Helmert 2006) as `up-fast-downward` brings it: lazy greedy search with the FF heuristic."""
+
+from __future__ import annotations
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+from typing import NamedTuple
+
+from compared.timing import child
+
+from sequence_planner.exporting.pddl import PddlText
+from sequence_planner.planning.plan import Plan
+
+SEARCH = "let(ff, ff(), lazy_greedy([ff], preferred=[ff]))"
+
+
+class Outcome(NamedTuple):
+    """The CPU time of the search, a process of its own, and the plan; None where it was stopped."""
+
+    seconds: float
+    plan: Plan | None
+
+
+def programs() -> Path | None:
+    """The folder of its programs, or None where it is not installed."""
+    found = find_spec("up_fast_downward")
+    if found is None or found.origin is None:
+        return None
+    return Path(found.origin).parent / "downward" / "builds" / "release" / "bin"
+
+
+def translated(text: PddlText, folder: Path, limit: float = 120) -> Path:
+    """The question in its own format, which the search reads; made once, and not measured."""
+    bin_ = programs()
+    assert bin_ is not None
+    domain, problem, sas = folder / "domain.pddl", folder / "problem.pddl", folder / "question.sas"
+    domain.write_text(text.domain)
+    problem.write_text(text.problem)
+    # That many candidates are its variables themselves, which is what we want to know the invariants of.
+    options = ("--invariant-generation-max-candidates", str(text.domain.count("\n")))
+    command = (sys.executable, "-m", "fast_downward.translate", *options, "--sas-file", sas, domain, problem)
+    ended = child(command, limit, folder=bin_)
+    if not sas.exists():
+        raise RuntimeError(f"Fast Downward could not translate the question: {ended.output[-500:]}")
+    return sas
+
+
+def search(text: PddlText, sas: Path, limit: float) -> Outcome:
+    """One search from the start of the process on."""
+    bin_ = programs()
+    assert bin_ is not None
+    plan = sas.with_name("plan")
+    plan.unlink(missing_ok=True)
+    ended = child((bin_ / "downward", "--internal-plan-file", plan, "--search", SEARCH), limit, stdin=sas)
+    return Outcome(ended.seconds, text.plan(plan.read_text()) if plan.exists() else None)

@@ -1,0 +1,25 @@
+"""One plan in a process of its own, for its CPU time: `one_plan.py FILE CONTRACT`.
+
+FILE is what `pickle` made of an automaton, its supervisor, a state and goals. Prints the number of ticks, or 0.
+"""
+
+from __future__ import annotations
+
+import pickle
+import sys
+from pathlib import Path
+
+from sequence_planner.planning.plan import Contract, PlanRequest
+from sequence_planner.planning.planner import Planner
+
+
+def main() -> None:
+    """Plan and print."""
+    automaton, supervisor, state, goals = pickle.loads(Path(sys.argv[1]).read_bytes())
+    request = PlanRequest(state, goals, deadline=120, contract=Contract(sys.argv[2]))
+    answer = Planner(automaton, supervisor).answer(request)
+    print(0 if answer.plan is None else len(answer.plan.ticks), answer.engine)
+
+
+if __name__ == "__main__":
+    main()

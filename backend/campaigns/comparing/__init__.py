@@ -1,0 +1,1 @@
+"""What the campaigns of this folder share."""

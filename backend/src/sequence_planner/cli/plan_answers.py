@@ -1,0 +1,143 @@
+"""The planner's answers, for programs and for people."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from typing import Any
+
+from sequence_planner.expressions.printing import print_value
+from sequence_planner.planning.corrections import Correction
+from sequence_planner.planning.diagnosis import Diagnosis, change_text, member_text
+from sequence_planner.planning.plain import PlainAnswer
+from sequence_planner.planning.plan import Clause, Goal, PlanAnswer, Proof, Verdict
+
+_STATUS = {
+    Verdict.FOUND: "plan",
+    Verdict.NONE_AT_ALL: "none",
+    Verdict.NONE_UP_TO: "none_up_to",
+    Verdict.LATE: "deadline",
+}
+
+
+def document(answer: PlanAnswer, diagnosis: Diagnosis | None) -> dict[str, Any]:
+    """An answer about a station as one JSON document."""
+    plan = answer.plan
+    ticks = () if plan is None else plan.ticks
+    minimal = plan is not None and plan.minimal_ticks and plan.minimal_starts
+    return {
+        "status": _STATUS[answer.verdict],
+        "contract": None if plan is None else "minimal" if minimal else "fast",
+        "goals": answer.goals,
+        "left_out": answer.left_out,
+        "starts": [] if plan is None else [name for _, name in plan.starts],
+        "ticks": len(ticks),
+        "schedule": [{"effects": tick.effects, "starts": tick.starts} for tick in ticks],
+        "searched": answer.searched,
+        "proof": _proof(answer.proof),
+        "why": None if diagnosis is None else _why(diagnosis),
+        "engine": answer.engine,
+        "seconds": answer.seconds,
+    }
+
+
+def plain_document(answer: PlainAnswer, goals: Iterable[Goal]) -> dict[str, Any]:
+    """An answer about a plain automaton as one JSON document."""
+    found = answer.verdict is Verdict.FOUND
+    return {
+        "status": _STATUS[answer.verdict],
+        "contract": None if not found else "minimal" if answer.minimal else "fast",
+        "goals": [goal.name for goal in goals],
+        "starts": answer.events,
+        "transitions": answer.transitions,
+        "ticks": len(answer.transitions),
+        "searched": answer.searched,
+        "proof": _proof(answer.proof),
+        "engine": answer.engine,
+        "seconds": answer.seconds,
+    }
+
+
+def because(diagnosis: Diagnosis | None) -> Iterator[str]:
+    """Why there is no plan at all, line by line."""
+    if diagnosis is None:
+        return
+    reason = diagnosis.reason
+    if reason is None:
+        yield "why could not be found in time: allow more with --deadline"
+        return
+    yield "as long as all of these stay as they are" if reason.minimal else "as long as these stay as they are"
+    yield from (f"      {member_text(member)}" for member in reason.members)
+    if diagnosis.corrections:
+        yield "there would be a plan again with"
+        yield from (f"      {_changes(correction)}" for correction in diagnosis.corrections)
+
+
+def said(answer: PlanAnswer) -> str:
+    """An answer about a station in one line."""
+    if answer.plan is None:
+        return _none(answer, answer.left_out, "ticks")
+    plan = answer.plan
+    ticks, starts = _number(len(plan.ticks), "tick"), _number(len(plan.starts), "start")
+    if plan.minimal_ticks and plan.minimal_starts:
+        kind = "the fewest ticks, then the fewest starts"
+    elif plan.minimal_ticks:
+        kind = "the fewest ticks"
+    else:
+        kind = f"no plan has fewer than {_number(answer.searched, 'tick')}" if answer.searched > 1 else "found fast"
+    left_out = f"; left out: {', '.join(answer.left_out)}" if answer.left_out else ""
+    return (
+        f"{', '.join(answer.goals)}: {ticks} and {starts}, {kind} "
+        f"({answer.engine or 'nothing to do'}, {answer.seconds:.2f} s){left_out}"
+    )
+
+
+def said_of_plain(answer: PlainAnswer, goals: Iterable[Goal]) -> str:
+    """An answer about a plain automaton in one line."""
+    names = [goal.name for goal in goals]
+    if answer.verdict is not Verdict.FOUND:
+        return _none(answer, names, "transitions")
+    kind = "the fewest" if answer.minimal else f"no plan has fewer than {answer.searched}"
+    number = _number(len(answer.transitions), "transition")
+    return f"{', '.join(names)}: {number}, {kind} ({answer.engine or 'nothing to do'}, {answer.seconds:.2f} s)"
+
+
+def _none(answer: PlanAnswer | PlainAnswer, goals: Iterable[str], unit: str) -> str:
+    names = ", ".join(goals)
+    match answer.verdict:
+        case Verdict.NONE_AT_ALL:
+            return f"no plan at all, proven: {names} ({answer.engine}, {answer.seconds:.2f} s)"
+        case Verdict.NONE_UP_TO:
+            return f"no plan of up to {answer.searched} {unit}: {names} ({answer.seconds:.2f} s)"
+        case _:
+            return f"no answer in time, and no plan of up to {answer.searched} {unit}: {names} ({answer.seconds:.2f} s)"
+
+
+def _why(diagnosis: Diagnosis) -> dict[str, Any]:
+    reason = diagnosis.reason
+    members = () if reason is None else reason.members
+    return {
+        "members": [{"part": each.part.value, "name": each.name, "value": each.value} for each in members],
+        "minimal": reason is not None and reason.minimal,
+        "corrections": [
+            [{"name": change.name, "value": change.value} for change in correction.changes]
+            for correction in diagnosis.corrections
+        ],
+    }
+
+
+def _changes(correction: Correction) -> str:
+    return " and ".join(map(change_text, correction.changes))
+
+
+def _proof(proof: Proof | None) -> dict[str, Any] | None:
+    return None if proof is None else {"by": proof.by, "invariant": [_clause(clause) for clause in proof.invariant]}
+
+
+def _clause(clause: Clause) -> str:
+    """One of these holds in every state."""
+    texts = [f"{each.name} {'==' if each.equal else '!='} {print_value(each.value)}" for each in clause]
+    return " or ".join(texts) or "false"
+
+
+def _number(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"

@@ -1,0 +1,248 @@
+"""The plan of a running station: what to ask the planner, which of its answers to follow, and for how long.
+
+Pure, as `execution` is. The first question is for a plan soon, so that the station moves at once; while that plan is
+followed, better ones are asked for, and one is taken only if it leads to the goals in fewer ticks or starts.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from copy import copy
+from dataclasses import dataclass, replace
+
+from sequence_planner.automaton.compiled import CompiledRun
+from sequence_planner.automaton.structure import Automaton, Kind, State
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.plan_reasons import why_new, why_none, why_violated
+from sequence_planner.control.pursued import Pursued
+from sequence_planner.control.start_order import StartOrder, Step
+from sequence_planner.control.view import PlanStatus
+from sequence_planner.planning.lookahead import Lookahead
+from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest
+
+
+@dataclass(frozen=True)
+class Present:
+    """What a plan is made for: the run as it stands, the outputs as last published, and what is pursued, in what."""
+
+    run: CompiledRun
+    published: State
+    pursued: Pursued
+    circumstances: Circumstances
+
+
+@dataclass(frozen=True)
+class _Question:
+    """What an answer is about: it would be the same again."""
+
+    goals: frozenset[str]
+    state: State
+    circumstances: Circumstances
+
+
+class LivePlan:
+    """The start order that is followed, and all that is said about it."""
+
+    def __init__(self, automaton: Automaton, lookahead: Lookahead) -> None:
+        self.order = StartOrder()
+        self.status = PlanStatus.IDLE
+        self.reason = ""
+        self.answer: PlanAnswer | None = None
+        self.replanned = 0
+        self._automaton = automaton
+        self._lookahead = lookahead
+        self._asked: _Question | None = None
+        self._asked_better: _Question | None = None
+        self._started_since_asked = False
+        self._none_while_blind = False  # the last answer was that there is no plan, and values were unknown
+
+    def copy(self) -> LivePlan:
+        """One that does not change when this one does."""
+        other = copy(self)
+        other.order = self.order.copy()
+        return other
+
+    def request(self, present: Present, deadline: float) -> PlanRequest | None:
+        """A question for a plan that is needed; None when none is, or it would be answered the same again."""
+        wanted = self._wanted(present)
+        question = _question(present, wanted)
+        if not wanted or self._asked == question:
+            return None
+        self._asked = question
+        self._started_since_asked = False
+        # That there was no plan stays so until an answer says otherwise, unless only knowledge was missing.
+        if self.status is PlanStatus.IDLE or (self.status is PlanStatus.NONE and self._none_while_blind):
+            self.status = PlanStatus.PLANNING
+            self.reason = "a plan is being looked for"
+        return _request(present, wanted, deadline, Contract.FAST)
+
+    def better(self, present: Present, deadline: float) -> PlanRequest | None:
+        """A question for a better plan than the one that is followed; None when it would be answered the same again."""
+        question = _question(present, present.pursued.hopeful)
+        if not self._following(present) or not self.order.ahead or self._asked_better == question:
+            return None
+        self._asked_better = question
+        self._started_since_asked = False
+        return _request(present, present.pursued.hopeful, deadline, Contract.MINIMAL)
+
+    def unanswered(self, why: str, again: bool) -> None:
+        """The planner could not answer. With `again` the same question is asked once more, else only another one."""
+        if again:
+            self._asked = self._asked_better = None
+        if self.status is PlanStatus.PLANNING:
+            self.status = PlanStatus.NONE
+            self.reason = f"no plan: {why}"
+            self._none_while_blind = False
+
+    def adopt(self, present: Present, request: PlanRequest, answer: PlanAnswer) -> bool:
+        """Follow an answered plan, if it still fits the state. False when a new one must be asked for.
+
+        While a plan is followed, another must be better to take its place.
+        """
+        self._asked = None
+        hopeful = present.pursued.hopeful
+        if not hopeful:
+            return True
+        following = self._following(present)
+        if answer.plan is None:
+            return following or self._carry_on(request) or self._adopt_none(present, request, answer)
+        if self._started_since_asked:
+            return following  # the old plan went on, and the new one may hold what it has started
+        goals = frozenset(answer.goals) & hopeful
+        starts = tuple(name for _, name in answer.plan.starts)
+        ticks = self._lookahead.remaining(
+            present.run, present.published, present.pursued.of(goals), starts, answer.plan.ticks
+        )
+        if ticks is None:
+            return following
+        if following and not self._is_better(present, goals, ticks, len(starts)):
+            return True
+        replacing = self.status in (PlanStatus.FOLLOWED, PlanStatus.BROKEN) and bool(self.order.ahead)
+        self.replanned += replacing
+        self.reason = why_new(self._automaton, self.status, hopeful, self.order.requested, replacing)
+        self.order.adopt(answer.plan, goals, (goal.name for goal in request.goals))
+        self.answer = answer
+        self.status = PlanStatus.FOLLOWED
+        return True
+
+    def settle(self, active: frozenset[str], hopeful: frozenset[str]) -> None:
+        """After step 4: what is reached, or can no more be reached as it should be, is no longer planned for."""
+        if self.status is PlanStatus.FOLLOWED and not self.order.goals & active <= hopeful:
+            self.status = PlanStatus.BROKEN
+        self.order.goals &= hopeful
+        self.order.requested &= hopeful  # one that becomes active again is wanted again
+        if not self.order.goals:
+            self.order.drop()  # goals already met need no plan
+
+    def next_may_start(self, present: Present, after_start: Callable[[str], CompiledRun | None]) -> bool:
+        """Whether the first ability of the order starts now, or else it waits. `after_start` is None while it may not.
+
+        While it waits, the order is as good as any other in which the rest still reaches the goals: the first ability
+        behind it for which that holds is pulled to the front. So a robot does not wait for a person whose task has
+        nothing to do with it.
+        """
+        if not self.order.ahead:
+            return False
+        after = after_start(self.order.ahead[0].ability)
+        if after is not None and self.may_go_on(present, after):
+            return True
+        goals = present.pursued.of(self.order.goals)
+        tried = {self.order.ahead[0].ability}
+        for index, step in enumerate(self.order.ahead[1:], start=1):
+            if step.ability in tried:
+                continue
+            tried.add(step.ability)
+            after = after_start(step.ability)
+            rest = self.order.names[:index] + self.order.names[index + 1 :]
+            if after is not None and self._lookahead.length(after, present.published, goals, rest) is not None:
+                self.order.pull_forward(index)
+                return True
+        return False
+
+    def may_go_on(self, present: Present, after: CompiledRun) -> bool:
+        """Whether the order after its first start, which leads to `after`, still reaches the goals."""
+        starts, ticks = self.order.rest(taken=1)
+        goals = present.pursued.of(self.order.goals)
+        return self._lookahead.may_go_on(present.run, after, present.published, goals, starts, ticks)
+
+    def start(self, now: Moment) -> Step:
+        """The first ability of the order has been started."""
+        self._started_since_asked = True
+        return self.order.start(now)
+
+    def look(self, present: Present, active: frozenset[str]) -> None:
+        """Notice that the plan is done with, or that the state has departed from it."""
+        if not active:
+            self.status, self.reason = PlanStatus.IDLE, "no operation is active"
+            self.order.adopt(None, (), ())
+        elif not present.pursued.goals:
+            self.reason = "production has not been started"
+        elif not present.pursued.hopeful:
+            self.status, self.reason = PlanStatus.NONE, why_violated(self._automaton, active)
+            self._none_while_blind = False
+            self.order.adopt(None, (), ())
+        elif self.status is PlanStatus.FOLLOWED and self.order.goals and self._left(present) is None:
+            self.status = PlanStatus.BROKEN
+
+    def _following(self, present: Present) -> bool:
+        return bool(present.pursued.hopeful) and not self._wanted(present)
+
+    def _wanted(self, present: Present) -> frozenset[str]:
+        """The goals to plan for, when there is need of a plan."""
+        hopeful = present.pursued.hopeful
+        new_goals = not hopeful <= self.order.requested
+        done = self.status is PlanStatus.FOLLOWED and not self.order.goals
+        return hopeful if new_goals or done or self.status is not PlanStatus.FOLLOWED else frozenset()
+
+    def _left(self, present: Present) -> int | None:
+        """In how many ticks the rest of the plan reaches its goals; None when it does not."""
+        goals = present.pursued.of(self.order.goals)
+        return self._lookahead.remaining(present.run, present.published, goals, *self.order.rest())
+
+    def _is_better(self, present: Present, goals: frozenset[str], ticks: int, starts: int) -> bool:
+        """Whether a plan for `goals` has more of them than the one that is followed, or fewer ticks, or fewer starts.
+
+        Only what is better takes a plan's place: were it enough to be as good, plans would take turns.
+        """
+        left = self._left(present)
+        if left is None or not goals >= self.order.goals:
+            return left is None
+        return (-len(goals), ticks, starts) < (-len(self.order.goals), left, len(self.order.ahead))
+
+    def _carry_on(self, request: PlanRequest) -> bool:
+        """Whether the plan at hand still leads to its goals; others that were asked for are left out for now."""
+        if self.status is not PlanStatus.FOLLOWED or not self.order.goals or self.answer is None:
+            return False
+        asked = frozenset(goal.name for goal in request.goals)
+        self.order.requested |= asked
+        self.answer = replace(self.answer, left_out=tuple(sorted(asked - self.order.goals)))
+        return True
+
+    def _adopt_none(self, present: Present, request: PlanRequest, answer: PlanAnswer) -> bool:
+        """There is no plan, or was none a moment ago: a station that is never still must hear of that too."""
+        asked = frozenset(goal.name for goal in request.goals)
+        if asked != present.pursued.hopeful:
+            return False
+        current = _Question(asked, request.state, request.circumstances) == _question(present, asked)
+        self.answer = answer
+        self.status = PlanStatus.NONE
+        self._none_while_blind = any(request.state[name] is None for name in self._automaton.names(Kind.MEASURED))
+        self.reason = why_none(answer, self._none_while_blind)
+        if current:
+            self._asked = _question(present, asked)
+            self.order.adopt(None, (), asked)
+        return current
+
+
+def _question(present: Present, goals: frozenset[str]) -> _Question:
+    return _Question(goals, present.run.state, present.circumstances)
+
+
+def _request(present: Present, goals: frozenset[str], deadline: float, contract: Contract) -> PlanRequest:
+    return PlanRequest(
+        dict(present.run.state),
+        present.pursued.of(goals),
+        deadline,
+        contract=contract,
+        circumstances=present.circumstances,
+    )

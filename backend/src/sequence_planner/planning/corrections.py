@@ -1,0 +1,138 @@
+"""What would bring a plan back: the fewest values of estimated variables, or resources, that need be different."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from itertools import combinations, product
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, Kind
+from sequence_planner.automaton.tick import synchronise
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.invariants import asserted, satisfies
+from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.plan import Plan, Proof
+from sequence_planner.planning.replay import Replay, missing
+
+MOST_CHANGES = 2
+MOST_FOUND = 5
+
+
+@dataclass(frozen=True)
+class Change:
+    """An estimated variable has another `value`; or, with None, an offline resource is back online."""
+
+    name: str
+    value: Value | None
+
+
+@dataclass(frozen=True)
+class Correction:
+    """With these changes there is a plan from a safe state, such as `plan`, which need not be the shortest.
+
+    It has no ticks where the changes alone are what the goals ask for.
+    """
+
+    changes: tuple[Change, ...]
+    plan: Plan
+
+
+def corrections(
+    automaton: Automaton,
+    supervisor: Supervisor,
+    task: Task,
+    budget: Budget,
+    most_changes: int = MOST_CHANGES,
+    most_found: int = MOST_FOUND,
+) -> tuple[Correction, ...]:
+    """Corrections of the fewest changes, of which there are at most `most_changes`, and up to `most_found` of these.
+
+    It is proven that no fewer changes bring a plan back. What is unknown stays unknown. When the budget is spent, what
+    has been found of the fewest changes.
+    """
+    return tuple(_Corrections(automaton, supervisor, task, budget, most_changes).found(most_found))
+
+
+class _Corrections:
+    def __init__(
+        self, automaton: Automaton, supervisor: Supervisor, task: Task, budget: Budget, most_changes: int
+    ) -> None:
+        self._automaton = automaton
+        self._supervisor = supervisor
+        self._task = task
+        self._budget = budget
+        self._most_changes = most_changes
+        self._engine = Reachability(automaton, supervisor)
+        self._refuted: list[tuple[Task, Proof]] = []
+
+    def found(self, most: int) -> Iterator[Correction]:
+        """Those of the fewest changes."""
+        try:
+            for size in range(1, self._most_changes + 1):
+                some = False
+                for changes in self._candidates(size):
+                    if (plan := self._plan(changes)) is not None:
+                        some = True
+                        yield Correction(changes, plan)
+                        most -= 1
+                        if most == 0:
+                            return
+                if some:
+                    return
+        except SpentError:
+            return
+
+    def _candidates(self, size: int) -> Iterator[tuple[Change, ...]]:
+        """All sets of so many changes."""
+        for subjects in combinations(self._options().values(), size):
+            yield from product(*subjects)
+
+    def _options(self) -> Mapping[str, tuple[Change, ...]]:
+        """The changes of each variable and resource."""
+        state = self._task.state
+        options: dict[str, tuple[Change, ...]] = {}
+        for name in self._automaton.names(Kind.ESTIMATED):
+            if state[name] is not None:
+                domain = self._automaton.variables[name].type.domain
+                options[name] = tuple(Change(name, value) for value in domain if value != state[name])
+        for resource in sorted(self._task.circumstances.offline):
+            options[f"resource {resource}"] = (Change(resource, None),)
+        return options
+
+    def _plan(self, changes: tuple[Change, ...]) -> Plan | None:
+        """A plan after `changes`, if they lead into a safe state and there is one. Raises `SpentError`."""
+        self._budget.require()
+        task = self._changed(changes)
+        if not self._supervisor.safe.includes(task.state):
+            return None
+        if not task.goals:
+            return Plan((), minimal_ticks=True, minimal_starts=True)
+        if any(_covers(refuted, proof, task) for refuted, proof in self._refuted):
+            return None
+        decision = self._engine.decide(task, self._budget)
+        if decision.proof is not None:
+            self._refuted.append((task, decision.proof))
+            return None
+        plan = Plan(decision.ticks, minimal_ticks=False, minimal_starts=False)
+        replay = Replay(self._automaton, self._supervisor, task.circumstances)
+        return replay.tightened(task.state, task.goals, plan)
+
+    def _changed(self, changes: tuple[Change, ...]) -> Task:
+        values = {change.name: change.value for change in changes if change.value is not None}
+        state = synchronise(self._automaton, {**self._task.state, **values})
+        online = {change.name for change in changes if change.value is None}
+        circumstances = self._task.circumstances
+        circumstances = replace(circumstances, offline=circumstances.offline - online)
+        return replace(self._task, state=state, goals=missing(self._task.goals, state), circumstances=circumstances)
+
+
+def _covers(refuted: Task, proof: Proof, task: Task) -> bool:
+    """Whether the proof for `refuted` is one for `task` too: no more is online, and its invariant holds at first."""
+    return (
+        refuted.goals == task.goals
+        and refuted.circumstances.offline <= task.circumstances.offline
+        and satisfies(asserted(task.state, task.goals), proof.invariant)
+    )

@@ -1,0 +1,56 @@
+"""What is said when there is no plan at all: why, and what would bring one back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.expressions.printing import print_value
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.corrections import Change, Correction, corrections
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.why import Member, Part, Reason, SupervisorFor, explain
+
+_SHARE = 0.6  # of the time, for the reason; corrections have the rest
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """A `reason`, if one was found in time, and corrections of the fewest changes."""
+
+    reason: Reason | None
+    corrections: tuple[Correction, ...]
+
+
+def diagnose(
+    automaton: Automaton, supervisor: Supervisor, supervisor_for: SupervisorFor, task: Task, budget: Budget
+) -> Diagnosis:
+    """Why the goals of `task` cannot be reached, as far as the budget lets it be found."""
+    reason = explain(automaton, supervisor_for, task, budget.part(_SHARE))
+    return Diagnosis(reason, () if reason is None else corrections(automaton, supervisor, task, budget))
+
+
+def member_text(member: Member) -> str:
+    """A member of a reason, in the names of the model."""
+    match member.part:
+        case Part.VALUE if member.value is None:
+            return f"{member.name} is not known"
+        case Part.VALUE:
+            assert member.value is not None
+            return f"{member.name} is {print_value(member.value)}"
+        case Part.SPECIFICATION:
+            return f"the specification {member.name}"
+        case Part.AVOID:
+            return f"{member.name} is to be avoided"
+        case Part.OFFLINE:
+            return f"{member.name} is offline"
+        case Part.LOCAL:
+            return f"the local formula of {member.name}"
+        case Part.GOAL:
+            return f"the goal {member.name}"
+
+
+def change_text(change: Change) -> str:
+    """A change that would help, in the names of the model."""
+    return f"{change.name} online" if change.value is None else f"{change.name} := {print_value(change.value)}"

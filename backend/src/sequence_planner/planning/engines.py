@@ -1,0 +1,159 @@
+"""Which engines there are, where each of them works, and how several take turns in one thread."""
+
+from __future__ import annotations
+
+import logging
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from math import inf
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Engine, Finding, Task
+from sequence_planner.planning.plan import Contract
+from sequence_planner.planning.relaxation import reachable, unreached
+
+LOG = logging.getLogger(__name__)
+
+FIRST_TURN = 0.1  # seconds; each further turn is twice as long, so that no engine costs another more than its own time
+
+Factory = Callable[[Automaton, Supervisor], Engine]
+
+
+@dataclass(frozen=True)
+class Report:
+    """What an engine has found in one turn; with `trouble` it failed at that, and found nothing."""
+
+    engine: str
+    finding: Finding
+    trouble: str = ""
+
+
+@dataclass(frozen=True)
+class Lane:
+    """Engines that share a process, in the order of their turns, for each contract."""
+
+    name: str
+    engines: Mapping[Contract, tuple[str, ...]]
+    niceness: int = 5  # ticks are not held up by planning
+
+    @property
+    def all_engines(self) -> tuple[str, ...]:
+        """Every engine of the lane."""
+        return tuple(dict.fromkeys(name for names in self.engines.values() for name in names))
+
+
+class Relaxing:
+    """Proves that a goal cannot be reached where not even the delete relaxation reaches it."""
+
+    name = "relaxation"
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self._automaton = automaton
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        """A proof, or nothing."""
+        relaxed = reachable(self._automaton, task.state, task.circumstances)
+        reached = all(relaxed.may(goal.predicate) for goal in task.goals)
+        return Finding() if reached else Finding(proof=unreached(self._automaton, relaxed))
+
+
+@dataclass(frozen=True)
+class Maker:
+    """Makes engines of a class that is imported only when one is made: a command needs few of them."""
+
+    module: str
+    kind: str
+
+    def __call__(self, automaton: Automaton, supervisor: Supervisor) -> Engine:
+        """A new engine."""
+        engine: Engine = getattr(import_module(f"sequence_planner.planning.{self.module}"), self.kind)(
+            automaton, supervisor
+        )
+        return engine
+
+
+FACTORIES: Mapping[str, Factory] = {
+    "bmc": Maker("bounded", "BoundedModelChecking"),
+    "projection": Maker("projection", "Projection"),
+    "search": Maker("heuristic.best_first", "HeuristicSearch"),
+    "breadth-first": Maker("heuristic.breadth_first", "ShortestSearch"),
+    "relaxation": Relaxing,
+    "pdr": Maker("pdr.engine", "Reachability"),
+}
+
+# Racing, in processes of their own.
+LANES = (
+    Lane("sat", {Contract.MINIMAL: ("bmc",), Contract.FAST: ("projection", "bmc")}),
+    Lane("search", {Contract.MINIMAL: ("breadth-first", "search"), Contract.FAST: ("search",)}),
+    Lane("proof", dict.fromkeys(Contract, ("relaxation", "pdr")), niceness=10),
+)
+
+# Taking turns, where a process of its own for each would cost more than it brings.
+ALONE = Lane(
+    "alone",
+    {
+        Contract.MINIMAL: ("bmc", "relaxation", "pdr"),
+        Contract.FAST: ("projection", "search", "relaxation", "bmc", "pdr"),
+    },
+)
+
+
+class Engines:
+    """The engines of one lane, each made when it is first needed and warm from then on."""
+
+    def __init__(
+        self, automaton: Automaton, supervisor: Supervisor, lane: Lane, factories: Mapping[str, Factory] = FACTORIES
+    ) -> None:
+        self._model = (automaton, supervisor)
+        self._lane = lane
+        self._factories = factories
+        self._made: dict[str, Engine] = {}
+
+    def prepare(self) -> None:
+        """Make all of them now; one that cannot be made is tried again when it is needed."""
+        for name in self._lane.all_engines:
+            try:
+                self._engine(name)
+            except Exception:
+                LOG.exception("the engine %s cannot be made", name)
+
+    def work(self, task: Task, budget: Budget, patience: Callable[[], float] = lambda: inf) -> Iterator[Report]:
+        """What they find, turn by turn, until each has given up or the budget is spent.
+
+        No turn is longer than `patience` has seconds when it begins. An engine that fails is made anew for the next
+        task: what it has learnt could be wrong.
+        """
+        waiting: Sequence[str] = self._lane.engines[task.contract]
+        turn = FIRST_TURN
+        while waiting and not budget.spent:
+            going_on: list[str] = []
+            for name in waiting:
+                own = _at_most(budget, min(turn if len(waiting) > 1 else inf, patience()))
+                report = self._turn(name, task, own)
+                yield report
+                if own.spent and not report.trouble:
+                    going_on.append(name)  # one that ends before its time has nothing more to say
+                if budget.spent:
+                    return
+            waiting, turn = going_on, 2 * turn
+
+    def _turn(self, name: str, task: Task, budget: Budget) -> Report:
+        try:
+            return Report(name, self._engine(name).solve(task, budget))
+        except Exception as error:
+            LOG.exception("the engine %s failed", name)
+            self._made.pop(name, None)
+            return Report(name, Finding(), f"{type(error).__name__}: {error}")
+
+    def _engine(self, name: str) -> Engine:
+        if name not in self._made:
+            self._made[name] = self._factories[name](*self._model)
+        return self._made[name]
+
+
+def _at_most(budget: Budget, seconds: float) -> Budget:
+    remaining = budget.remaining
+    return budget.part(min(seconds / remaining, 1.0)) if remaining else budget

@@ -1,0 +1,28 @@
+"""What the clauses of a proof say of a state in which goals have come so far."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from sequence_planner.automaton.structure import State
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.plan import Clause, Literal
+from sequence_planner.planning.pursuit import Goals
+
+
+def asserted(state: State, goals: Goals) -> Mapping[str, Value | None]:
+    """All that literals can speak of, for `goals` that have not been reached."""
+    values = dict(state)
+    for goal in goals:
+        values |= {f"goal.{goal.name}.reached": False, f"goal.{goal.name}.at": goal.at}
+    return values
+
+
+def is_met(literal: Literal, values: Mapping[str, Value | None]) -> bool:
+    """Whether the literal is true of these values."""
+    return (values[literal.name] == literal.value) is literal.equal
+
+
+def satisfies(values: Mapping[str, Value | None], clauses: Iterable[Clause]) -> bool:
+    """Whether the values satisfy all clauses."""
+    return all(any(is_met(literal, values) for literal in clause) for clause in clauses)

@@ -1,0 +1,160 @@
+"""One tick encoded once, and put down again and again.
+
+The clauses of a tick are recorded over free literals for the state before it. Each further tick has the same clauses
+with other literals: those of the state before it are those at the end of the tick before, and the rest are new.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Ability, Automaton, State
+from sequence_planner.automaton.transitions import Phase, transitions
+from sequence_planner.expressions.syntax import Expression
+from sequence_planner.planning.circuit import Circuit
+from sequence_planner.planning.encoding import Encoding, SymbolicTick
+from sequence_planner.planning.plan import Circumstances
+from sequence_planner.planning.symbolic import Reading, Symbol, SymbolicState
+
+# The literal of each literal of the template: at its own index, that of a negated one counted from the end.
+Renaming = Sequence[int]
+
+
+class _Recorder:
+    """Keeps clauses."""
+
+    def __init__(self) -> None:
+        self.clauses: list[list[int]] = []
+        self.add_clause = self.clauses.append
+
+
+class Template:
+    """The tick from states in which exactly `unknown`, variables and flags, have no value.
+
+    With `inside`, only from safe states. The variables `frozen` have these values throughout. `pause` is called now and
+    then while it is made, and may raise.
+    """
+
+    def __init__(
+        self,
+        automaton: Automaton,
+        supervisor: Supervisor,
+        order: Sequence[Ability],
+        unknown: frozenset[str],
+        inside: bool,
+        frozen: State,
+        pause: Callable[[], object],
+    ) -> None:
+        recorder = _Recorder()
+        circuit = Circuit(recorder)
+        blind = unknown & automaton.variables.keys()
+        self._predicates = automaton.flag_predicates
+        self._encoding = Encoding(automaton, supervisor, circuit, blind, inside, lazily=not unknown)
+        self._shared = circuit.top  # literals up to here mean the same in all ticks
+        free = self._encoding.initial(blind, determined=self._predicates.keys() - unknown, frozen=frozen)
+        kept = free.keys() if unknown else automaton.variables.keys() | _read_before_synchronising(automaton)
+        self.start = {name: symbol for name, symbol in free.items() if name in kept}
+        self._inputs = circuit.top
+        recorder.clauses.clear()  # what must hold of a state holds at the end of each tick
+        recorder.add_clause([Circuit.TRUE])
+        for name in unknown - blind:
+            # An undetermined flag is known where one of its values is; this gate is part of the tick.
+            recorder.clauses.extend(_known(self.start[name]))
+        self._tick = self._encoding.tick(self.start, order, pause)
+        self._carried = self._carry()
+        self.clauses: Sequence[Sequence[int]] = recorder.clauses
+        self.top = circuit.top
+
+    def assumptions(self, circumstances: Circumstances) -> list[int]:
+        """The literals that say what may happen."""
+        return self._encoding.assumptions(circumstances)
+
+    def first(self) -> Renaming:
+        """The renaming of the first tick, which leaves everything as it is."""
+        return _both_signs(list(range(self.top + 1)))
+
+    def next(self, before: Renaming, top: int) -> Renaming:
+        """The renaming of the tick after one renamed `before`; new variables come after `top`."""
+        literals = list(range(self._shared + 1))
+        literals += [before[literal] for literal in self._carried]
+        literals += range(top + 1, top + 1 + self.top - self._inputs)
+        return _both_signs(literals)
+
+    def renamed(self, renaming: Renaming) -> list[list[int]]:
+        """The clauses of the tick so renamed."""
+        return [[renaming[literal] for literal in clause] for clause in self.clauses]
+
+    def tick(self, renaming: Renaming, reading: Reading) -> SymbolicTick:
+        """The tick so renamed; `reading` is asked for flags that the tick itself does not need."""
+        tick = self._tick
+
+        def renamed(state: SymbolicState) -> SymbolicState:
+            return RenamedState(state, renaming, self._predicates, reading)
+
+        return SymbolicTick(
+            {name: renaming[choice] for name, choice in tick.effects.items()},
+            [(name, renaming[choice]) for name, choice in tick.starts],
+            renamed(tick.synchronised),
+            [(renaming[choice], renamed(state)) for choice, state in tick.positions],
+        )
+
+    def _carry(self) -> list[int]:
+        """For each literal of the state before, in order, the one that says the same at the end."""
+        end = self._tick.end
+        carried = dict[int, int]()
+        for name, symbol in self.start.items():
+            pairs = [(literal, end[name].literal(value)) for value, literal in symbol.literals.items()]
+            for literal, after in (*pairs, (symbol.known, end[name].known)):
+                carried[abs(literal)] = after if literal > 0 else -after
+        # Flags that no tick needs from the one before are no part of the state: their literals stay without meaning.
+        return [carried.get(literal, Circuit.FALSE) for literal in range(self._shared + 1, self._inputs + 1)]
+
+
+class RenamedState(Mapping[str, Symbol]):
+    """A state with other literals, read as it is asked for."""
+
+    def __init__(
+        self, state: SymbolicState, renaming: Renaming, predicates: Mapping[str, Expression], reading: Reading
+    ) -> None:
+        self._state = state
+        self._renaming = renaming
+        self._predicates = predicates
+        self._reading = reading
+        self._known: dict[str, Symbol] = {}
+
+    def __getitem__(self, name: str) -> Symbol:
+        if name not in self._known:
+            self._known[name] = self._renamed(name) if name in self._state else self._followed(name)
+        return self._known[name]
+
+    def _renamed(self, name: str) -> Symbol:
+        symbol, renaming = self._state[name], self._renaming
+        literals = {value: renaming[literal] for value, literal in symbol.literals.items()}
+        return Symbol(literals, renaming[symbol.known])
+
+    def _followed(self, flag: str) -> Symbol:
+        truth = self._reading.truth(self._predicates[flag], self)
+        return Symbol({False: truth.no, True: truth.yes})
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._state)
+
+    def __len__(self) -> int:
+        return len(self._state)
+
+
+def _both_signs(literals: list[int]) -> list[int]:
+    return literals + [-literal for literal in literals[:0:-1]]
+
+
+def _known(flag: Symbol) -> list[list[int]]:
+    """That a flag is known exactly where it has a value."""
+    values = list(flag.literals.values())
+    return [[-flag.known, *values], *([flag.known, -value] for value in values)]
+
+
+def _read_before_synchronising(automaton: Automaton) -> frozenset[str]:
+    """What effects and finishes read, flags as the tick before left them."""
+    early = (t for t in transitions(automaton) if t.phase is not Phase.START)
+    return frozenset().union(*(transition.reads for transition in early))

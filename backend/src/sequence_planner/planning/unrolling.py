@@ -1,0 +1,110 @@
+"""Ticks one after another in one solver, and what is asked of them as literals of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from sequence_planner.automaton.state_set import StateSet, Supervisor
+from sequence_planner.automaton.structure import Ability, Automaton, State
+from sequence_planner.expressions.syntax import Expression
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.circuit import Circuit
+from sequence_planner.planning.encoding import SymbolicTick
+from sequence_planner.planning.plan import Circumstances, Goal, PlanTick
+from sequence_planner.planning.solver import Solver
+from sequence_planner.planning.symbolic import Reading
+from sequence_planner.planning.template import Renaming, Template
+from sequence_planner.planning.tracking import Progress, Tracker, beginning
+
+
+class Unrolling:
+    """Runs from any state that gives exactly `unknown`, variables and flags, no value; with `inside`, any safe one."""
+
+    def __init__(
+        self,
+        automaton: Automaton,
+        supervisor: Supervisor,
+        order: Sequence[Ability],
+        unknown: frozenset[str],
+        inside: bool,
+        frozen: State,
+        budget: Budget,
+    ) -> None:
+        """Of runs in which the variables `frozen` have these values throughout, which no transition writes to others.
+
+        Raises `SpentError` when the budget is spent before the first tick is encoded."""
+        self.solver = Solver()
+        self.circuit = Circuit(self.solver)
+        self.ticks: list[SymbolicTick] = []
+        self._template = Template(automaton, supervisor, order, unknown, inside, frozen, budget.require)
+        self.circuit.reserve(self._template.top)
+        self._renaming: Renaming = ()
+        self._reading = Reading(self.circuit)
+        self._tracker = Tracker(self.circuit)
+        self._progress: dict[Goal, list[Progress]] = {}
+        self._avoided: dict[Expression, list[int]] = {}
+
+    def extend(self, length: int, budget: Budget) -> None:
+        """So many ticks at least. Raises `SpentError` when the budget is spent meanwhile."""
+        while len(self.ticks) < length:
+            budget.require()
+            if not self.ticks:
+                self._renaming = self._template.first()
+                self.solver.add_clauses(self._template.clauses)
+            else:
+                self._renaming = self._template.next(self._renaming, self.circuit.top)
+                self.circuit.reserve(max(self._renaming))
+                self.solver.add_clauses(self._template.renamed(self._renaming))
+            tick = self._template.tick(self._renaming, self._reading)
+            self.ticks.append(tick)
+            # A needless choice is one that the solver makes without being asked.
+            self.solver.prefer([-choice for choice in (*tick.effects.values(), *(c for _, c in tick.starts))])
+
+    def given(self, state: State, circumstances: Circumstances) -> list[int]:
+        """The literals that say runs begin in `state`, and what may happen."""
+        literals = self._template.assumptions(circumstances)
+        for name, symbol in self._template.start.items():
+            for value, literal in symbol.literals.items():
+                literals.append(literal if state[name] == value else -literal)
+        return literals
+
+    def reached(self, goal: Goal, length: int) -> int:
+        """The literal that says the goal was reached in one of the first `length` ticks."""
+        progress = self._progress.setdefault(goal, [beginning(goal)])
+        while len(progress) <= length:
+            progress.append(self._tracker.after(goal, progress[-1], self.ticks[len(progress) - 1]))
+        return progress[length].reached
+
+    def avoids(self, condition: Expression, length: int) -> int:
+        """The literal that says no position of the tick at `length` satisfies `condition` or leaves it open."""
+        avoided = self._avoided.setdefault(condition, [])
+        while len(avoided) < length:
+            tick = self.ticks[len(avoided)]
+            positions = ((Circuit.TRUE, tick.synchronised), *tick.positions)
+            avoided.append(
+                self.circuit.conjunction(
+                    self.circuit.disjunction((-chosen, self._reading.truth(condition, each).no))
+                    for chosen, each in positions
+                )
+            )
+        return avoided[length - 1]
+
+    def inside(self, states: StateSet, length: int) -> int:
+        """The literal that says the tick at `length` leads into `states`, after step 3 or at its end."""
+        last = self.ticks[length - 1]
+        return self.circuit.disjunction(self._reading.member(states, each) for each in (last.synchronised, last.end))
+
+    def starts(self, length: int) -> list[int]:
+        """The literals that say a start is taken in one of the first `length` ticks."""
+        return [choice for tick in self.ticks[:length] for _, choice in tick.starts]
+
+    def read(self, length: int, starting: int, model: Sequence[int]) -> tuple[PlanTick, ...]:
+        """The run of a model of the solver; only the first `starting` ticks have starts."""
+        true = set(model)
+        return tuple(
+            PlanTick(
+                tuple(name for name, choice in tick.effects.items() if choice in true),
+                tuple(name for name, choice in tick.starts if choice in true) if number <= starting else (),
+            )
+            for number, tick in enumerate(self.ticks[:length], start=1)
+        )

@@ -1,0 +1,182 @@
+"""Why there is no plan: few circumstances that exclude every plan together, each of which does its part.
+
+What excludes plans is taken away piece by piece. A piece is needed if there is a plan without it (deletion filter,
+Chinneck and Dravnieks 1991); since taking away only ever allows more, one pass over all pieces is enough.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from enum import StrEnum
+
+from sequence_planner.automaton.cone import read_variables
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.syntax import TRUE
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.invariants import asserted, is_met
+from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.plan import Goal, Proof
+
+# The supervisor of the specifications with these names, and of no others.
+SupervisorFor = Callable[[frozenset[str]], Supervisor]
+
+
+class Part(StrEnum):
+    """What a member of a reason is."""
+
+    VALUE = "value"  # of a variable, in the state to plan from
+    SPECIFICATION = "specification"
+    AVOID = "avoid"  # a condition to be avoided, as it prints
+    OFFLINE = "offline"  # a resource
+    LOCAL = "local"  # the formula of a goal
+    GOAL = "goal"
+
+
+@dataclass(frozen=True)
+class Member:
+    """One of the circumstances that exclude every plan together; a `value` of None is awaited."""
+
+    part: Part
+    name: str
+    value: Value | None = None
+
+
+@dataclass(frozen=True)
+class Reason:
+    """There is no plan as long as all `members` are as they are, whatever else is different: `proof` shows it.
+
+    If it is `minimal`, there is a plan without any one of them: were the goal not asked for, its formula not demanded,
+    the specification not given, the resource online, the condition not avoided, or some other value in place. All
+    goals must hold after step 3 of some tick.
+    """
+
+    members: tuple[Member, ...]
+    minimal: bool
+    proof: Proof
+
+
+def explain(automaton: Automaton, supervisor_for: SupervisorFor, task: Task, budget: Budget) -> Reason | None:
+    """A reason why the goals of `task` cannot be reached; None when they can, or nothing is proven in time.
+
+    Flags follow the variables and are no members. When the budget is spent, the reason is what has been proven so far.
+    """
+    return _Explanation(automaton, supervisor_for, budget).of(task)
+
+
+@dataclass(frozen=True)
+class _Situation:
+    """What is still as it was: a task, the specifications, and the variables with their values."""
+
+    task: Task
+    specifications: frozenset[str]
+    fixed: frozenset[str]
+
+    def members(self, automaton: Automaton) -> Iterator[Member]:
+        """What is still as it was; what the user would rather not hear of comes first."""
+        circumstances = self.task.circumstances
+        for name in automaton.variables:
+            if name in self.fixed:
+                yield Member(Part.VALUE, name, self.task.state[name])
+        for name in sorted(self.specifications):
+            yield Member(Part.SPECIFICATION, name)
+        for condition in circumstances.avoid:
+            yield Member(Part.AVOID, print_expression(condition))
+        for name in sorted(circumstances.offline):
+            yield Member(Part.OFFLINE, name)
+        for goal in self.task.goals:
+            if goal.local != TRUE:
+                yield Member(Part.LOCAL, goal.name)
+        for goal in self.task.goals:
+            yield Member(Part.GOAL, goal.name)
+
+    def without(self, member: Member) -> _Situation:
+        """The situation in which that is different."""
+        task, circumstances, name = self.task, self.task.circumstances, member.name
+        match member.part:
+            case Part.VALUE:
+                return replace(self, fixed=self.fixed - {name})
+            case Part.SPECIFICATION:
+                return replace(self, specifications=self.specifications - {name})
+            case Part.AVOID:
+                kept = tuple(each for each in circumstances.avoid if print_expression(each) != name)
+                return replace(self, task=replace(task, circumstances=replace(circumstances, avoid=kept)))
+            case Part.OFFLINE:
+                fewer = circumstances.offline - {name}
+                return replace(self, task=replace(task, circumstances=replace(circumstances, offline=fewer)))
+            case Part.LOCAL:
+                goals = tuple(_undemanding(goal) if goal.name == name else goal for goal in task.goals)
+                return replace(self, task=replace(task, goals=goals))
+            case Part.GOAL:
+                return replace(self, task=replace(task, goals=tuple(g for g in task.goals if g.name != name)))
+
+
+class _Explanation:
+    def __init__(self, automaton: Automaton, supervisor_for: SupervisorFor, budget: Budget) -> None:
+        self._automaton = automaton
+        self._supervisor_for = supervisor_for
+        self._budget = budget
+        self._engines: dict[frozenset[str], Reachability] = {}
+
+    def of(self, task: Task) -> Reason | None:
+        automaton = self._automaton
+        situation = _Situation(task, frozenset(automaton.specifications), frozenset(automaton.variables))
+        try:
+            proof = self._proof(situation)
+        except SpentError:
+            return None
+        if proof is None:
+            return None
+        situation = self._eased(situation, proof)
+        minimal = True
+        try:
+            for member in tuple(situation.members(automaton)):
+                if member not in tuple(situation.members(automaton)):
+                    continue  # an earlier proof did without it
+                relaxed = situation.without(member)
+                if (further := self._proof(relaxed)) is not None:
+                    situation, proof = self._eased(relaxed, further), further
+        except SpentError:
+            minimal = False
+        return Reason(tuple(situation.members(automaton)), minimal, proof)
+
+    def _proof(self, situation: _Situation) -> Proof | None:
+        """That there is no plan; None if there is one."""
+        if not situation.task.goals:
+            return None
+        names = situation.specifications
+        if names not in self._engines:
+            self._engines[names] = Reachability(self._automaton, self._supervisor_for(names))
+        free = frozenset(self._automaton.variables) - situation.fixed
+        return self._engines[names].decide(situation.task, self._budget, free).proof
+
+    def _eased(self, situation: _Situation, proof: Proof) -> _Situation:
+        """The same with all values free but those by which the invariant holds at the beginning.
+
+        Values that are awaited stay: with others the invariant would have to be another one.
+        """
+        values = asserted(situation.task.state, situation.task.goals)
+        kept = frozenset(name for name in situation.fixed if values[name] is None)
+        for clause in proof.invariant:
+            behind = [self._behind(literal.name) for literal in clause if is_met(literal, values)]
+            certain = [names for names in behind if names <= situation.fixed]
+            if not certain:
+                return situation
+            if not any(names <= kept for names in certain):
+                kept |= certain[0]
+        return replace(situation, fixed=kept)
+
+    def _behind(self, name: str) -> frozenset[str]:
+        """The variables that decide it; none decides how far goals have come."""
+        predicates = self._automaton.flag_predicates
+        if name in predicates:
+            return read_variables(self._automaton, (predicates[name],))
+        return frozenset({name} & self._automaton.variables.keys())
+
+
+def _undemanding(goal: Goal) -> Goal:
+    return replace(goal, local=TRUE, at=0)

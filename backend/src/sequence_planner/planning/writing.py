@@ -1,0 +1,94 @@
+"""Actions over symbolic states: what is written, where, and whether it goes together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from sequence_planner.automaton.structure import Automaton, target
+from sequence_planner.expressions.syntax import Assignment
+from sequence_planner.planning.circuit import Circuit
+from sequence_planner.planning.symbolic import Reading, Symbol, SymbolicState
+
+
+@dataclass(frozen=True)
+class Write:
+    """A value that is written to a variable where `where` is true."""
+
+    where: int
+    value: Symbol
+
+
+Writes = dict[str, Write]
+
+
+class Writing:
+    """Reads the actions of an automaton into a circuit."""
+
+    def __init__(self, automaton: Automaton, circuit: Circuit) -> None:
+        self._automaton = automaton
+        self._circuit = circuit
+        self._reading = Reading(circuit)
+
+    def writes(self, actions: Iterable[Assignment], state: SymbolicState) -> tuple[Writes, int]:
+        """What `actions` write, and the literal that says nothing about it is undetermined."""
+        writes: Writes = {}
+        determined: list[int] = []
+        for action in actions:
+            # Where it is taken, an action writes a value of the domain; it is encoded for all states.
+            domain = self._automaton.variables[target(action)].type.domain
+            value = self._reading.symbol(action.value, state).within(domain)
+            written = Symbol(value.literals)  # nothing undetermined is ever written
+            if action.condition is None:
+                writes[target(action)] = Write(Circuit.TRUE, written)
+                determined.append(value.known)
+            else:
+                condition = self._reading.truth(action.condition, state)
+                writes[target(action)] = Write(condition.yes, written)
+                determined.append(
+                    self._circuit.disjunction((condition.no, self._circuit.conjunction((condition.yes, value.known))))
+                )
+        return writes, self._circuit.conjunction(determined)
+
+    def applied(self, state: SymbolicState, writes: Writes) -> SymbolicState:
+        """The state after `writes`."""
+        after = dict(state)
+        for name, write in writes.items():
+            after[name] = self._reading.chosen(write.where, write.value, state[name])
+        return after
+
+    def merged(self, taken: Iterable[tuple[int, Writes]]) -> Writes:
+        """All writes of what is taken, none of which conflict."""
+        merged: Writes = {}
+        for choice, writes in taken:
+            for name, write in writes.items():
+                where = self._circuit.conjunction((choice, write.where))
+                if name in merged:
+                    before = merged[name]
+                    value = self._reading.chosen(where, write.value, before.value)
+                    merged[name] = Write(self._circuit.disjunction((where, before.where)), value)
+                else:
+                    merged[name] = Write(where, write.value)
+        return merged
+
+    def conflict(self, first: Writes, second: Writes) -> int:
+        """The literal that says that the two write different values to a variable."""
+        return self._circuit.disjunction(
+            self._circuit.conjunction(
+                (first[n].where, second[n].where, -self._reading.same(first[n].value, second[n].value))
+            )
+            for n in first
+            if n in second
+        )
+
+
+def sharing(all_writes: Sequence[Writes]) -> list[tuple[int, int]]:
+    """The pairs of numbers of those that write a common variable, the smaller number first."""
+    writers: dict[str, list[int]] = {}
+    pairs: dict[tuple[int, int], None] = {}
+    for number, writes in enumerate(all_writes):
+        for name in writes:
+            others = writers.setdefault(name, [])
+            pairs |= dict.fromkeys((other, number) for other in others)
+            others.append(number)
+    return list(pairs)

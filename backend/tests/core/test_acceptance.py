@@ -1,0 +1,91 @@
+"""What is accepted as a plan is what replays on the reference tick, and nothing is made longer by being tightened."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from hypothesis import given
+
+from sequence_planner.planning.acceptance import Acceptance
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.plan import Plan, PlanRequest, PlanTick
+from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.replay import Replay, missing
+from sequence_planner.planning.tightening import Tightening
+
+from .budget import examples
+from .choices import Choices, made_by
+from .random_problems import Problem, problem
+
+
+def planned(given_: Problem) -> tuple[Task, Plan] | None:
+    """A task, and a plan for it that has ticks."""
+    request = PlanRequest(given_.state, given_.goals, 20, longest=7, circumstances=given_.circumstances)
+    answer = Planner(given_.automaton, given_.supervisor).answer(request)
+    if answer.plan is None or not answer.plan.ticks:
+        return None
+    goals = tuple(goal for goal in given_.goals if goal.name in answer.goals)
+    return Task(given_.state, missing(goals, given_.state), given_.circumstances, longest=7), answer.plan
+
+
+def changed(choices: Choices, given_: Problem, plan: Plan) -> Plan:
+    """The plan with one thing in it that is different."""
+    ticks = list(plan.ticks)
+    place = choices.number(0, len(ticks) - 1)
+    effects, starts = list(ticks[place].effects), list(ticks[place].starts)
+    what = choices.number(0, 5)
+    if what == 0 and effects:
+        effects.remove(choices.pick(effects))
+    elif what == 1 and given_.automaton.effects:
+        effects.append(choices.pick(list(given_.automaton.effects)).name)
+    elif what == 2 and starts:
+        starts.remove(choices.pick(starts))
+    elif what == 3 and given_.automaton.abilities:
+        starts.insert(0, choices.pick(list(given_.automaton.abilities)))
+    elif what == 4:
+        starts.reverse()
+    ticks[place] = PlanTick(tuple(effects), tuple(starts))
+    if what == 5:
+        del ticks[place]
+    return replace(plan, ticks=tuple(ticks))
+
+
+def wrong_plans(choices: Choices) -> tuple[Problem, Task, list[Plan]]:
+    given_ = problem(choices, unknown=choices.chance(3), demanding=choices.chance(2))
+    found = planned(given_)
+    if found is None:
+        return given_, Task(given_.state, ()), []
+    task, plan = found
+    plans = [plan]
+    for _ in range(8):
+        plans.append(changed(choices, given_, choices.pick([each for each in plans if each.ticks])))
+    return given_, task, plans
+
+
+@examples(60)
+@given(made_by(wrong_plans))
+def test_what_is_accepted_is_what_replays(found: tuple[Problem, Task, list[Plan]]) -> None:
+    given_, task, plans = found
+    acceptance = Acceptance(given_.automaton, given_.supervisor)
+    replay = Replay(given_.automaton, given_.supervisor, given_.circumstances)
+    for plan in plans:
+        if any(len(set(tick.effects)) < len(tick.effects) for tick in plan.ticks):
+            continue  # an effect that is named twice happens once, and is no plan of ours
+        expected = replay.exactly(task.state, task.state, task.goals, (), plan.ticks)
+        assert acceptance.accepts(task, plan) == (expected and len(plan.ticks) <= task.longest)
+
+
+@examples(60)
+@given(made_by(lambda choices: problem(choices, demanding=choices.chance(2))))
+def test_a_tightened_plan_is_one_of_the_same_starts_and_no_longer(given_: Problem) -> None:
+    found = planned(given_)
+    if found is None:
+        return
+    task, plan = found
+    tightening = Tightening(given_.automaton, given_.supervisor)
+    early = tightening.tightened(task, plan, Budget.seconds(20))
+    assert Acceptance(given_.automaton, given_.supervisor).accepts(task, early)
+    assert len(early.ticks) <= len(plan.ticks)
+    assert sorted(name for _, name in early.starts) == sorted(name for _, name in plan.starts)
+    assert tightening.tightened(task, plan, Budget.seconds(0)) == plan

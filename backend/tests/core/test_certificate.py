@@ -1,0 +1,91 @@
+"""A proof is accepted if it is one, and not if it claims too much or too little."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from hypothesis import given
+
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.certificate import CertificateError, check
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.invariants import asserted, is_met
+from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.plan import Clause, Literal, Proof
+from sequence_planner.planning.relaxation import reachable, unreached
+from sequence_planner.planning.replay import missing
+
+from .budget import examples
+from .choices import Choices, made_by
+from .exhaustive import can_reach
+from .random_problems import Problem, problem
+
+
+def accepted(given_: Problem, task: Task, proof: Proof) -> bool:
+    """Whether the proof is accepted."""
+    model = (given_.automaton, given_.supervisor)
+    try:
+        check(*model, task, proof, Budget.seconds(60))
+    except CertificateError:
+        return False
+    check(*model, task, proof, Budget.seconds(60), whole=True)
+    return True
+
+
+def possible(given_: Problem, task: Task) -> bool:
+    """Whether the goals can be reached."""
+    return can_reach(given_.automaton, given_.supervisor, [task.state], task.goals, task.circumstances)
+
+
+def some_problem(choices: Choices) -> Problem:
+    """Any kind of problem."""
+    return problem(choices, unknown=choices.chance(3), demanding=choices.chance(2))
+
+
+@examples(80)
+@given(made_by(some_problem))
+def test_what_the_relaxation_excludes_is_a_proof(given_: Problem) -> None:
+    relaxed = reachable(given_.automaton, given_.state, given_.circumstances)
+    goals = missing(given_.goals, given_.state)
+    impossible = tuple(goal for goal in goals if not relaxed.may(goal.predicate))
+    if impossible:
+        task = Task(given_.state, impossible, given_.circumstances)
+        assert accepted(given_, task, unreached(given_.automaton, relaxed))
+
+
+def with_claim(choices: Choices) -> tuple[Problem, Clause]:
+    """A problem, and something to be claimed of all its states."""
+    made = some_problem(choices)
+    types = made.automaton.types
+    literals = [
+        Literal(name, choices.pick(types[name].domain), choices.chance(2))
+        for name in choices.different(list(types), 1, 3)
+    ]
+    return made, tuple(literals)
+
+
+@examples(70)
+@given(made_by(with_claim))
+def test_no_proof_of_what_is_wrong_is_accepted(case: tuple[Problem, Clause]) -> None:
+    """Whatever is claimed, alone or besides a proof: if it is accepted, the goals cannot be reached."""
+    made, claim = case
+    task = Task(made.state, missing(made.goals, made.state), made.circumstances)
+    if not task.goals:
+        return
+    if accepted(made, task, Proof("guess", (claim,))) or accepted(made, task, Proof("guess", ())):
+        assert not possible(made, task)
+
+
+@examples(80)
+@given(made_by(with_claim))
+def test_a_proof_that_is_tampered_with_is_not_accepted(case: tuple[Problem, Clause]) -> None:
+    made, claim = case
+    task = Task(made.state, missing(made.goals, made.state), made.circumstances)
+    proof = Reachability(made.automaton, made.supervisor).decide(task, Budget.seconds(60)).proof if task.goals else None
+    if proof is None:
+        return
+    assert accepted(made, task, proof)
+    values = asserted(task.state, task.goals)
+    if false := tuple(literal for literal in claim if not is_met(literal, values)):
+        assert not accepted(made, task, replace(proof, invariant=(*proof.invariant, false)))
+    assert not accepted(made, task, replace(proof, invariant=((Literal("nobody", True),),)))

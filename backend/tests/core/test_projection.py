@@ -1,0 +1,81 @@
+"""Plans made of a part of the station are plans of the whole."""
+
+from __future__ import annotations
+
+from hypothesis import given
+
+from sequence_planner.automaton.state_set import StateSet, Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.tick import initial_state
+from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.planning.plan import Circumstances, Contract, goals_of
+from sequence_planner.planning.projection import Projection
+
+from .budget import examples
+from .building import Does, automaton
+from .choices import made_by
+from .random_problems import Problem, problem
+from .test_bounded import open_goals, valid
+
+EVERYTHING = Supervisor(StateSet((), ()), {})
+OFF = (BOOLEAN, False)
+
+
+@examples(250)
+@given(made_by(lambda choices: problem(choices, unknown=choices.chance(4), demanding=choices.chance(2))))
+def test_what_it_finds_is_a_plan(given_: Problem) -> None:
+    if not (goals := open_goals(given_)):
+        return
+    task = Task(given_.state, goals, given_.circumstances, Contract.FAST, longest=12)
+    finding = Projection(given_.automaton, given_.supervisor).solve(task, Budget.seconds(30))
+    assert (finding.proof, finding.searched) == (None, 0)
+    if finding.plan is not None:
+        assert not finding.plan.minimal_ticks
+        assert valid(given_, finding.plan)
+
+
+def lamps(number: int) -> Automaton:
+    """Lamps that each take a switch, a fuse that all of them need, and a lamp that goes out when the next is lit."""
+    names = range(number)
+    dims = {
+        f"dim_{n}": Does(start=(), finish=f"lit_{n} and lit_{n + 1} and bright_{n}", finally_=(f"bright_{n} := false",))
+        for n in names[:-1]
+    }
+    return automaton(
+        {f"light_{n}": Does(start=(f"switch_{n} := true",), enabled=f"fuse and not switch_{n}") for n in names}
+        | {"fit": Does(start=("fuse := true",), enabled="not fuse")}
+        | dims,
+        measured={f"lit_{n}": OFF for n in names},
+        output={f"switch_{n}": OFF for n in names},
+        estimated={"fuse": OFF} | {f"bright_{n}": (BOOLEAN, True) for n in names},
+        effects={f"shines_{n}": (f"switch_{n} and not lit_{n}", (f"lit_{n} := true",)) for n in names},
+        goals={"lit": "lit_3", "pair": "lit_3 and lit_4 and not bright_3", "bright": "lit_3 and lit_4 and bright_3"},
+    )
+
+
+def ask(station: Automaton, goal: str, contract: Contract = Contract.FAST) -> Finding:
+    task = Task(initial_state(station), goals_of(station, (goal,)), Circumstances(), contract)
+    return Projection(station, EVERYTHING).solve(task, Budget.seconds(20))
+
+
+def test_only_what_matters_is_started() -> None:
+    plan = ask(lamps(40), "lit").plan
+    assert plan is not None
+    assert [tick.starts for tick in plan.ticks] == [("fit", "light_3"), ()]
+
+
+def test_what_finishes_by_itself_is_counted_on() -> None:
+    plan = ask(lamps(40), "pair").plan
+    assert plan is not None
+    assert sorted(name for _, name in plan.starts) == ["fit", "light_3", "light_4"]
+
+
+def test_what_is_frozen_but_would_change_is_let_loose() -> None:
+    """Both lamps can be lit only so that the first goes out: no plan of a part that ignores this is believed."""
+    assert ask(lamps(10), "bright").plan is None
+
+
+def test_minimal_plans_are_left_to_others() -> None:
+    assert ask(lamps(5), "lit", Contract.MINIMAL) == Finding()

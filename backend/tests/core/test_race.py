@@ -1,0 +1,249 @@
+"""Engines that race in processes: the same answers as in one process, whatever becomes of a lane."""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import replace
+from multiprocessing.process import BaseProcess
+
+import pytest
+from hypothesis import given
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.tick import initial_state
+from sequence_planner.planning import race as racing
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.planning.engines import FACTORIES, Lane
+from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, PlanTick, Proof, Verdict, goals_of
+from sequence_planner.planning.planner import Planner, PlannerError
+from sequence_planner.planning.race import Race
+from sequence_planner.synthesis.supervision import synthesise
+
+from .budget import examples
+from .choices import made_by
+from .random_problems import Problem, problem
+
+GOAL = ("tighten_bolt_pair",)
+
+
+class Engine:
+    """One that behaves as its name says."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self.automaton = automaton
+
+    @property
+    def name(self) -> str:
+        return type(self).__name__
+
+
+class Sleeping(Engine):
+    """Cannot be interrupted, like a solver in C."""
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        time.sleep(60)
+        return Finding()
+
+
+class Failing(Engine):
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        raise ZeroDivisionError("of its own making")
+
+
+class Dying(Engine):
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        os.kill(os.getpid(), signal.SIGKILL)
+        return Finding()
+
+
+class Lying(Engine):
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        return Finding(Plan((PlanTick((), ()),), minimal_ticks=True, minimal_starts=True), searched=1)
+
+
+class Greedy(Engine):
+    """Uses more memory than it may."""
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        return Finding(searched=len(bytearray(2**30)))
+
+
+class Proving(Engine):
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        return Finding(proof=Proof(self.name, ()))
+
+
+class Patient(Engine):
+    """Works until it is told that nobody waits."""
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        while not budget.spent:
+            time.sleep(0.001)
+        return Finding(searched=3)
+
+
+OWN = {each.__name__: each for each in (Sleeping, Failing, Dying, Lying, Greedy, Proving, Patient)}
+
+
+def lanes(*names: str) -> list[Lane]:
+    return [Lane(name, dict.fromkeys(Contract, (name,))) for name in names]
+
+
+class Asking:
+    """A planner over a race of some engines, for the worked example."""
+
+    def __init__(self, automaton: Automaton, *names: str, memory: int = racing.MEMORY) -> None:
+        supervisor = synthesise(automaton)
+        self.race = Race(automaton, supervisor, lanes(*names), {**FACTORIES, **OWN}, memory)
+        self.planner = Planner(automaton, supervisor, self.race)
+        self.request = PlanRequest(initial_state(automaton), goals_of(automaton, GOAL), deadline=20)
+
+    def answer(self, deadline: float = 20, contract: Contract = Contract.MINIMAL) -> PlanAnswer:
+        return self.planner.answer(replace(self.request, deadline=deadline, contract=contract))
+
+    def close(self) -> None:
+        self.race.close()
+        assert not processes()
+
+
+def processes() -> list[BaseProcess]:
+    return [child for child in multiprocessing.active_children() if child.name.startswith("planner")]
+
+
+def the(lane: str) -> BaseProcess:
+    (process,) = (child for child in processes() if child.name == f"planner {lane}")
+    return process
+
+
+def until(what: Callable[[], bool]) -> None:
+    end = time.monotonic() + 20
+    while not what():
+        assert time.monotonic() < end, "it did not come true in time"
+        time.sleep(0.01)
+
+
+@examples(15)
+@given(made_by(lambda choices: problem(choices, unknown=choices.chance(4), demanding=choices.chance(2))))
+def test_a_race_answers_as_the_engines_in_turn_do(given_: Problem) -> None:
+    request = PlanRequest(given_.state, given_.goals, 60, longest=7, circumstances=given_.circumstances)
+    alone = Planner(given_.automaton, given_.supervisor)
+    with Race(given_.automaton, given_.supervisor) as race:
+        planner = Planner(given_.automaton, given_.supervisor, race)
+        for contract in Contract:
+            asked = replace(request, contract=contract)
+            one, other = alone.answer(asked), planner.answer(asked)
+            assert one.goals == other.goals
+            assert one.left_out == other.left_out
+            assert (one.plan is None) == (other.plan is None)
+            if contract is Contract.MINIMAL:
+                assert shape(one) == shape(other)
+
+
+def shape(answer: PlanAnswer) -> tuple[Verdict, int, int, bool, bool] | Verdict:
+    plan = answer.plan
+    if plan is None:
+        return answer.verdict
+    return answer.verdict, len(plan.ticks), len(plan.starts), plan.minimal_ticks, plan.minimal_starts
+
+
+@pytest.mark.parametrize("bad", ["Sleeping", "Failing", "Dying", "Lying"])
+def test_no_lane_takes_the_answer_with_it(worked_example: Automaton, bad: str) -> None:
+    with closing(Asking(worked_example, bad, "bmc")) as asking:
+        for _ in range(2):
+            answer = asking.answer()
+            assert answer.verdict is Verdict.FOUND
+            assert answer.engine == "bmc"
+            assert answer.plan is not None
+            assert answer.plan.minimal_starts
+
+
+@pytest.mark.parametrize(
+    ("bad", "why"), [("Failing", "of its own making"), ("Lying", "replay"), ("Dying", "has ended")]
+)
+def test_without_another_engine_it_says_why_there_is_no_answer(worked_example: Automaton, bad: str, why: str) -> None:
+    with closing(Asking(worked_example, bad)) as asking, pytest.raises(PlannerError, match=why):
+        asking.answer()
+
+
+@pytest.mark.parametrize("contract", Contract)
+def test_a_deadline_is_kept_by_lanes_that_cannot_be_interrupted(worked_example: Automaton, contract: Contract) -> None:
+    with closing(Asking(worked_example, "Sleeping", "Patient")) as asking:
+        for _ in range(2):
+            began = time.monotonic()
+            answer = asking.answer(0.3, contract)
+            assert 0.25 < time.monotonic() - began < 0.7
+            assert answer.verdict is Verdict.LATE
+
+
+def test_a_lane_that_does_not_come_back_is_replaced_and_answers_again(
+    worked_example: Automaton, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(racing, "PATIENCE", 0.2)
+    with closing(Asking(worked_example, "bmc")) as asking:
+        assert asking.answer().plan is not None
+        still = the("bmc")
+        assert still.pid is not None
+        os.kill(still.pid, signal.SIGSTOP)
+        began = time.monotonic()
+        assert asking.answer(0.2).verdict is Verdict.LATE
+        assert time.monotonic() - began < 0.7
+        until(lambda: not still.is_alive())
+        until(lambda: bool(processes()))
+        assert asking.answer().plan is not None
+
+
+def test_a_lane_that_is_killed_in_mid_search_ends_the_race_at_once_and_is_there_for_the_next(
+    worked_example: Automaton,
+) -> None:
+    with closing(Asking(worked_example, "Patient")) as asking:
+        assert asking.answer(0.1).verdict is Verdict.LATE  # it has started now, or soon
+        first = the("Patient")
+        threading.Timer(0.3, first.kill).start()
+        with pytest.raises(PlannerError, match="has ended"):
+            asking.answer(30)
+        until(lambda: [each.pid for each in processes()] not in ([], [first.pid]))
+        until(lambda: asking.answer(0.2).searched == 3)
+
+
+def test_a_request_is_called_off_from_another_thread(worked_example: Automaton) -> None:
+    with closing(Asking(worked_example, "Patient")) as asking:
+        budget = Budget.seconds(60)
+        threading.Timer(0.2, budget.call_off).start()
+        began = time.monotonic()
+        answer = asking.planner.answer(asking.request, budget)
+        assert time.monotonic() - began < 1
+        assert answer.plan is None
+
+
+def test_an_engine_may_not_eat_the_machine_s_memory(worked_example: Automaton) -> None:
+    asked = closing(Asking(worked_example, "Greedy", memory=2**29))
+    with asked as asking, pytest.raises(PlannerError, match="MemoryError"):
+        asking.answer()
+
+
+def test_a_proof_by_one_lane_answers_for_all(worked_example: Automaton) -> None:
+    with closing(Asking(worked_example, "Sleeping", "Proving")) as asking:
+        answer = asking.answer()
+        assert answer.verdict is Verdict.NONE_AT_ALL
+        assert answer.proof == Proof("Proving", ())
+        assert answer.engine == "Proving"
+        assert answer.left_out == GOAL
+
+
+def test_a_warm_race_costs_little_more_than_its_engine(worked_example: Automaton) -> None:
+    with closing(Asking(worked_example, "bmc")) as asking:
+        asking.answer()
+        took = []
+        for _ in range(20):
+            began = time.monotonic()
+            asking.answer()
+            took.append(time.monotonic() - began)
+        assert sorted(took)[5] < 0.1

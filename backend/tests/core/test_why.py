@@ -1,0 +1,97 @@
+"""A reason excludes every plan, and each of its members is needed for that, as an exhaustive search sees it."""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from dataclasses import replace
+from functools import cache
+
+from hypothesis import given
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.syntax import TRUE
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.plan import Circumstances
+from sequence_planner.planning.why import Member, Part, SupervisorFor, explain
+from sequence_planner.synthesis.supervision import synthesise
+
+from .budget import examples
+from .choices import Choices, made_by
+from .exhaustive import alike, can_reach
+from .random_problems import Problem, problem
+
+
+def supervisors(given_: Problem) -> SupervisorFor:
+    """The supervisor of some of the specifications."""
+
+    @cache
+    def supervisor_for(names: frozenset[str]) -> Supervisor:
+        every = given_.automaton.specifications
+        if names == every.keys():
+            return given_.supervisor
+        kept = {name: specification for name, specification in every.items() if name in names}
+        return synthesise(replace(given_.automaton, specifications=kept))
+
+    return supervisor_for
+
+
+def possible(given_: Problem, members: Collection[Member], supervisor_for: SupervisorFor) -> bool:
+    """Whether there is a plan when no more than `members` stands in its way."""
+    named = {part: {member.name for member in members if member.part is part} for part in Part}
+    goals = tuple(
+        goal if goal.name in named[Part.LOCAL] else replace(goal, local=TRUE, at=0)
+        for goal in given_.goals
+        if goal.name in named[Part.GOAL]
+    )
+    circumstances = Circumstances(
+        frozenset(named[Part.OFFLINE]),
+        given_.circumstances.restart,
+        tuple(c for c in given_.circumstances.avoid if print_expression(c) in named[Part.AVOID]),
+    )
+    free = [name for name in given_.automaton.variables if name not in named[Part.VALUE]]
+    states = alike(given_.automaton, given_.state, free)
+    supervisor = supervisor_for(frozenset(named[Part.SPECIFICATION]))
+    return not goals or can_reach(given_.automaton, supervisor, states, goals, circumstances)
+
+
+def explains(given_: Problem) -> bool:
+    """There is a minimal reason exactly where there is no plan; whether there is one."""
+    supervisor_for = supervisors(given_)
+    task = Task(given_.state, given_.goals, given_.circumstances)
+    reason = explain(given_.automaton, supervisor_for, task, Budget.seconds(60))
+    plan = can_reach(given_.automaton, given_.supervisor, [given_.state], given_.goals, given_.circumstances)
+    assert (reason is None) == plan
+    if reason is None:
+        return False
+    assert reason.minimal
+    assert not possible(given_, reason.members, supervisor_for)
+    for member in reason.members:
+        others = [other for other in reason.members if other != member]
+        assert possible(given_, others, supervisor_for), member
+    return True
+
+
+def demanding(choices: Choices) -> Problem:
+    """A problem with formulas and circumstances."""
+    return problem(choices, demanding=True)
+
+
+@examples(60)
+@given(made_by(problem))
+def test_reasons_suffice_and_each_member_is_needed(given_: Problem) -> None:
+    explains(given_)
+
+
+@examples(60)
+@given(made_by(demanding))
+def test_so_they_do_with_formulas_and_circumstances(given_: Problem) -> None:
+    explains(given_)
+
+
+@examples(10)
+@given(made_by(problem))
+def test_without_time_no_reason_is_given(given_: Problem) -> None:
+    task = Task(given_.state, given_.goals, given_.circumstances)
+    assert explain(given_.automaton, supervisors(given_), task, Budget.seconds(0)) is None
