@@ -35,7 +35,7 @@ from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import FACTORIES
 from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.replay import Replay, missing
+from sequence_planner.planning.replaying.replay import Replay, missing
 
 T = TypeVar("T")
 

@@ -15,9 +15,9 @@ from sequence_planner.automaton.structure import Ability, Automaton
 from sequence_planner.automaton.tick import finish, initial_state, synchronise
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Circumstances, Plan, goals_of
-from sequence_planner.planning.replay import Replay
-from sequence_planner.planning.search import Search
-from sequence_planner.planning.sweep import sweep_order
+from sequence_planner.planning.replaying.replay import Replay
+from sequence_planner.planning.sat.search import Search
+from sequence_planner.planning.sat.sweep import sweep_order
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervision import synthesise
 

@@ -12,11 +12,11 @@ from dataclasses import dataclass
 
 from compared.declaring import Problem
 
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.encoding import Encoding
+from sequence_planner.planning.goals.tracking import Progress, Tracker
 from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.sweep import sweep_order
-from sequence_planner.planning.tracking import Progress, Tracker
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.encoding import Encoding
+from sequence_planner.planning.sat.sweep import sweep_order
 
 
 class _Gates(Circuit):

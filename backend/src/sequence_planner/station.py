@@ -15,7 +15,7 @@ from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.pipelines.building import build_pipelines, load_messages
 from sequence_planner.pipelines.inference import with_inferred_variables
 from sequence_planner.pipelines.pipeline import StationPipelines
-from sequence_planner.planning.monitor import TooManyStatesError, monitor_of
+from sequence_planner.planning.goals.monitor import TooManyStatesError, monitor_of
 from sequence_planner.ros.messages import MessageRegistry
 
 

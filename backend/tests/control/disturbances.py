@@ -24,7 +24,7 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.view import StationIdentity
 from sequence_planner.emulation.devices import EmulatedDevices
 from sequence_planner.planning.plan import PlanAnswer, PlanRequest
-from sequence_planner.planning.replay import Replay
+from sequence_planner.planning.replaying.replay import Replay
 from sequence_planner.ros.memory import MemoryNetwork
 from sequence_planner.ros.transport import Sample
 

@@ -176,7 +176,7 @@ def test_a_question_that_is_called_off_is_not_answered_and_the_next_one_is() -> 
 PARENT = f"""
 import threading, time
 from pathlib import Path
-from sequence_planner.planning.companion import Companion
+from sequence_planner.planning.racing.companion import Companion
 from sequence_planner.planning.worker import Model, work
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervision import synthesise

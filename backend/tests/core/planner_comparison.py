@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections import Counter
 from random import Random
 
-from sequence_planner.planning.bounded import BoundedModelChecking
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Engine, Finding, Task
 from sequence_planner.planning.heuristic.best_first import HeuristicSearch
 from sequence_planner.planning.heuristic.breadth_first import ShortestSearch
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.plan import Contract
-from sequence_planner.planning.projection import Projection
-from sequence_planner.planning.replay import Replay, missing
+from sequence_planner.planning.relaxed.projection import Projection
+from sequence_planner.planning.replaying.replay import Replay, missing
+from sequence_planner.planning.sat.bounded import BoundedModelChecking
 
 from .breadth_first import Shortest, shortest
 from .choices import Choices

@@ -25,8 +25,8 @@ from sequence_planner.expressions.syntax import (
     Variable,
 )
 from sequence_planner.expressions.types import Value
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Circumstances, goals_of
-from sequence_planner.planning.pursuit import Goals
 from sequence_planner.synthesis.supervision import SynthesisError, synthesise
 
 from .choices import Choices

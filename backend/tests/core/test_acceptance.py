@@ -6,13 +6,13 @@ from dataclasses import replace
 
 from hypothesis import given
 
-from sequence_planner.planning.acceptance import Acceptance
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.plan import Plan, PlanRequest, PlanTick
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.replay import Replay, missing
-from sequence_planner.planning.tightening import Tightening
+from sequence_planner.planning.replaying.acceptance import Acceptance
+from sequence_planner.planning.replaying.replay import Replay, missing
+from sequence_planner.planning.replaying.tightening import Tightening
 
 from .budget import examples
 from .choices import Choices, made_by

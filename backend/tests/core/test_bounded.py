@@ -14,11 +14,11 @@ from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.traces import satisfies
 from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.planning.bounded import BoundedModelChecking
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Contract, Goal, Plan, goals_of
-from sequence_planner.planning.pursuit import Goals
+from sequence_planner.planning.sat.bounded import BoundedModelChecking
 
 from .breadth_first import Shortest, may_start, permitted, shortest
 from .budget import examples

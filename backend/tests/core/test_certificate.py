@@ -7,13 +7,13 @@ from dataclasses import replace
 from hypothesis import given
 
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.certificate import CertificateError, check
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.invariants import asserted, is_met
+from sequence_planner.planning.pdr.certificate import CertificateError, check
 from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.pdr.invariants import asserted, is_met
 from sequence_planner.planning.plan import Clause, Literal, Proof
-from sequence_planner.planning.relaxation import reachable, unreached
-from sequence_planner.planning.replay import missing
+from sequence_planner.planning.relaxed.relaxation import reachable, unreached
+from sequence_planner.planning.replaying.replay import missing
 
 from .budget import examples
 from .choices import Choices, made_by

@@ -10,9 +10,9 @@ from hypothesis import given
 from sequence_planner.automaton.structure import Kind
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.corrections import Change, corrections
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.replay import Replay, missing
+from sequence_planner.planning.reasons.corrections import Change, corrections
+from sequence_planner.planning.replaying.replay import Replay, missing
 
 from .budget import examples
 from .choices import Choices, made_by

@@ -9,8 +9,8 @@ from sequence_planner.exporting.smv import smv_text
 from sequence_planner.exporting.ticks import sequential
 from sequence_planner.expressions.syntax import Variable
 from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Goal
-from sequence_planner.planning.pursuit import Goals
 
 from .breadth_first import shortest
 from .budget import examples

@@ -15,7 +15,6 @@ from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.planning.acceptance import Acceptance
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.heuristic.best_first import HeuristicSearch
@@ -25,7 +24,8 @@ from sequence_planner.planning.heuristic.estimate import Estimator
 from sequence_planner.planning.heuristic.relaxed_task import RelaxedTask
 from sequence_planner.planning.plain import for_planning, plan_transitions
 from sequence_planner.planning.plan import Contract, Goal, Plan, PlanTick, goals_of
-from sequence_planner.planning.replay import missing
+from sequence_planner.planning.replaying.acceptance import Acceptance
+from sequence_planner.planning.replaying.replay import missing
 
 from .breadth_first import Shortest, shortest
 from .budget import examples

@@ -10,9 +10,9 @@ from hypothesis import given
 from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import apply_effects, finish, supervised_start, synchronise
-from sequence_planner.planning.lookahead import Lookahead
 from sequence_planner.planning.plan import PlanTick
-from sequence_planner.planning.replay import Replay
+from sequence_planner.planning.replaying.lookahead import Lookahead
+from sequence_planner.planning.replaying.replay import Replay
 
 from .budget import examples
 from .choices import Choices, made_by

@@ -14,9 +14,9 @@ from sequence_planner.expressions.resolution import Scope, resolve_formula
 from sequence_planner.expressions.syntax import TRUE, BinaryTemporal, Expression, UnaryTemporal, conjunction
 from sequence_planner.expressions.traces import satisfies
 from sequence_planner.expressions.types import BOOLEAN, Value
-from sequence_planner.planning.monitor import MOST_STATES, Monitor, TooManyStatesError, monitor_of
+from sequence_planner.planning.goals.monitor import MOST_STATES, Monitor, TooManyStatesError, monitor_of
+from sequence_planner.planning.goals.pursuit import moved, settled
 from sequence_planner.planning.plan import Goal
-from sequence_planner.planning.pursuit import moved, settled
 
 from .budget import examples
 

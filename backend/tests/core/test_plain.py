@@ -18,11 +18,11 @@ from sequence_planner.expressions.printing import print_value
 from sequence_planner.model.plain_documents import read_plain
 from sequence_planner.model.source import ModelError
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.one_at_a_time import OneAtATime
 from sequence_planner.planning.plain import for_planning, plan_transitions
 from sequence_planner.planning.plan import Contract, Goal, Verdict, goals_of
-from sequence_planner.planning.pursuit import Goals
-from sequence_planner.planning.replay import missing
+from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise

@@ -6,11 +6,11 @@ from dataclasses import replace
 
 from hypothesis import given
 
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Goal, PlanRequest, Verdict
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.pursuit import Goals
-from sequence_planner.planning.relaxation import unreachable_goals
-from sequence_planner.planning.replay import Replay
+from sequence_planner.planning.relaxed.relaxation import unreachable_goals
+from sequence_planner.planning.replaying.replay import Replay
 
 from .breadth_first import Shortest, shortest
 from .budget import examples

@@ -9,8 +9,8 @@ from sequence_planner.automaton.tick import initial_state, sense, synchronise
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Value
 from sequence_planner.planning.plan import Circumstances, PlanAnswer, PlanRequest, Verdict, goals_of
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.relaxation import unreachable_goals
-from sequence_planner.planning.sweep import sweep_order
+from sequence_planner.planning.relaxed.relaxation import unreachable_goals
+from sequence_planner.planning.sat.sweep import sweep_order
 from sequence_planner.synthesis.supervision import synthesise
 
 from .building import Does, automaton

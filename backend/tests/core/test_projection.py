@@ -11,7 +11,7 @@ from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Circumstances, Contract, goals_of
-from sequence_planner.planning.projection import Projection
+from sequence_planner.planning.relaxed.projection import Projection
 
 from .budget import examples
 from .building import Does, automaton

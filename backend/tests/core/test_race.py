@@ -18,13 +18,13 @@ from hypothesis import given
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.planning import race as racing
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.engines import FACTORIES, Lane
 from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, PlanTick, Proof, Verdict, goals_of
 from sequence_planner.planning.planner import Planner, PlannerError
-from sequence_planner.planning.race import Race
+from sequence_planner.planning.racing import race as racing
+from sequence_planner.planning.racing.race import Race
 from sequence_planner.synthesis.supervision import synthesise
 
 from .budget import examples

@@ -8,7 +8,7 @@ from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.plan import Circumstances, Contract, goals_of
-from sequence_planner.planning.replay import Replay, missing
+from sequence_planner.planning.replaying.replay import Replay, missing
 
 from .budget import examples
 from .choices import Choices, made_by

@@ -8,8 +8,8 @@ from pysat.solvers import Solver
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import Assignment, Expression, Variable
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.symbolic import Reading, Symbol
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.symbolic import Reading, Symbol
 from sequence_planner.synthesis.diagrams import Diagrams
 from sequence_planner.synthesis.reading import Reader
 

@@ -17,10 +17,10 @@ from sequence_planner.automaton.tick import (
     synchronise,
 )
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType
+from sequence_planner.planning.goals.pursuit import moved, settled
 from sequence_planner.planning.plan import Plan, PlanRequest, PlanTick, goals_of
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.pursuit import moved, settled
-from sequence_planner.planning.replay import Replay
+from sequence_planner.planning.replaying.replay import Replay
 from sequence_planner.synthesis.supervision import synthesise
 
 from .breadth_first import shortest

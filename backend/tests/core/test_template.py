@@ -8,11 +8,11 @@ from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import supervised_start
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.circuit import Circuit
 from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.solver import Solver
-from sequence_planner.planning.sweep import sweep_order
-from sequence_planner.planning.unrolling import Unrolling
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.solver import Solver
+from sequence_planner.planning.sat.sweep import sweep_order
+from sequence_planner.planning.sat.unrolling import Unrolling
 
 from .budget import examples
 from .choices import Choices, made_by

@@ -15,7 +15,7 @@ from sequence_planner.expressions.syntax import FALSE
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Contract, Goal, goals_of
-from sequence_planner.planning.replay import Replay
+from sequence_planner.planning.replaying.replay import Replay
 
 needs_planner = pytest.mark.skipif(not installed(), reason="unified-planning and up-fast-downward are not installed")
 

@@ -14,7 +14,7 @@ from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.why import Member, Part, SupervisorFor, explain
+from sequence_planner.planning.reasons.why import Member, Part, SupervisorFor, explain
 from sequence_planner.synthesis.supervision import synthesise
 
 from .budget import examples

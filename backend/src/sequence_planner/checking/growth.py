@@ -10,7 +10,7 @@ from sequence_planner.automaton.tick import initial_state
 from sequence_planner.automaton.transitions import Phase, Transition, transitions
 from sequence_planner.checking.parts import Part
 from sequence_planner.expressions.syntax import TRUE, Expression
-from sequence_planner.planning.relaxation import Relaxation
+from sequence_planner.planning.relaxed.relaxation import Relaxation
 
 
 class Growth:

@@ -20,8 +20,8 @@ from sequence_planner.expressions.syntax import (
     occurrences,
 )
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.symbolic import Reading, Symbol
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.symbolic import Reading, Symbol
 
 MOST_COMBINATIONS = 100_000  # of the values in one comparison; beyond them a question is not asked
 

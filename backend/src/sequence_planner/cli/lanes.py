@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.planning.plan import PlanTick
-from sequence_planner.planning.timeline import Activity, timeline
+from sequence_planner.planning.replaying.timeline import Activity, timeline
 
 _RUNS, _DONE, _EXPECTED = "│", "└ done", "~ "
 _GAP = "  "

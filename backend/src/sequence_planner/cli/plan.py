@@ -21,8 +21,8 @@ from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import Expression, ExpressionError
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.diagnosis import Diagnosis, diagnose
 from sequence_planner.planning.engine import Task
+from sequence_planner.planning.goals.pursuit import moved
 from sequence_planner.planning.plain import plan_transitions
 from sequence_planner.planning.plan import (
     Circumstances,
@@ -34,8 +34,8 @@ from sequence_planner.planning.plan import (
     goal_of,
 )
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.pursuit import moved
-from sequence_planner.planning.replay import missing
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, diagnose
+from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import SynthesisError
 

@@ -6,10 +6,10 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from sequence_planner.expressions.printing import print_value
-from sequence_planner.planning.corrections import Correction
-from sequence_planner.planning.diagnosis import Diagnosis, change_text, member_text
 from sequence_planner.planning.plain import PlainAnswer
 from sequence_planner.planning.plan import Clause, Goal, PlanAnswer, Proof, Verdict
+from sequence_planner.planning.reasons.corrections import Correction
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, change_text, member_text
 
 _STATUS = {
     Verdict.FOUND: "plan",

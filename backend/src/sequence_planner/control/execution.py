@@ -18,8 +18,8 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.pursued import Pursued
 from sequence_planner.control.view import Mode, Production
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.lookahead import Lookahead
 from sequence_planner.planning.plan import Circumstances, PlanAnswer, PlanRequest
+from sequence_planner.planning.replaying.lookahead import Lookahead
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ from sequence_planner.control.plan_reasons import why_new, why_none, why_violate
 from sequence_planner.control.pursued import Pursued
 from sequence_planner.control.start_order import StartOrder, Step
 from sequence_planner.control.view import PlanStatus
-from sequence_planner.planning.lookahead import Lookahead
 from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest
+from sequence_planner.planning.replaying.lookahead import Lookahead
 
 
 @dataclass(frozen=True)

@@ -16,8 +16,8 @@ import structlog
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.planning.companion import Answered, Companion, Ended, Finished, Question, Ready, Word
 from sequence_planner.planning.plan import Answer, Request, WayBackRequest
+from sequence_planner.planning.racing.companion import Answered, Companion, Ended, Finished, Question, Ready, Word
 from sequence_planner.planning.worker import Model, work
 
 LOG = structlog.get_logger(__name__)

@@ -12,8 +12,8 @@ from dataclasses import dataclass, field
 
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.control.moment import Moment
+from sequence_planner.planning.goals.pursuit import moved, settled
 from sequence_planner.planning.plan import Goal, goal_of
-from sequence_planner.planning.pursuit import moved, settled
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ from sequence_planner.expressions.simplification import simplify
 from sequence_planner.expressions.syntax import TRUE, Expression, Implies, Not, Variable, conjunction
 from sequence_planner.expressions.types import BOOLEAN, Type, Value
 from sequence_planner.planning.plan import Circumstances, Goal
-from sequence_planner.planning.relaxation import counted_on
+from sequence_planner.planning.relaxed.relaxation import counted_on
 
 # The phases of a tick, and that no start has come since step 3.
 SENSING, FINISHING, ACTING, SETTLED = (

@@ -7,8 +7,8 @@ from typing import Protocol
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plan import Circumstances, Contract, Plan, Proof
-from sequence_planner.planning.pursuit import Goals
+from sequence_planner.planning.goals.pursuit import Goals
+from sequence_planner.planning.plan import ORDINARY, Circumstances, Contract, Plan, Proof
 
 
 @dataclass(frozen=True)
@@ -17,15 +17,16 @@ class Task:
 
     state: State
     goals: Goals
-    circumstances: Circumstances = Circumstances()
+    circumstances: Circumstances = ORDINARY
     contract: Contract = Contract.MINIMAL
     longest: int = 60
 
 
 @dataclass(frozen=True)
 class Finding:
-    """A plan, or a proof that there is none, or neither. It is known that no plan has at most `searched` ticks, or, when
-    there is a plan, that none has fewer than `searched`.
+    """A plan, or a proof that there is none, or neither.
+
+    No plan has at most `searched` ticks, or, when there is a plan, none has fewer than `searched`.
     """
 
     plan: Plan | None = None

@@ -13,7 +13,7 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Engine, Finding, Task
 from sequence_planner.planning.plan import Contract
-from sequence_planner.planning.relaxation import reachable, unreached
+from sequence_planner.planning.relaxed.relaxation import reachable, unreached
 
 LOG = logging.getLogger(__name__)
 
@@ -76,8 +76,8 @@ class Maker:
 
 
 FACTORIES: Mapping[str, Factory] = {
-    "bmc": Maker("bounded", "BoundedModelChecking"),
-    "projection": Maker("projection", "Projection"),
+    "bmc": Maker("sat.bounded", "BoundedModelChecking"),
+    "projection": Maker("relaxed.projection", "Projection"),
     "search": Maker("heuristic.best_first", "HeuristicSearch"),
     "breadth-first": Maker("heuristic.breadth_first", "ShortestSearch"),
     "relaxation": Relaxing,

@@ -7,12 +7,12 @@ from dataclasses import replace
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.encoding import Encoding
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Goal
-from sequence_planner.planning.pursuit import Goals
-from sequence_planner.planning.solver import Solver
-from sequence_planner.planning.symbolic import Symbol, SymbolicState
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.encoding import Encoding
+from sequence_planner.planning.sat.solver import Solver
+from sequence_planner.planning.sat.symbolic import Symbol, SymbolicState
 
 
 class OneAtATime:

@@ -19,15 +19,15 @@ from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.syntax import FALSE, TRUE
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.heuristic.best_first import HeuristicSearch
 from sequence_planner.planning.heuristic.fewest import FewestStarts
 from sequence_planner.planning.one_at_a_time import OneAtATime
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.plan import Circumstances, Contract, Goal, Proof, Verdict, starts_of
 from sequence_planner.planning.planner import PlannerError
-from sequence_planner.planning.pursuit import Goals
-from sequence_planner.planning.relaxation import reachable, unreached
-from sequence_planner.planning.replay import missing
+from sequence_planner.planning.relaxed.relaxation import reachable, unreached
+from sequence_planner.planning.replaying.replay import missing
 
 _LONGEST = 1000  # transitions, unless it is said otherwise
 _SECONDS = 5.0

@@ -24,7 +24,7 @@ class Goal:
 
     `local` is a formula of LTL over finite traces. Its positions are the states after step 3 and after each start, up
     to the first after step 3 that satisfies `predicate`; those up to now have brought its automaton
-    (`monitor.monitor_of`) to the state `at`. Of goals that cannot be reached together, those of lowest `priority` are
+    (`goals.monitor.monitor_of`) to the state `at`. Of goals that cannot be reached together, those of lowest `priority` are
     left out.
     """
 
@@ -46,6 +46,10 @@ class Circumstances:
     offline: frozenset[str] = frozenset()
     restart: bool = False
     avoid: tuple[Expression, ...] = ()
+
+
+# Everything is online, in an ordinary mode, and nothing is to be avoided.
+ORDINARY = Circumstances()
 
 
 @dataclass(frozen=True)
@@ -79,7 +83,7 @@ class PlanRequest:
     deadline: float = 5.0
     longest: int = 60
     contract: Contract = Contract.MINIMAL
-    circumstances: Circumstances = Circumstances()
+    circumstances: Circumstances = ORDINARY
 
 
 class Verdict(StrEnum):

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Protocol
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.planning.acceptance import Acceptance
 from sequence_planner.planning.attempt import Attempt
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.engines import ALONE, Engines, Report
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, Proof, Verdict
-from sequence_planner.planning.pursuit import Goals
-from sequence_planner.planning.relaxation import reachable, unreached
-from sequence_planner.planning.replay import missing
+from sequence_planner.planning.relaxed.relaxation import reachable, unreached
+from sequence_planner.planning.replaying.acceptance import Acceptance
+from sequence_planner.planning.replaying.replay import missing
 
 if TYPE_CHECKING:
-    from sequence_planner.planning.tightening import Tightening
+    from sequence_planner.planning.replaying.tightening import Tightening
 
 _NOTHING_TO_DO = Finding(Plan((), minimal_ticks=True, minimal_starts=True))
 
@@ -173,6 +173,6 @@ class Planner:
     @cached_property
     def _tightening(self) -> Tightening:
         # Not before there is a plan to be tightened: importing it takes a third of the time that importing this takes.
-        from sequence_planner.planning.tightening import Tightening  # noqa: PLC0415
+        from sequence_planner.planning.replaying.tightening import Tightening  # noqa: PLC0415
 
         return Tightening(self._automaton, self._supervisor)

@@ -20,8 +20,8 @@ from sequence_planner.expressions.syntax import Or, Variable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Circumstances, Goal, Plan, PlanTick, WayBack, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.planner import PlannerError
-from sequence_planner.planning.search import Searches, SearchTimeoutError
-from sequence_planner.planning.sweep import sweep_order
+from sequence_planner.planning.sat.search import Searches, SearchTimeoutError
+from sequence_planner.planning.sat.sweep import sweep_order
 
 # Of the time for an answer, what the search for the way may take; the rest is for what the devices could do.
 _SHARE = 0.75

@@ -9,10 +9,10 @@ from multiprocessing.connection import Connection
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.companion import stand_by
 from sequence_planner.planning.plan import Answer, Request, WayBackRequest
 from sequence_planner.planning.planner import Planner, PlannerError
-from sequence_planner.planning.race import Race
+from sequence_planner.planning.racing.companion import stand_by
+from sequence_planner.planning.racing.race import Race
 from sequence_planner.planning.way_back import WaysBack
 
 

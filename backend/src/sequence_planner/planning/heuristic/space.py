@@ -17,8 +17,8 @@ from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.engine import Task
+from sequence_planner.planning.goals.pursuit import Goals, moved, settled
 from sequence_planner.planning.plan import PlanTick
-from sequence_planner.planning.pursuit import Goals, moved, settled
 
 # Of a wait the effects that happen, of a start its name: what a run is made of.
 Move = tuple[str, ...] | str

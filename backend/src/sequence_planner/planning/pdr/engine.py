@@ -16,9 +16,8 @@ from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.budget import Budget, SpentError
-from sequence_planner.planning.certificate import check
 from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.following import Following
+from sequence_planner.planning.pdr.certificate import check
 from sequence_planner.planning.pdr.frames import DepthError, Frames
 from sequence_planner.planning.pdr.localisation import localisable, localised
 from sequence_planner.planning.pdr.ordering import Orders
@@ -26,7 +25,8 @@ from sequence_planner.planning.pdr.rehearsal import Rehearsal
 from sequence_planner.planning.pdr.relation import Relation
 from sequence_planner.planning.pdr.steps import Step
 from sequence_planner.planning.plan import Contract, Plan, PlanTick, Proof
-from sequence_planner.planning.sweep import Order
+from sequence_planner.planning.sat.following import Following
+from sequence_planner.planning.sat.sweep import Order
 
 NAME = "pdr"
 

@@ -37,7 +37,7 @@ from sequence_planner.expressions.syntax import (
     variables,
 )
 from sequence_planner.expressions.types import BOOLEAN, Type
-from sequence_planner.planning.pursuit import Goals
+from sequence_planner.planning.goals.pursuit import Goals
 
 _ALL = StateSet((), ())
 

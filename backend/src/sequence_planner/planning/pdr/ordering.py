@@ -8,7 +8,7 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.localisation import Localised
-from sequence_planner.planning.sweep import Order, Sweep
+from sequence_planner.planning.sat.sweep import Order, Sweep
 
 # Abilities up to which one order for all of them is soon found.
 _FEW = 80

@@ -12,9 +12,9 @@ from sequence_planner.automaton.tick import apply_effects, effect_writes, finish
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.syntax import Expression, conjunction, conjuncts
 from sequence_planner.planning.engine import Task
+from sequence_planner.planning.goals.pursuit import settled
 from sequence_planner.planning.pdr.relation import Relation
 from sequence_planner.planning.pdr.steps import Step
-from sequence_planner.planning.pursuit import settled
 
 Names = frozenset[str]
 _NOTHING: Names = frozenset()

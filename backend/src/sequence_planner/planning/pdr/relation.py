@@ -15,15 +15,15 @@ from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.encoding import Encoding, SymbolicTick
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.invariants import asserted, is_met
-from sequence_planner.planning.monitor import monitor_of
+from sequence_planner.planning.goals.monitor import monitor_of
+from sequence_planner.planning.goals.pursuit import Goals
+from sequence_planner.planning.goals.tracking import Progress, Tracker
+from sequence_planner.planning.pdr.invariants import asserted, is_met
 from sequence_planner.planning.plan import Circumstances, Clause, Goal, Literal
-from sequence_planner.planning.pursuit import Goals
-from sequence_planner.planning.symbolic import Reading, SymbolicState
-from sequence_planner.planning.tracking import Progress, Tracker
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.encoding import Encoding, SymbolicTick
+from sequence_planner.planning.sat.symbolic import Reading, SymbolicState
 
 Cube = tuple[int, ...]
 

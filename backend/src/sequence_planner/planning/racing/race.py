@@ -19,10 +19,10 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.planning.attempt import Attempt
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.companion import Answered, Companion, Ended, Finished, Question, Word
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.engines import FACTORIES, LANES, Factory, Lane, Report
-from sequence_planner.planning.lane import LaneModel, work
+from sequence_planner.planning.racing.companion import Answered, Companion, Ended, Finished, Question, Word
+from sequence_planner.planning.racing.lane import LaneModel, work
 
 LOG = logging.getLogger(__name__)
 

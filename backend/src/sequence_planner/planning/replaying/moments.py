@@ -11,7 +11,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import Writes
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.compiled_goals import CompiledGoals, Progress
+from sequence_planner.planning.goals.compiled_goals import CompiledGoals, Progress
 from sequence_planner.planning.plan import Circumstances, Goal
 
 Values = tuple[Value | None, ...]

@@ -12,10 +12,10 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.automaton.transitions import Phase, transitions
 from sequence_planner.expressions.syntax import Expression
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.encoding import Encoding, SymbolicTick
 from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.symbolic import Reading, Symbol, SymbolicState
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.encoding import Encoding, SymbolicTick
+from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicState
 
 # The literal of each literal of the template: at its own index, that of a negated one counted from the end.
 Renaming = Sequence[int]

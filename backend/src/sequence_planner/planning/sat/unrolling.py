@@ -8,13 +8,13 @@ from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.encoding import SymbolicTick
+from sequence_planner.planning.goals.tracking import Progress, Tracker, beginning
 from sequence_planner.planning.plan import Circumstances, Goal, PlanTick
-from sequence_planner.planning.solver import Solver
-from sequence_planner.planning.symbolic import Reading
-from sequence_planner.planning.template import Renaming, Template
-from sequence_planner.planning.tracking import Progress, Tracker, beginning
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.encoding import SymbolicTick
+from sequence_planner.planning.sat.solver import Solver
+from sequence_planner.planning.sat.symbolic import Reading
+from sequence_planner.planning.sat.template import Renaming, Template
 
 
 class Unrolling:

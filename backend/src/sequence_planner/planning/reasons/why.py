@@ -18,8 +18,8 @@ from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.invariants import asserted, is_met
 from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.pdr.invariants import asserted, is_met
 from sequence_planner.planning.plan import Goal, Proof
 
 # The supervisor of the specifications with these names, and of no others.

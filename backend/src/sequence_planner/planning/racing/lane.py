@@ -12,9 +12,9 @@ from multiprocessing.connection import Connection
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.companion import stand_by
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import Engines, Factory, Lane, Report
+from sequence_planner.planning.racing.companion import stand_by
 
 
 @dataclass(frozen=True)

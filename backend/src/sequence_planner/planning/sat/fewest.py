@@ -11,7 +11,7 @@ from collections.abc import Sequence
 
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Contract, Plan, PlanTick
-from sequence_planner.planning.unrolling import Unrolling
+from sequence_planner.planning.sat.unrolling import Unrolling
 
 # Of the time that is left, what a fast plan may still cost once there is one.
 _SHARE = 0.02

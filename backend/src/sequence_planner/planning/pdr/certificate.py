@@ -14,16 +14,16 @@ from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.syntax import TRUE, Variable
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.budget import Budget, SpentError
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.encoding import Encoding, SymbolicTick
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.invariants import asserted
-from sequence_planner.planning.monitor import monitor_of
+from sequence_planner.planning.goals.monitor import monitor_of
+from sequence_planner.planning.goals.tracking import Progress, Tracker
+from sequence_planner.planning.pdr.invariants import asserted
 from sequence_planner.planning.pdr.localisation import localisable, localised
 from sequence_planner.planning.pdr.ordering import Orders
 from sequence_planner.planning.plan import Clause, Goal, Literal, Proof
-from sequence_planner.planning.symbolic import Reading, Symbol, SymbolicState
-from sequence_planner.planning.tracking import Progress, Tracker
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.encoding import Encoding, SymbolicTick
+from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicState
 
 
 class CertificateError(Exception):

@@ -16,10 +16,10 @@ from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, target
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.encoding import Encoding
-from sequence_planner.planning.solver import Solver
-from sequence_planner.planning.symbolic import SymbolicState
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.encoding import Encoding
+from sequence_planner.planning.sat.solver import Solver
+from sequence_planner.planning.sat.symbolic import SymbolicState
 
 _AS_LONG_AS_IT_TAKES = 1e7  # seconds
 

@@ -27,7 +27,7 @@ from sequence_planner.expressions.syntax import (
     Variable,
 )
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.circuit import Circuit
+from sequence_planner.planning.sat.circuit import Circuit
 
 
 @dataclass(frozen=True)

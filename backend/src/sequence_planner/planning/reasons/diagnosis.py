@@ -8,9 +8,9 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.corrections import Change, Correction, corrections
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.why import Member, Part, Reason, SupervisorFor, explain
+from sequence_planner.planning.reasons.corrections import Change, Correction, corrections
+from sequence_planner.planning.reasons.why import Member, Part, Reason, SupervisorFor, explain
 
 _SHARE = 0.6  # of the time, for the reason; corrections have the rest
 

@@ -12,9 +12,9 @@ from types import MappingProxyType
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.planning.budget import Budget, SpentError
-from sequence_planner.planning.fewest import fewest_starts
 from sequence_planner.planning.plan import Circumstances, Contract, Goal, Plan
-from sequence_planner.planning.unrolling import Unrolling
+from sequence_planner.planning.sat.fewest import fewest_starts
+from sequence_planner.planning.sat.unrolling import Unrolling
 
 # A solver for each set of unknown variables; topics come and go in few combinations.
 _KEPT_SEARCHES = 4

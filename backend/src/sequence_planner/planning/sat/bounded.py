@@ -12,8 +12,8 @@ from sequence_planner.expressions.syntax import Expression, UnaryTemporal, child
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Contract
-from sequence_planner.planning.search import Searches, SearchTimeoutError
-from sequence_planner.planning.sweep import Sweep
+from sequence_planner.planning.sat.search import Searches, SearchTimeoutError
+from sequence_planner.planning.sat.sweep import Sweep
 
 # Formulas and conditions that more abilities than this write to are looked at after their starts in one order only.
 _MOST_SEEN = 6

@@ -14,11 +14,11 @@ from types import MappingProxyType
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, Flag, State
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.following import Following
 from sequence_planner.planning.plan import Circumstances
-from sequence_planner.planning.symbolic import FollowingState, Reading, Symbol, SymbolicState
-from sequence_planner.planning.writing import Write, Writes, Writing, sharing
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.following import Following
+from sequence_planner.planning.sat.symbolic import FollowingState, Reading, Symbol, SymbolicState
+from sequence_planner.planning.sat.writing import Write, Writes, Writing, sharing
 
 
 @dataclass(frozen=True)

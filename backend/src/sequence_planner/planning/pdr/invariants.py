@@ -6,8 +6,8 @@ from collections.abc import Iterable, Mapping
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.types import Value
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Clause, Literal
-from sequence_planner.planning.pursuit import Goals
 
 
 def asserted(state: State, goals: Goals) -> Mapping[str, Value | None]:

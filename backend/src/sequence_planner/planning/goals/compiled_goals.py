@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from sequence_planner.automaton.compiled.functions import Compiler, Predicate, Truth
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.syntax import TRUE, Expression
-from sequence_planner.planning.monitor import Choice, Decision, monitor_of
+from sequence_planner.planning.goals.monitor import Choice, Decision, monitor_of
 from sequence_planner.planning.plan import Goal
 
 # Of each goal that is still missing its number, and the state that its formula's automaton has come to.

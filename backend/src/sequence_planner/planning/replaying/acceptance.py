@@ -16,9 +16,9 @@ from sequence_planner.automaton.tick import apply_effects, finish, supervised_st
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import TRUE, variables
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.following import Following
+from sequence_planner.planning.goals.pursuit import Goals, moved, settled
 from sequence_planner.planning.plan import Plan, PlanTick
-from sequence_planner.planning.pursuit import Goals, moved, settled
+from sequence_planner.planning.sat.following import Following
 
 _KEPT = 1000  # parts of the automaton for steps that come again
 

@@ -21,8 +21,8 @@ from sequence_planner.automaton.tick import (
 )
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.types import Value
+from sequence_planner.planning.goals.pursuit import Goals, moved, settled
 from sequence_planner.planning.plan import Circumstances, Goal, Plan, PlanTick
-from sequence_planner.planning.pursuit import Goals, moved, settled
 
 # Nodes an eager search may visit: what is followed is looked at in every tick, and a tick must not be held up.
 LOOKAHEAD = 400

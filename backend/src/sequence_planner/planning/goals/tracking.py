@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.encoding import SymbolicTick
-from sequence_planner.planning.monitor import Choice, Decision, Monitor, leaves, monitor_of
+from sequence_planner.planning.goals.monitor import Choice, Decision, Monitor, leaves, monitor_of
 from sequence_planner.planning.plan import Goal
-from sequence_planner.planning.symbolic import Reading, SymbolicState
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.encoding import SymbolicTick
+from sequence_planner.planning.sat.symbolic import Reading, SymbolicState
 
 
 @dataclass(frozen=True)

@@ -12,10 +12,10 @@ from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.invariants import asserted, satisfies
 from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.pdr.invariants import asserted, satisfies
 from sequence_planner.planning.plan import Plan, Proof
-from sequence_planner.planning.replay import Replay, missing
+from sequence_planner.planning.replaying.replay import Replay, missing
 
 MOST_CHANGES = 2
 MOST_FOUND = 5

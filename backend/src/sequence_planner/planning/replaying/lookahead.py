@@ -11,10 +11,10 @@ from collections.abc import Iterable, Sequence
 from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import State
-from sequence_planner.planning.compiled_goals import CompiledGoals, Progress
-from sequence_planner.planning.moments import Moment, Moments, Values
+from sequence_planner.planning.goals.compiled_goals import CompiledGoals, Progress
 from sequence_planner.planning.plan import Circumstances, Goal, PlanTick, goals_of
-from sequence_planner.planning.replay import starts_now
+from sequence_planner.planning.replaying.moments import Moment, Moments, Values
+from sequence_planner.planning.replaying.replay import starts_now
 
 LOOKAHEAD = 250  # moments that one look may visit: it belongs to a tick, which must not be held up
 _REMEMBERED = 20_000  # moments; then all are forgotten

@@ -18,10 +18,10 @@ from sequence_planner.expressions.syntax import Assignment, Constant, Expression
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Contract, Plan
-from sequence_planner.planning.relaxed_plan import RelaxedPlan
-from sequence_planner.planning.replay import Replay
-from sequence_planner.planning.search import Search, SearchTimeoutError
-from sequence_planner.planning.sweep import Sweep
+from sequence_planner.planning.relaxed.relaxed_plan import RelaxedPlan
+from sequence_planner.planning.replaying.replay import Replay
+from sequence_planner.planning.sat.search import Search, SearchTimeoutError
+from sequence_planner.planning.sat.sweep import Sweep
 
 # A plan that is much longer than the relaxed one, in ticks, is left to others.
 _LONGER, _MORE = 2, 4

@@ -8,7 +8,7 @@ from dataclasses import replace
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.planning.monitor import monitor_of
+from sequence_planner.planning.goals.monitor import monitor_of
 from sequence_planner.planning.plan import Goal
 
 Goals = tuple[Goal, ...]

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.expressions.syntax import Assignment
-from sequence_planner.planning.circuit import Circuit
-from sequence_planner.planning.symbolic import Reading, Symbol, SymbolicState
+from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicState
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,1 @@
+"""Plans held against the tick: replayed, looked ahead, made tighter."""

@@ -1,0 +1,1 @@
+"""Planning by satisfiability: the unrolled tick as clauses, and searches in it."""
