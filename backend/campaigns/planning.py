@@ -13,8 +13,8 @@ SUBJECT = Subject(
     "Planner's engines beside exhaustive search",
     "Random small stations with random goals; half of them with formulas, offline resources, restart abilities and\n"
     "conditions to avoid, a quarter from states with unknown values. Every engine is asked under both contracts.\n"
-    "Plans must replay on the reference tick, minimal ones have as few ticks and then starts as breadth-first search finds,\n"
-    "and there is a proof only where no run at all reaches the goals.",
+    "Plans must replay on the reference tick, minimal ones have as few ticks and then starts as breadth-first search\n"
+    "finds, and there is a proof only where no run at all reaches the goals.",
     {"problems": Kind(compare_engines, 10_000)},
 )
 

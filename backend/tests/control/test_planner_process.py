@@ -25,7 +25,9 @@ from sequence_planner.control.planner_process import Listener, PlannerProcess
 from sequence_planner.expressions.syntax import Variable
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.planning.engines import LANES
-from sequence_planner.planning.plan import Answer, Goal, PlanAnswer, PlanRequest, Verdict, goals_of
+from sequence_planner.planning.plan import Circumstances, Goal, PlanAnswer, PlanRequest, Verdict, goals_of
+from sequence_planner.planning.questions import Answer
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest, correction_text, member_text
 
 
 @dataclass
@@ -80,6 +82,24 @@ def test_a_question_asked_at_once_is_answered() -> None:
         assert isinstance(answer, PlanAnswer)
         assert answer.verdict is Verdict.FOUND
         assert asking.planner.trouble is None
+
+    run(scenario)
+
+
+def test_it_says_why_there_is_no_plan_at_all() -> None:
+    async def scenario(asking: Asking) -> None:
+        automaton = cell()[0].automaton
+        offline = Circumstances(offline=frozenset(automaton.resources))
+        goals = goals_of(automaton, ("fetch(left)",))
+        asking.planner.ask(DiagnosisRequest(initial_state(automaton), goals, offline))
+        await until(lambda: not asking.planner.busy)
+        (answer,) = asking.answers
+        assert isinstance(answer, Diagnosis)
+        assert answer.reason is not None
+        texts = [member_text(member) for member in answer.reason.members]
+        assert "the goal fetch(left)" in texts
+        assert any(text.endswith(" is offline") for text in texts)
+        assert any(correction_text(each).endswith(" online") for each in answer.corrections)
 
     run(scenario)
 

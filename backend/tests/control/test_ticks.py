@@ -15,6 +15,7 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.view import PlanStatus, Production
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.planning.plan import Plan, PlanAnswer, PlanTick, Verdict
+from sequence_planner.planning.reasons.diagnosis import Diagnosis
 
 EVERYTHING_IS_SAFE = Supervisor(StateSet((), ()), {})
 NOW = Moment(1000.0, 10.0)
@@ -168,6 +169,27 @@ def test_it_is_said_what_is_known_when_there_is_no_plan(verdict: Verdict, said: 
     execution.tick({"lit": False}, NOW)
     follow(execution, replace(none(), verdict=verdict))
     assert execution.plan.reason == said
+
+
+def test_why_there_is_no_plan_at_all_is_asked_until_it_is_answered() -> None:
+    execution = Execution(LAMP, EVERYTHING_IS_SAFE)
+    execution.start_production()
+    execution.tick({"lit": False}, NOW)
+    follow(execution, none())
+    assert execution.plan.unexplained(20) is None, "there may be a longer plan"
+    execution.state = {**execution.state, "lamp": True}
+    follow(execution, replace(none(), verdict=Verdict.NONE_AT_ALL))
+    question = execution.plan.unexplained(20)
+    assert question is not None
+    assert question == execution.plan.unexplained(20), "it may have been called off"
+    assert (question.state, [goal.name for goal in question.goals]) == (execution.state, ["light"])
+    diagnosis = Diagnosis(None, ())
+    execution.plan.explained(diagnosis)
+    assert execution.plan.diagnosis is diagnosis
+    assert execution.plan.unexplained(20) is None
+    execution.state = {**execution.state, "lamp": False}
+    follow(execution, found("shine"))
+    assert execution.plan.diagnosis is None
 
 
 def test_no_plan_for_want_of_knowledge_is_forgotten_with_the_knowledge() -> None:

@@ -116,6 +116,7 @@ def example_view(**changes: object) -> StationView:
             contract=Contract.MINIMAL,
             engine="bounded model checking",
             milliseconds=1.5,
+            why=None,
         ),
         tasks={
             "7": TaskView(

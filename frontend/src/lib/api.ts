@@ -426,6 +426,21 @@ export interface components {
             sequence: number;
         };
         /**
+         * DiagnosisView
+         * @description Why there is no plan at all: nothing is possible as long as all `members` stay as they are.
+         *
+         *     `minimal` says that none of them could be spared. Each of `corrections` would bring a plan back; no fewer changes
+         *     would.
+         */
+        DiagnosisView: {
+            /** Corrections */
+            corrections: string[];
+            /** Members */
+            members: string[];
+            /** Minimal */
+            minimal: boolean;
+        };
+        /**
          * DifferenceView
          * @description A variable that has another value in the nearest safe state.
          */
@@ -621,6 +636,7 @@ export interface components {
             steps: components["schemas"]["PlanStepView"][];
             /** Ticks */
             ticks: number;
+            why: components["schemas"]["DiagnosisView"] | null;
         };
         /**
          * Priority

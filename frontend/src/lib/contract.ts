@@ -14,6 +14,7 @@ export type Variable = Schemas['VariableView'];
 export type Ability = Schemas['AbilityView'];
 export type Operation = Schemas['OperationView'];
 export type Plan = Schemas['PlanView'];
+export type Diagnosis = Schemas['DiagnosisView'];
 export type PlanStep = Schemas['PlanStepView'];
 export type StepStatus = Schemas['StepStatus'];
 export type Task = Schemas['TaskView'];

@@ -21,7 +21,6 @@ from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import Expression, ExpressionError
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
 from sequence_planner.planning.goals.pursuit import moved
 from sequence_planner.planning.plain import plan_transitions
 from sequence_planner.planning.plan import (
@@ -34,8 +33,7 @@ from sequence_planner.planning.plan import (
     goal_of,
 )
 from sequence_planner.planning.planner import Planner
-from sequence_planner.planning.reasons.diagnosis import Diagnosis, diagnose
-from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest, diagnose
 from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import SynthesisError
 
@@ -117,9 +115,9 @@ def _diagnosis(
     """Why there is no plan at all, in the time that is left."""
     if answer.verdict is not Verdict.NONE_AT_ALL:
         return None
-    task = Task(request.state, missing(request.goals, request.state), request.circumstances)
+    question = DiagnosisRequest(request.state, request.goals, request.circumstances)
     budget = Budget.seconds(request.deadline - answer.seconds)
-    return diagnose(automaton, supervisor, FewerSpecifications(automaton, supervisor), task, budget)
+    return diagnose(automaton, supervisor, FewerSpecifications(automaton, supervisor), question.task, budget)
 
 
 def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest, json: bool) -> bool:

@@ -8,8 +8,7 @@ from typing import Any
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.planning.plain import PlainAnswer
 from sequence_planner.planning.plan import Clause, Goal, PlanAnswer, Proof, Verdict
-from sequence_planner.planning.reasons.corrections import Correction
-from sequence_planner.planning.reasons.diagnosis import Diagnosis, change_text, member_text
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, correction_text, member_text
 
 _STATUS = {
     Verdict.FOUND: "plan",
@@ -69,7 +68,7 @@ def because(diagnosis: Diagnosis | None) -> Iterator[str]:
     yield from (f"      {member_text(member)}" for member in reason.members)
     if diagnosis.corrections:
         yield "there would be a plan again with"
-        yield from (f"      {_changes(correction)}" for correction in diagnosis.corrections)
+        yield from (f"      {correction_text(correction)}" for correction in diagnosis.corrections)
 
 
 def said(answer: PlanAnswer) -> str:
@@ -123,10 +122,6 @@ def _why(diagnosis: Diagnosis) -> dict[str, Any]:
             for correction in diagnosis.corrections
         ],
     }
-
-
-def _changes(correction: Correction) -> str:
-    return " and ".join(map(change_text, correction.changes))
 
 
 def _proof(proof: Proof | None) -> dict[str, Any] | None:

@@ -17,7 +17,8 @@ from sequence_planner.control.plan_reasons import why_new, why_none, why_violate
 from sequence_planner.control.pursued import Pursued
 from sequence_planner.control.start_order import StartOrder, Step
 from sequence_planner.control.view import PlanStatus
-from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest
+from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest, Verdict
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
 from sequence_planner.planning.replaying.lookahead import Lookahead
 
 
@@ -55,6 +56,8 @@ class LivePlan:
         self._asked_better: _Question | None = None
         self._started_since_asked = False
         self._none_while_blind = False  # the last answer was that there is no plan, and values were unknown
+        self._none: PlanRequest | None = None  # what there is no plan at all for, as long as nobody has said why
+        self.diagnosis: Diagnosis | None = None  # why there is no plan at all
 
     def copy(self) -> LivePlan:
         """One that does not change when this one does."""
@@ -94,6 +97,18 @@ class LivePlan:
             self.reason = f"no plan: {why}"
             self._none_while_blind = False
 
+    def unexplained(self, deadline: float) -> DiagnosisRequest | None:
+        """A question why there is no plan at all; None when there may be one, or it has been answered."""
+        none = self._none
+        if none is None or self.status is not PlanStatus.NONE:
+            return None
+        return DiagnosisRequest(none.state, none.goals, none.circumstances, deadline)
+
+    def explained(self, diagnosis: Diagnosis) -> None:
+        """Take note of why there is no plan, as far as that was found."""
+        if self._none is not None and self.status is PlanStatus.NONE:
+            self._none, self.diagnosis = None, diagnosis
+
     def adopt(self, present: Present, request: PlanRequest, answer: PlanAnswer) -> bool:
         """Follow an answered plan, if it still fits the state. False when a new one must be asked for.
 
@@ -123,6 +138,7 @@ class LivePlan:
         self.order.adopt(answer.plan, goals, (goal.name for goal in request.goals))
         self.answer = answer
         self.status = PlanStatus.FOLLOWED
+        self._none = self.diagnosis = None
         return True
 
     def settle(self, active: frozenset[str], hopeful: frozenset[str]) -> None:
@@ -174,6 +190,7 @@ class LivePlan:
         """Notice that the plan is done with, or that the state has departed from it."""
         if not active:
             self.status, self.reason = PlanStatus.IDLE, "no operation is active"
+            self._none = self.diagnosis = None
             self.order.adopt(None, (), ())
         elif not present.pursued.goals:
             self.reason = "production has not been started"
@@ -228,6 +245,9 @@ class LivePlan:
         self.status = PlanStatus.NONE
         self._none_while_blind = any(request.state[name] is None for name in self._automaton.names(Kind.MEASURED))
         self.reason = why_none(answer, self._none_while_blind)
+        self._none = request if answer.verdict is Verdict.NONE_AT_ALL else None
+        if self._none is None:
+            self.diagnosis = None  # else what was said a moment ago stays until more is known
         if current:
             self._asked = _question(present, asked)
             self.order.adopt(None, (), asked)

@@ -16,9 +16,11 @@ import structlog
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.planning.plan import Answer, Request, WayBackRequest
+from sequence_planner.planning.plan import PlanRequest
+from sequence_planner.planning.questions import Answer, Request
 from sequence_planner.planning.racing.companion import Answered, Companion, Ended, Finished, Question, Ready, Word
 from sequence_planner.planning.worker import Model, work
+from sequence_planner.synthesis.fewer import FewerSpecifications
 
 LOG = structlog.get_logger(__name__)
 
@@ -41,7 +43,7 @@ class PlannerProcess:
     def __init__(
         self, automaton: Automaton, supervisor: Supervisor, loop: asyncio.AbstractEventLoop, listener: Listener
     ) -> None:
-        self._model = Model(automaton, supervisor)
+        self._model = Model(automaton, supervisor, FewerSpecifications(automaton, supervisor))
         self._loop = loop
         self._listener = listener
         self._asked: Request | None = None
@@ -149,5 +151,5 @@ class PlannerProcess:
         self.trouble = f"the planner {why} and is started again"
         if (request := self._asked) is not None:
             self._asked, self._owes = None, True
-            # A way back is only told; a station whose planner it kills again and again would have no plans.
-            self._listener.failed(request, self.trouble, not isinstance(request, WayBackRequest))
+            # Others are only told; a station whose planner it kills again and again would have no plans.
+            self._listener.failed(request, self.trouble, isinstance(request, PlanRequest))

@@ -94,6 +94,7 @@ def preparing_view(
         contract=None,
         engine="",
         milliseconds=None,
+        why=None,
     )
     return StationView(
         station=identity,

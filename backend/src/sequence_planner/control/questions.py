@@ -11,7 +11,9 @@ import structlog
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.planner_process import Listener, PlannerProcess
-from sequence_planner.planning.plan import Answer, PlanAnswer, PlanRequest, Request, WayBackAnswer, WayBackRequest
+from sequence_planner.planning.plan import PlanAnswer, PlanRequest, WayBackAnswer, WayBackRequest
+from sequence_planner.planning.questions import Answer, Request
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
 
 LOG = structlog.get_logger(__name__)
 
@@ -19,6 +21,7 @@ PLAN_DEADLINE = 5.0  # seconds a plan may take
 BETTER_DEADLINE = 3.0  # seconds a better plan than the one that is followed may take
 BETTER_EVERY = 1.0  # seconds between two questions for one
 WAY_BACK_DEADLINE = 2.0  # seconds a way back into the safe states may take
+DIAGNOSIS_DEADLINE = 20.0  # seconds it may take to say why there is no plan at all
 
 
 class Questions:
@@ -34,7 +37,7 @@ class Questions:
         self._needed: deque[Callable[[], Request | None]] = deque(
             (lambda: execution.request(PLAN_DEADLINE), lambda: outside.request(WAY_BACK_DEADLINE))
         )
-        self._asked_better = False  # what the planner works on is not needed, and can be called off
+        self._spare = False  # what the planner works on is not needed, and can be called off
         self._next_better = 0.0
         listener = Listener(self._answered, self._failed)
         loop = asyncio.get_running_loop()
@@ -52,32 +55,37 @@ class Questions:
     def ask(self, monotonic: float) -> None:
         """Ask for a plan or for a way back, in turn: neither waits for more than one of the other.
 
-        A planner that has nothing else to do is asked for a better plan, and called off when something is needed.
+        A planner that has nothing else to do is asked for a better plan, or why there is none, and called off when
+        something is needed.
         """
-        if self._planner.busy and not self._asked_better:
+        if self._planner.busy and not self._spare:
             return
         for question in tuple(self._needed):
             self._needed.rotate(-1)
             if (request := question()) is not None:
                 self._planner.call_off()
-                self._asked_better = False
+                self._spare = False
                 self._planner.ask(request)
                 return
-        if self._planner.busy or monotonic < self._next_better:
+        if self._planner.busy:
             return
-        if (request := self._execution.better(BETTER_DEADLINE)) is not None:
-            self._next_better = monotonic + BETTER_EVERY
-            self._asked_better = True
+        if (request := self._execution.plan.unexplained(DIAGNOSIS_DEADLINE)) is None and monotonic >= self._next_better:
+            request = self._execution.better(BETTER_DEADLINE)
+            self._next_better = monotonic + BETTER_EVERY if request else self._next_better
+        if request is not None:
+            self._spare = True
             self._planner.ask(request)
 
     def _answered(self, request: Request, answer: Answer) -> None:
-        self._asked_better = False
+        self._spare = False
         match request, answer:
             case PlanRequest(), PlanAnswer():
                 self._take(lambda: self._adopt(request, answer))
             case WayBackRequest(), WayBackAnswer():
                 self._take(lambda: self._outside.take(request, answer))
                 LOG.info("way back", found=answer.way is not None, searched=answer.searched)
+            case DiagnosisRequest(), Diagnosis():
+                self._take(lambda: self._execution.plan.explained(answer))
 
     def _adopt(self, request: PlanRequest, answer: PlanAnswer) -> None:
         self._execution.adopt(request, answer)
@@ -86,9 +94,11 @@ class Questions:
             LOG.info("plan", verdict=str(answer.verdict), engine=answer.engine, starts=starts)
 
     def _failed(self, request: Request, why: str, again: bool) -> None:
-        self._asked_better = False
+        self._spare = False
         match request:
             case PlanRequest():
                 self._take(lambda: self._execution.plan.unanswered(why, again))
             case WayBackRequest():
                 self._take(lambda: self._outside.unanswered(request, why, again))
+            case DiagnosisRequest():
+                self._take(lambda: self._execution.plan.explained(Diagnosis(None, ())))

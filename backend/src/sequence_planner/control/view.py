@@ -141,6 +141,18 @@ class PlanStepView(View):
     waits_for: list[str]  # for the next step: what keeps it from starting, in the model's language
 
 
+class DiagnosisView(View):
+    """Why there is no plan at all: nothing is possible as long as all `members` stay as they are.
+
+    `minimal` says that none of them could be spared. Each of `corrections` would bring a plan back; no fewer changes
+    would.
+    """
+
+    members: list[str]
+    minimal: bool
+    corrections: list[str]
+
+
 class PlanView(View):
     """The live plan: what is done, what runs, what comes next and what that waits for."""
 
@@ -154,6 +166,7 @@ class PlanView(View):
     contract: Contract | None  # what it is: the shortest, proven, or one found soon
     engine: str  # of the planner, which gave the answer
     milliseconds: float | None  # how long the planner took
+    why: DiagnosisView | None  # as soon as it is known why there is no plan at all
 
 
 class TaskView(View):

@@ -17,6 +17,7 @@ from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
+    DiagnosisView,
     OperationView,
     PlanStepView,
     PlanView,
@@ -34,6 +35,7 @@ from sequence_planner.control.waiting import waits_for
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.plan import Contract, Plan
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, correction_text, member_text
 from sequence_planner.synthesis.guards import Guard
 
 # How many coming steps a task names as what moves next.
@@ -165,6 +167,7 @@ class Viewing:
             contract=_contract(plan),
             engine=answer.engine if answer else "",
             milliseconds=answer.seconds * 1000 if answer else None,
+            why=_why(execution.plan.diagnosis),
         )
 
     def _step(self, step: Step, status: StepStatus) -> PlanStepView:
@@ -226,6 +229,16 @@ class Viewing:
                 trouble=self._network.rivals.get(name) or self._network.troubles.get(name) or command.owed,
             )
         return views
+
+
+def _why(diagnosis: Diagnosis | None) -> DiagnosisView | None:
+    if diagnosis is None or diagnosis.reason is None:
+        return None
+    return DiagnosisView(
+        members=[member_text(member) for member in diagnosis.reason.members],
+        minimal=diagnosis.reason.minimal,
+        corrections=[correction_text(correction) for correction in diagnosis.corrections],
+    )
 
 
 def _contract(plan: Plan | None) -> Contract | None:

@@ -24,8 +24,8 @@ class Goal:
 
     `local` is a formula of LTL over finite traces. Its positions are the states after step 3 and after each start, up
     to the first after step 3 that satisfies `predicate`; those up to now have brought its automaton
-    (`goals.monitor.monitor_of`) to the state `at`. Of goals that cannot be reached together, those of lowest `priority` are
-    left out.
+    (`goals.monitor.monitor_of`) to the state `at`. Of goals that cannot be reached together, those of lowest
+    `priority` are left out.
     """
 
     name: str
@@ -179,10 +179,6 @@ class WayBackAnswer:
     threatened: tuple[str, ...]
     searched: int
     seconds: float
-
-
-Request = PlanRequest | WayBackRequest
-Answer = PlanAnswer | WayBackAnswer
 
 
 def starts_of(ticks: Iterable[PlanTick]) -> tuple[tuple[int, str], ...]:

@@ -9,19 +9,23 @@ from multiprocessing.connection import Connection
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plan import Answer, Request, WayBackRequest
+from sequence_planner.planning.plan import PlanRequest, WayBackRequest
 from sequence_planner.planning.planner import Planner, PlannerError
+from sequence_planner.planning.questions import Answer, Request
 from sequence_planner.planning.racing.companion import stand_by
 from sequence_planner.planning.racing.race import Race
+from sequence_planner.planning.reasons.diagnosis import DiagnosisRequest, diagnose
+from sequence_planner.planning.reasons.why import SupervisorFor
 from sequence_planner.planning.way_back import WaysBack
 
 
 @dataclass(frozen=True)
 class Model:
-    """What is planned for."""
+    """What is planned for; `supervisor_for` is asked when there is no plan at all."""
 
     automaton: Automaton
     supervisor: Supervisor
+    supervisor_for: SupervisorFor
 
 
 def work(connection: Connection) -> None:
@@ -36,7 +40,13 @@ def _prepared(model: Model) -> Callable[[Request, Budget], Iterator[Answer | str
 
     def answer(request: Request, budget: Budget) -> Iterator[Answer | str]:
         try:
-            yield ways.answer(request) if isinstance(request, WayBackRequest) else planner.answer(request, budget)
+            match request:
+                case PlanRequest():
+                    yield planner.answer(request, budget)
+                case WayBackRequest():
+                    yield ways.answer(request)
+                case DiagnosisRequest(task=task):
+                    yield diagnose(model.automaton, model.supervisor, model.supervisor_for, task, budget)
         except PlannerError as error:
             yield str(error)
 

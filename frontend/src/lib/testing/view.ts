@@ -11,7 +11,8 @@ export const PLAN: Plan = {
 	replanned: 0,
 	contract: 'minimal',
 	engine: '',
-	milliseconds: null
+	milliseconds: null,
+	why: null
 };
 
 /** A step of a plan; its id is its ability. */

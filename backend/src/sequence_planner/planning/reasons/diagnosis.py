@@ -5,14 +5,32 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
+from sequence_planner.planning.goals.pursuit import Goals
+from sequence_planner.planning.plan import Circumstances
 from sequence_planner.planning.reasons.corrections import Change, Correction, corrections
 from sequence_planner.planning.reasons.why import Member, Part, Reason, SupervisorFor, explain
+from sequence_planner.planning.replaying.replay import missing
 
 _SHARE = 0.6  # of the time, for the reason; corrections have the rest
+
+
+@dataclass(frozen=True)
+class DiagnosisRequest:
+    """A question why no run reaches all of `goals` from `state`, until `deadline` seconds have passed."""
+
+    state: State
+    goals: Goals
+    circumstances: Circumstances
+    deadline: float = 20.0
+
+    @property
+    def task(self) -> Task:
+        """What cannot be done: goals that are met already take no part in it."""
+        return Task(self.state, missing(self.goals, self.state), self.circumstances)
 
 
 @dataclass(frozen=True)
@@ -51,6 +69,10 @@ def member_text(member: Member) -> str:
             return f"the goal {member.name}"
 
 
-def change_text(change: Change) -> str:
-    """A change that would help, in the names of the model."""
+def correction_text(correction: Correction) -> str:
+    """Changes that would help, in the names of the model."""
+    return " and ".join(map(_change_text, correction.changes))
+
+
+def _change_text(change: Change) -> str:
     return f"{change.name} online" if change.value is None else f"{change.name} := {print_value(change.value)}"
