@@ -37,7 +37,7 @@ def test_its_goals_can_be_planned(tmp_path: Path) -> None:
     file = tmp_path / "station.efa.json"
     command("export", EXAMPLE, "--to", "efa", "--output", file)
     code, document = as_json("plan", file, "goal_1", "--deadline", "60")
-    assert (code, document["verdict"]) == (0, "found")
+    assert (code, document["status"]) == (0, "plan")
     assert document["transitions"].count("tick") >= 5
     assert {"operator.place_bolt", "nutrunner.run_nut", "robot.move(bolt_pair)"} <= set(document["transitions"])
 

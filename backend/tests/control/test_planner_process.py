@@ -199,12 +199,14 @@ from pathlib import Path
 from sequence_planner.planning.racing.companion import Companion
 from sequence_planner.planning.worker import Model, work
 from sequence_planner.station import prepare_station
+from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import synthesise
 
 if __name__ == "__main__":
     automaton = prepare_station(Path({str(CELL)!r})).automaton
     ready = threading.Event()
-    model = Model(automaton, synthesise(automaton))
+    supervisor = synthesise(automaton)
+    model = Model(automaton, supervisor, FewerSpecifications(automaton, supervisor))
     planner = Companion(work, model, lambda word: ready.set(), "planner", daemon=False)
     ready.wait()
     print("ready", flush=True)

@@ -90,7 +90,15 @@ class Patient(Engine):
         return Finding(searched=3)
 
 
-OWN = {each.__name__: each for each in (Sleeping, Failing, Dying, Lying, Greedy, Proving, Patient)}
+class Slow(Patient):
+    """Takes long to be made."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        super().__init__(automaton, supervisor)
+        time.sleep(1)
+
+
+OWN = {each.__name__: each for each in (Sleeping, Failing, Dying, Lying, Greedy, Proving, Patient, Slow)}
 
 
 def lanes(*names: str) -> list[Lane]:
@@ -98,13 +106,17 @@ def lanes(*names: str) -> list[Lane]:
 
 
 class Asking:
-    """A planner over a race of some engines, for the worked example."""
+    """Planners over a race of some engines, for the worked example; each knows nothing of what others were asked."""
 
     def __init__(self, automaton: Automaton, *names: str, memory: int = racing.MEMORY) -> None:
         supervisor = synthesise(automaton)
+        self.model = automaton, supervisor
         self.race = Race(automaton, supervisor, lanes(*names), {**FACTORIES, **OWN}, memory)
-        self.planner = Planner(automaton, supervisor, self.race)
         self.request = PlanRequest(initial_state(automaton), goals_of(automaton, GOAL), deadline=20)
+
+    @property
+    def planner(self) -> Planner:
+        return Planner(*self.model, self.race)
 
     def answer(self, deadline: float = 20, contract: Contract = Contract.MINIMAL) -> PlanAnswer:
         return self.planner.answer(replace(self.request, deadline=deadline, contract=contract))
@@ -198,6 +210,23 @@ def test_a_lane_that_does_not_come_back_is_replaced_and_answers_again(
         until(lambda: not still.is_alive())
         until(lambda: bool(processes()))
         assert asking.answer().plan is not None
+
+
+def test_a_lane_is_given_time_to_start(worked_example: Automaton, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(racing, "PATIENCE", 0.2)
+    with closing(Asking(worked_example, "Slow")) as asking:
+        first = the("Slow").pid
+        assert asking.answer(0.1).verdict is Verdict.LATE
+        until(lambda: asking.answer(0.3).searched == 3)
+        assert the("Slow").pid == first
+
+
+def test_a_lane_is_given_no_time_for_ever_to_start(worked_example: Automaton, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(racing, "STARTING", 0.1)
+    with closing(Asking(worked_example, "Slow")) as asking:
+        first = the("Slow").pid
+        assert asking.answer(0.1).verdict is Verdict.LATE
+        until(lambda: [each.pid for each in processes()] not in ([], [first]))
 
 
 def test_a_lane_that_is_killed_in_mid_search_ends_the_race_at_once_and_is_there_for_the_next(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Sequence
+from functools import partial
 from typing import Annotated
 
 import typer
@@ -17,10 +18,12 @@ from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.moments import Moment, StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
 from sequence_planner.cli.plan_answers import because, document, plain_document, said, said_of_plain
+from sequence_planner.exporting.unified import UnifiedPlanning, installed
 from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import Expression, ExpressionError
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engines import Engines, Lane
 from sequence_planner.planning.goals.pursuit import moved
 from sequence_planner.planning.plain import plan_transitions
 from sequence_planner.planning.plan import (
@@ -32,7 +35,7 @@ from sequence_planner.planning.plan import (
     Verdict,
     goal_of,
 )
-from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.planner import InTurn, Planner, PlannerError
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest, diagnose
 from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import SynthesisError
@@ -55,6 +58,10 @@ Offline = Annotated[
 Avoid = Annotated[
     list[str] | None, typer.Option("--avoid", metavar="EXPR", help="What must not hold on the way. Repeatable.")
 ]
+With = Annotated[
+    str | None,
+    typer.Option("--with", metavar="PLANNER", help="Ask a planner of unified-planning, such as fast-downward."),
+]
 Expected = Annotated[bool, typer.Option("--expected", help="Show what devices and people are expected to do, too.")]
 
 
@@ -69,6 +76,7 @@ def plan(
     offline: Offline = None,
     avoid: Avoid = None,
     expected: Expected = False,
+    other: With = None,
     json: AsJson = False,
 ) -> None:
     """Plan the goals of operations from the initial state, or from that of --state: what `tick --json` prints.
@@ -84,17 +92,25 @@ def plan(
         refuse(str(error))
     circumstances = _circumstances(automaton, offline or [], restart, avoid or [])
     start, goals = _asked(automaton, before, operations or [], goal or [])
-    request = PlanRequest(start, goals, deadline, contract=contract, circumstances=circumstances)
-    if automaton.one_at_a_time:
+    wanted = contract if other is None else Contract.FAST
+    request = PlanRequest(start, goals, deadline, contract=wanted, circumstances=circumstances)
+    if not automaton.one_at_a_time:
+        found = _of_station(automaton, supervisor, request, other, expected, json)
+    elif other is None:
         found = _of_plain(automaton, supervisor, request, json)
     else:
-        found = _of_station(automaton, supervisor, request, expected, json)
+        refuse("--with is for stations: have a plain automaton planned elsewhere with `export --to pddl`")
     if not found:
         raise typer.Exit(FINDINGS)
 
 
-def _of_station(automaton: Automaton, supervisor: Supervisor, request: PlanRequest, expected: bool, json: bool) -> bool:
-    answer = Planner(automaton, supervisor).answer(request)
+def _of_station(
+    automaton: Automaton, supervisor: Supervisor, request: PlanRequest, other: str | None, expected: bool, json: bool
+) -> bool:
+    try:
+        answer = _planner(automaton, supervisor, other).answer(request)
+    except PlannerError as error:
+        refuse(str(error))
     diagnosis = _diagnosis(automaton, supervisor, request, answer)
     if json:
         print_json(document(answer, diagnosis))
@@ -107,6 +123,17 @@ def _of_station(automaton: Automaton, supervisor: Supervisor, request: PlanReque
     for line in because(diagnosis):
         typer.echo(line)
     return answer.plan is not None and not answer.left_out
+
+
+def _planner(automaton: Automaton, supervisor: Supervisor, other: str | None) -> Planner:
+    """Our own engines in turn, or the `other` planner alone."""
+    if other is None:
+        return Planner(automaton, supervisor)
+    if not installed():
+        refuse(f"{other} needs the libraries of the extra `pddl`: run `pip install .[pddl]` in `backend`")
+    lane = Lane(other, dict.fromkeys(Contract, (other,)))
+    engines = Engines(automaton, supervisor, lane, {other: partial(UnifiedPlanning, name=other)})
+    return Planner(automaton, supervisor, InTurn(engines))
 
 
 def _diagnosis(

@@ -162,12 +162,16 @@ def _plan(execution: Execution, planner_trouble: str | None) -> Iterator[Cause]:
         )
     if execution.plan.status is PlanStatus.NONE and not execution.blind:  # a silent topic has an alarm of its own
         yield Cause("no-plan", Priority.MEDIUM, execution.plan.reason, "See what the active operations need.")
-    elif execution.plan.answer is not None and execution.active & set(execution.plan.answer.left_out):
-        titles = [
-            execution.automaton.operations[n].title for n in execution.plan.answer.left_out if n in execution.active
-        ]
-        text = f"Left out of the plan: {', '.join(titles)}"
+    elif execution.plan.status is not PlanStatus.NONE and _left_out(execution):
+        text = f"Left out of the plan: {', '.join(_left_out(execution))}"
         yield Cause("left-out", Priority.LOW, text, "These goals cannot be reached together with the others for now.")
+
+
+def _left_out(execution: Execution) -> list[str]:
+    """The titles of the active operations that the plan does not reach."""
+    answer = execution.plan.answer
+    left_out = () if answer is None else answer.left_out
+    return [execution.automaton.operations[name].title for name in left_out if name in execution.active]
 
 
 def _overdue(execution: Execution, reacted: set[int], monotonic: float) -> Iterator[Cause]:

@@ -28,6 +28,10 @@ from sequence_planner.planning.plan import Contract, Plan
 FAST_DOWNWARD = "fast-downward"
 
 
+class UnifiedPlanningError(Exception):
+    """The library has no such planner, or it failed."""
+
+
 def installed() -> bool:
     """Whether the library and Fast Downward are there."""
     return all(find_spec(name) is not None for name in ("unified_planning", "up_fast_downward"))
@@ -42,7 +46,10 @@ class UnifiedPlanning:
         self.name = name
 
     def solve(self, task: Task, budget: Budget) -> Finding:
-        """A plan, if one is found in time; nothing for a question that has no counterpart in PDDL."""
+        """A plan, if one is found in time; nothing for a question that has no counterpart in PDDL.
+
+        Raises `UnifiedPlanningError`.
+        """
         if task.contract is not Contract.FAST:
             return Finding()
         try:
@@ -62,12 +69,15 @@ class UnifiedPlanning:
                 [sys.executable, "-m", __name__, self.name, domain, problem, written],
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
-                stderr=subprocess.DEVNULL,
+                stderr=subprocess.PIPE,
                 start_new_session=True,  # so that the planner it starts ends with it
             )
             with budget.interrupting(lambda: _kill(process)):
-                process.wait()
+                _, said = process.communicate()
             _kill(process)
+            if process.returncode and not budget.spent:
+                lines = said.decode(errors="replace").strip().splitlines() or ["it said nothing"]
+                raise UnifiedPlanningError(f"the planner {self.name} failed: {lines[-1]}")
             return text.plan(written.read_text(encoding="utf-8")) if written.exists() else None
 
 

@@ -77,6 +77,7 @@ class Maker:
 
 FACTORIES: Mapping[str, Factory] = {
     "bmc": Maker("sat.bounded", "BoundedModelChecking"),
+    "partial sight": Maker("sat.seen", "PartialSight"),
     "projection": Maker("relaxed.projection", "Projection"),
     "search": Maker("heuristic.best_first", "HeuristicSearch"),
     "breadth-first": Maker("heuristic.breadth_first", "ShortestSearch"),

@@ -15,6 +15,7 @@ from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.engines import ALONE, Engines, Report
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, Proof, Verdict
+from sequence_planner.planning.recollection import NAME, Recollection
 from sequence_planner.planning.relaxed.relaxation import reachable, unreached
 from sequence_planner.planning.replaying.acceptance import Acceptance
 from sequence_planner.planning.replaying.replay import missing
@@ -91,6 +92,7 @@ class Planner:
         self._automaton = automaton
         self._supervisor = supervisor
         self._acceptance = Acceptance(automaton, supervisor)
+        self._recollection = Recollection(automaton)
         self._solvers = solvers or InTurn(Engines(automaton, supervisor, ALONE))
 
     def answer(self, request: PlanRequest, budget: Budget | None = None) -> PlanAnswer:
@@ -151,11 +153,15 @@ class Planner:
         share = budget.part(0.5 if len(goals) > 1 else 1.0)
         for contract in dict.fromkeys((request.contract, Contract.MINIMAL)):
             task = Task(request.state, left, request.circumstances, contract, request.longest)
-            attempt = Attempt(task, partial(self._acceptance.accepts, task), share)
-            if left:
-                self._solvers.solve(attempt, budget)
-            else:
+            attempt = Attempt(task, partial(self._accepts, task), share)
+            if not left:
                 attempt.take(Report("", _NOTHING_TO_DO))
+            elif (known := self._recollection.finding(task)) is not None:
+                attempt.take(Report(NAME, known))
+            if not attempt.answered:
+                self._solvers.solve(attempt, budget)
+            if attempt.proof is not None:
+                self._recollection.keep_proof(task, attempt.proof)
             if attempt.plan is not None or attempt.proof is not None or share.spent:
                 break
         if attempt.troubles and not attempt.heard and not share.spent:
@@ -165,10 +171,21 @@ class Planner:
     def _tightened(self, outcome: _Outcome, budget: Budget) -> Plan | None:
         """The plan; a minimal one, for which somebody waits anyhow, with its starts as early as there is time for."""
         plan, task = outcome.plan, outcome.attempt.task
-        if plan is None or not plan.starts or task.contract is Contract.FAST:
+        recalled = outcome.attempt.engine == NAME
+        if plan is None or not plan.starts or task.contract is Contract.FAST or recalled:
             return plan
         early = self._tightening.tightened(task, plan, budget.part(0.5))
-        return early if self._acceptance.accepts(task, early) else plan
+        return early if self._accepts(task, early) else plan
+
+    def _accepts(self, task: Task, plan: Plan) -> bool:
+        """Whether it replays; one that is known has been replayed, and one that does is known from now on."""
+        if self._recollection.plan(task) == plan:
+            return True
+        ends = self._acceptance.ends(task, plan)
+        if ends is None:
+            return False
+        self._recollection.keep_plan(task, plan, ends)
+        return True
 
     @cached_property
     def _tightening(self) -> Tightening:

@@ -10,7 +10,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf
 
-from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import synchronise
@@ -21,8 +20,10 @@ from sequence_planner.planning.pdr.certificate import check
 from sequence_planner.planning.pdr.frames import DepthError, Frames
 from sequence_planner.planning.pdr.localisation import localisable, localised
 from sequence_planner.planning.pdr.ordering import Orders
+from sequence_planner.planning.pdr.pairs import excluded_pairs
 from sequence_planner.planning.pdr.rehearsal import Rehearsal
-from sequence_planner.planning.pdr.relation import Relation
+from sequence_planner.planning.pdr.relation import Cube, Relation
+from sequence_planner.planning.pdr.sight import Sight
 from sequence_planner.planning.pdr.steps import Step
 from sequence_planner.planning.plan import Contract, Plan, PlanTick, Proof
 from sequence_planner.planning.sat.following import Following
@@ -56,6 +57,7 @@ class Reachability:
         self._automaton = automaton
         self._supervisor = supervisor
         self._orders = Orders(automaton, supervisor, order)
+        self._sight = Sight(automaton, supervisor)
 
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A proof, which has been checked, or, where the contract allows it, a plan; or nothing."""
@@ -78,7 +80,7 @@ class Reachability:
         state = task.state
         if free:
             state = synchronise(self._automaton, {**state, **{name: self._default(name) for name in free}})
-        question = _Question(self._automaton, self._supervisor, self._orders, task, state, free, budget)
+        question = _Question(self._automaton, self._supervisor, self._orders, self._sight, task, state, free, budget)
         return question.through_few() or question.through_all()
 
     def _default(self, name: str) -> Value:
@@ -90,6 +92,7 @@ class _Question:
     automaton: Automaton
     supervisor: Supervisor
     orders: Orders
+    sight: Sight
     task: Task
     state: State
     free: frozenset[str]
@@ -99,12 +102,13 @@ class _Question:
         """The answer, as far as it can be had without regard to unknown values and the course of a run."""
         if not localisable(self.automaton, self.state, self.task.goals):
             return None
-        kept = self._asked_for()
+        asked = [goal.predicate for goal in self.task.goals]
+        kept = self.sight.first([*asked, *self.task.circumstances.avoid])
         for _ in range(_MOST_ROUNDS):
             decision, more = self._seen_through(kept)
             if decision is not None or not more:
                 return decision
-            kept |= more
+            kept = self.sight.further(kept, more)
         return None
 
     def through_all(self) -> Decision:
@@ -116,10 +120,6 @@ class _Question:
             return outcome
         first, begin = outcome
         return Decision(begin, ticks_of(first))
-
-    def _asked_for(self) -> frozenset[str]:
-        asked = [goal.predicate for goal in self.task.goals]
-        return read_variables(self.automaton, [*asked, *self.task.circumstances.avoid])
 
     def _seen_through(self, kept: frozenset[str]) -> tuple[Decision | None, frozenset[str]]:
         """The answer, or further variables that matter; neither when nothing tells which."""
@@ -147,13 +147,18 @@ class _Question:
     def _decided(self, relation: Relation, depth: float = inf) -> Decision | tuple[Step, State]:
         """A proof, or the first step of a way and the state that it begins in."""
         beginning = relation.beginning(self.state, self.task.goals, self._freed())
+        pairs = excluded_pairs(relation, beginning, self.budget)
+        if pairs is not None:
+            return self._proven(relation, pairs)
         frames = Frames(relation, beginning, self.budget, depth)
         outcome = frames.decide()
         if isinstance(outcome, tuple):
-            invariant = tuple(relation.excluding(cube) for cube in outcome)
-            return Decision(self.state, (), Proof(NAME, invariant))
+            return self._proven(relation, outcome)
         model = frames.member(outcome.cube) if self.free else None
         return outcome, self.state if model is None else self._begin(relation, model)
+
+    def _proven(self, relation: Relation, excluded: tuple[Cube, ...]) -> Decision:
+        return Decision(self.state, (), Proof(NAME, tuple(map(relation.excluding, excluded))))
 
     def _begin(self, relation: Relation, model: list[int]) -> State:
         """The state of a model, as far as it is free."""

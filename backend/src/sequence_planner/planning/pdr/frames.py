@@ -50,10 +50,6 @@ class Frames:
 
     def decide(self) -> Step | tuple[Cube, ...]:
         """A way to the goals, or the cubes that an invariant excludes. Raises `SpentError` and `DepthError`."""
-        with self._budget.interrupting(self._interrupt):
-            return self._decide()
-
-    def _decide(self) -> Step | tuple[Cube, ...]:
         self._extend()
         if (step := self._last_step()) is not None:
             return step
@@ -241,6 +237,3 @@ class Frames:
         for level, frame in zip(self._levels, self._frames, strict=True):
             for cube in frame:
                 self._inquiry.demand([-level, *(-literal for literal in cube)])
-
-    def _interrupt(self) -> None:
-        self._inquiry.interrupt()  # the one at work now

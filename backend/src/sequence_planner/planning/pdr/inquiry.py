@@ -1,13 +1,20 @@
-"""Questions about one tick to a SAT solver."""
+"""Questions about one tick to a SAT solver.
+
+It is Minisat 2.2 (Een and Sorensson 2003): most questions are small, and its answers to them come soonest. As in
+`sat.solver`, the functions that python-sat wraps are called themselves.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
-from pysat.solvers import Solver
+import pysolvers
 
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.pdr.relation import Relation
+
+# Conflicts within which most questions are answered; only longer ones are worth an alarm clock, which is a thread.
+_AT_ONCE = 1000
 
 # Clauses for one question each, after which the solver is worn.
 _MOST_PASSING = 4000
@@ -18,12 +25,16 @@ class Inquiry:
 
     def __init__(self, relation: Relation, budget: Budget) -> None:
         self._budget = budget
-        # Most questions are small, and this solver's answers to them come soonest.
-        self._solver = Solver("minisat22", bootstrap_with=relation.clauses)
-        self._solver.set_phases([-choice for choice in relation.choices])
+        self._handle: object = pysolvers.minisat22_new()
+        for clause in relation.clauses:
+            pysolvers.minisat22_add_cl(self._handle, clause)
+        self.prefer([-choice for choice in relation.choices])
         self._top = relation.top
         self._passed = 0
         self._current = self.fresh()
+
+    def __del__(self) -> None:
+        pysolvers.minisat22_del(self._handle)
 
     @property
     def worn(self) -> bool:
@@ -35,34 +46,47 @@ class Inquiry:
         self._top += 1
         return self._top
 
-    def demand(self, clause: list[int]) -> None:
+    def demand(self, clause: Sequence[int]) -> None:
         """Demand that one of the literals is true."""
-        self._solver.add_clause(clause)
+        pysolvers.minisat22_add_cl(self._handle, clause)
+
+    def prefer(self, literals: Sequence[int]) -> None:
+        """Try these literals true first, where nothing decides them."""
+        pysolvers.minisat22_setphases(self._handle, literals)
 
     def passing(self, clause: Iterable[int]) -> int:
         """The literal that puts `clause` in force, for questions until the next one."""
-        self._solver.add_clause([-self._current])
+        self.demand([-self._current])
         self._passed += 1
         self._current = self.fresh()
-        self._solver.add_clause([-self._current, *clause])
+        self.demand([-self._current, *clause])
         return self._current
 
-    def solves(self, assumptions: list[int]) -> bool:
+    def solves(self, assumptions: Sequence[int]) -> bool:
         """Whether the assumptions can hold together."""
         self._budget.require()
-        answer = self._solver.solve_limited(assumptions, expect_interrupt=True)
+        pysolvers.minisat22_cbudget(self._handle, _AT_ONCE)
+        answer: bool | None = pysolvers.minisat22_solve_lim(self._handle, assumptions, 0, 0)
+        if answer is None:
+            answer = self._solves_in_time(assumptions)
         if answer is None:
             raise SpentError
         return answer
 
     def model(self) -> list[int]:
         """The literals that are true in the answer to the last question, which was yes, by their variables."""
-        return self._solver.get_model() or []
+        return pysolvers.minisat22_model(self._handle) or []
 
     def core(self) -> set[int]:
         """Assumptions that cannot hold together, of the last question, whose answer was no."""
-        return set(self._solver.get_core() or ())
+        return set(pysolvers.minisat22_core(self._handle) or ())
 
-    def interrupt(self) -> None:
-        """Answer nothing from now on. From any thread."""
-        self._solver.interrupt()
+    def _solves_in_time(self, assumptions: Sequence[int]) -> bool | None:
+        pysolvers.minisat22_cbudget(self._handle, -1)
+        with self._budget.interrupting(self._interrupt):
+            answer: bool | None = pysolvers.minisat22_solve_lim(self._handle, assumptions, 0, 1)
+        pysolvers.minisat22_clearint(self._handle)
+        return answer
+
+    def _interrupt(self) -> None:
+        pysolvers.minisat22_interrupt(self._handle)

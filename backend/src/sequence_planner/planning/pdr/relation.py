@@ -81,6 +81,7 @@ class Relation:
         self.free_flags = bool(unknown) or synchronise(automaton, state) != dict(state)
         self._before = encoding.initial(unknown, synchronised=not self.free_flags)
         progress = {goal: self._progress(goal, len(goals) == 1) for goal in goals}
+        self.unfinished = [-each.reached for each in progress.values()]  # one of them is true while a goal is left
         circuit.gathered = []
         tick = encoding.tick(self._before, order, budget.require)
         tracker = Tracker(circuit)

@@ -21,12 +21,13 @@ from sequence_planner.planning.attempt import Attempt
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.engines import FACTORIES, LANES, Factory, Lane, Report
-from sequence_planner.planning.racing.companion import Answered, Companion, Ended, Finished, Question, Word
+from sequence_planner.planning.racing.companion import Answered, Companion, Ended, Finished, Question, Ready, Word
 from sequence_planner.planning.racing.lane import LaneModel, work
 
 LOG = logging.getLogger(__name__)
 
 PATIENCE = 2.0  # seconds a lane may take to come back from a task that was called off
+STARTING = 60.0  # seconds it may take for that while it is still starting
 LAST_WORDS = 0.02  # seconds before the end in which lanes say how far they have come
 LONGEST_PAUSE = 30.0  # seconds before a lane that has ended again and again is started once more
 MEMORY = 2 * 2**30  # bytes of data a lane may have
@@ -55,6 +56,7 @@ class _Runner:
         self._companion: Companion[LaneModel, Task] | None = None
         self._before: Companion[LaneModel, Task] | None = None  # one that is replaced and still to be ended
         self._generation = 0  # of the process; what earlier ones say counts no more
+        self._ready = False  # to work on tasks
         self._deaths = 0  # since it last came back from a task
         self._asked = self._off = self._back = (
             0  # the last task it was given, that was called off, that it is done with
@@ -80,7 +82,7 @@ class _Runner:
             self._off = self._asked
             self._companion.call_off(self._off)
             if self._timer is None:
-                self._later(PATIENCE, self._look, self._off)
+                self._later(PATIENCE if self._ready else STARTING, self._look, self._off)
 
     def close(self) -> None:
         """End its process."""
@@ -113,6 +115,11 @@ class _Runner:
             if generation != self._generation:
                 return
             match word:
+                case Ready():
+                    self._ready = True
+                    if self._timer is not None:  # a task was called off meanwhile
+                        self._timer.cancel()
+                        self._later(PATIENCE, self._look, self._off)
                 case Answered(number, report):
                     self._tell(_Heard(self.name, number, report))
                 case Finished(number):
@@ -138,6 +145,7 @@ class _Runner:
             self._tell(_Heard(self.name, self._asked, Report(f"lane {self.name}", Finding(), why)))
             self._tell(_Heard(self.name, self._asked))
         self._generation += 1
+        self._ready = False
         self._back = self._off = self._asked
         self._before, self._companion = self._companion, None
         if self._timer is not None:

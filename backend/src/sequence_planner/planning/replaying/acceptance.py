@@ -53,15 +53,21 @@ class Acceptance:
 
     def accepts(self, task: Task, plan: Plan) -> bool:
         """Whether the ticks of `plan`, exactly as they are written, are a run that the task asks for."""
+        return self.ends(task, plan) is not None
+
+    def ends(self, task: Task, plan: Plan) -> tuple[tuple[State, Goals], ...] | None:
+        """The states at the ends of the plan's ticks, each with the goals missing there; None if it is not accepted."""
         if len(plan.ticks) > task.longest or not all(self._counted_on(task, tick) for tick in plan.ticks):
-            return False
+            return None
         position = _Position(task.state, task.goals)
+        ends: list[tuple[State, Goals]] = []
         for tick in plan.ticks:
             after = self._after(task, position, tick)
             if after is None:
-                return False
+                return None
             position = after
-        return not position.goals
+            ends.append((after.state, after.goals))
+        return None if position.goals else tuple(ends)
 
     def _counted_on(self, task: Task, tick: PlanTick) -> bool:
         """Whether the circumstances allow that this happens and that this starts, each of it once."""

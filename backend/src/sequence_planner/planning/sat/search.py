@@ -31,7 +31,8 @@ class SearchTimeoutError(Exception):
 class Search:
     """Plans from any state in which exactly `unknown`, variables and flags, have no value; with `inside`, from any
     safe one. The variables `frozen` have these values throughout: no transition writes others.
-    What is asked `once` only is asked faster.
+    The `oracles`, which no transition writes, have any value anew in each tick. What is asked `once` only is asked
+    faster.
     """
 
     def __init__(
@@ -43,8 +44,9 @@ class Search:
         inside: bool = False,
         frozen: State = MappingProxyType({}),
         once: bool = False,
+        oracles: frozenset[str] = frozenset(),
     ) -> None:
-        self._made_of = (automaton, supervisor, order, unknown, inside, frozen)
+        self._made_of = (automaton, supervisor, order, unknown, inside, frozen, oracles)
         self._once = once
         self._unrolling: Unrolling | None = None
 

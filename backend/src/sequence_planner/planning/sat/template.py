@@ -6,7 +6,8 @@ with other literals: those of the state before it are those at the end of the ti
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from itertools import combinations, count
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
@@ -20,6 +21,8 @@ from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicStat
 # The literal of each literal of the template: at its own index, that of a negated one counted from the end.
 Renaming = Sequence[int]
 
+_ANEW = 0  # instead of a literal: a new one in each tick
+
 
 class _Recorder:
     """Keeps clauses."""
@@ -32,8 +35,8 @@ class _Recorder:
 class Template:
     """The tick from states in which exactly `unknown`, variables and flags, have no value.
 
-    With `inside`, only from safe states. The variables `frozen` have these values throughout. `pause` is called now and
-    then while it is made, and may raise.
+    With `inside`, only from safe states. The variables `frozen` have these values throughout, and the `oracles` any
+    value anew in each tick. `pause` is called now and then while it is made, and may raise.
     """
 
     def __init__(
@@ -44,6 +47,7 @@ class Template:
         unknown: frozenset[str],
         inside: bool,
         frozen: State,
+        oracles: frozenset[str],
         pause: Callable[[], object],
     ) -> None:
         recorder = _Recorder()
@@ -54,15 +58,18 @@ class Template:
         self._shared = circuit.top  # literals up to here mean the same in all ticks
         free = self._encoding.initial(blind, determined=self._predicates.keys() - unknown, frozen=frozen)
         kept = free.keys() if unknown else automaton.variables.keys() | _read_before_synchronising(automaton)
-        self.start = {name: symbol for name, symbol in free.items() if name in kept}
+        self.start = {name: symbol for name, symbol in free.items() if name in kept and name not in oracles}
         self._inputs = circuit.top
         recorder.clauses.clear()  # what must hold of a state holds at the end of each tick
         recorder.add_clause([Circuit.TRUE])
         for name in unknown - blind:
             # An undetermined flag is known where one of its values is; this gate is part of the tick.
             recorder.clauses.extend(_known(self.start[name]))
-        self._tick = self._encoding.tick(self.start, order, pause)
-        self._carried = self._carry()
+        anew = {name: free[name] for name in sorted(oracles)}
+        for symbol in anew.values():
+            recorder.clauses.extend(_one_value(symbol))
+        self._tick = self._encoding.tick(self.start | anew, order, pause)
+        self._carried = self._carry(anew.values())
         self.clauses: Sequence[Sequence[int]] = recorder.clauses
         self.top = circuit.top
 
@@ -76,9 +83,10 @@ class Template:
 
     def next(self, before: Renaming, top: int) -> Renaming:
         """The renaming of the tick after one renamed `before`; new variables come after `top`."""
-        literals = list(range(self._shared + 1))
-        literals += [before[literal] for literal in self._carried]
-        literals += range(top + 1, top + 1 + self.top - self._inputs)
+        literals, new = list(range(self._shared + 1)), count(top + 1)
+        literals += [next(new) if literal == _ANEW else before[literal] for literal in self._carried]
+        first = next(new)
+        literals += range(first, first + self.top - self._inputs)
         return _both_signs(literals)
 
     def renamed(self, renaming: Renaming) -> list[list[int]]:
@@ -99,10 +107,10 @@ class Template:
             [(renaming[choice], renamed(state)) for choice, state in tick.positions],
         )
 
-    def _carry(self) -> list[int]:
+    def _carry(self, anew: Iterable[Symbol]) -> list[int]:
         """For each literal of the state before, in order, the one that says the same at the end."""
         end = self._tick.end
-        carried = dict[int, int]()
+        carried = {abs(literal): _ANEW for symbol in anew for literal in symbol.literals.values()}
         for name, symbol in self.start.items():
             pairs = [(literal, end[name].literal(value)) for value, literal in symbol.literals.items()]
             for literal, after in (*pairs, (symbol.known, end[name].known)):
@@ -152,6 +160,12 @@ def _known(flag: Symbol) -> list[list[int]]:
     """That a flag is known exactly where it has a value."""
     values = list(flag.literals.values())
     return [[-flag.known, *values], *([flag.known, -value] for value in values)]
+
+
+def _one_value(symbol: Symbol) -> list[list[int]]:
+    """That it has one of its values, and no other."""
+    values = list(symbol.literals.values())
+    return [values, *([-one, -other] for one, other in combinations(values, 2))]
 
 
 def _read_before_synchronising(automaton: Automaton) -> frozenset[str]:

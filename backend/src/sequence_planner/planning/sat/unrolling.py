@@ -28,15 +28,17 @@ class Unrolling:
         unknown: frozenset[str],
         inside: bool,
         frozen: State,
+        oracles: frozenset[str],
         budget: Budget,
     ) -> None:
-        """Of runs in which the variables `frozen` have these values throughout, which no transition writes to others.
+        """Of runs in which the variables `frozen` have these values throughout, which no transition writes to others,
+        and the `oracles`, which none writes, any value anew in each tick.
 
         Raises `SpentError` when the budget is spent before the first tick is encoded."""
         self.solver = Solver()
         self.circuit = Circuit(self.solver)
         self.ticks: list[SymbolicTick] = []
-        self._template = Template(automaton, supervisor, order, unknown, inside, frozen, budget.require)
+        self._template = Template(automaton, supervisor, order, unknown, inside, frozen, oracles, budget.require)
         self.circuit.reserve(self._template.top)
         self._renaming: Renaming = ()
         self._reading = Reading(self.circuit)

@@ -1,0 +1,148 @@
+"""The transitions that could matter to a question, found backwards from its goals, however large the station is.
+
+What holds already is never looked for: only values that are missing lead on, to the transitions that write them and to
+what these miss in turn. Of alternatives those that miss the least are followed, and no transition that needs another
+value of a variable than what it would be taken for. It is a guess; where it leaves too little, all transitions are left.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict, deque
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
+
+from sequence_planner.automaton.cone import read_variables
+from sequence_planner.automaton.structure import Automaton, State, target
+from sequence_planner.automaton.transitions import Phase, Transition, transitions
+from sequence_planner.expressions.evaluation import evaluate
+from sequence_planner.expressions.syntax import (
+    And,
+    Assignment,
+    Comparison,
+    Constant,
+    Expression,
+    Implies,
+    Not,
+    Or,
+    Variable,
+    conjunction,
+    variables,
+)
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.plan import Circumstances
+
+Fact = tuple[str, Value | None]  # a value that a variable does not have; with None, whichever
+_Write = tuple[int, Assignment]  # an action, with the number of its transition
+
+
+class Relevance:
+    """Finds the transitions of one automaton."""
+
+    def __init__(self, automaton: Automaton) -> None:
+        self._automaton = automaton
+        self._transitions = transitions(automaton)
+        self._resources = {effect.name: effect.resource for effect in automaton.effects}
+        self._numbers = {move.name: number for number, move in enumerate(self._transitions)}
+        self._writes: dict[str, list[_Write]] = defaultdict(list)
+        for number, move in enumerate(self._transitions):
+            for action in move.actions:
+                self._writes[target(action)].append((number, action))
+
+    def writing(self, names: Iterable[str]) -> list[Transition]:
+        """All transitions that write one of these variables, in order."""
+        numbers = {number for name in names for number, _ in self._writes[name]}
+        return [self._transitions[number] for number in sorted(numbers)]
+
+    def counted_on(self, state: State, circumstances: Circumstances) -> list[Transition]:
+        """All that a plan from `state` may be made of, in order."""
+        moves = (self._counted_on(move, state, circumstances) for move in self._transitions)
+        return [move for move in moves if move is not None]
+
+    def towards(self, goals: Iterable[Expression], state: State, circumstances: Circumstances) -> list[Transition]:
+        """Those of them that seem to matter to `goals`, in order."""
+        here = _Missing(self._automaton, state)
+        moves: dict[int, Transition | None] = {}
+        pending = deque(fact for goal in goals for fact in here.of(goal, True))
+        seen: set[Fact] = set()
+        while pending:
+            fact = pending.popleft()
+            if fact in seen:
+                continue
+            seen.add(fact)
+            for number, action in self._bringing(fact):
+                if number not in moves:
+                    moves[number] = self._counted_on(self._transitions[number], state, circumstances)
+                move = moves[number]
+                if move is None:
+                    continue
+                pending += here.of_action(action, move.guard)
+                if move.phase is Phase.FINISH:
+                    # It comes after its own start, and looks for nobody else to bring what that brings.
+                    start = self._numbers[f"{move.name.rpartition('.')[0]}.start"]
+                    moves[start] = self._counted_on(self._transitions[start], state, circumstances)
+                    seen.update(_brought(self._transitions[start].actions))
+        return [move for _, move in sorted(moves.items()) if move is not None]
+
+    def _bringing(self, fact: Fact) -> Iterator[_Write]:
+        name, value = fact
+        for number, action in self._writes[name]:
+            if value is None or not isinstance(action.value, Constant) or action.value.value == value:
+                yield number, action
+
+    def _counted_on(self, move: Transition, state: State, circumstances: Circumstances) -> Transition | None:
+        if move.phase is Phase.SENSE:
+            return None if move.fault or self._resources[move.name] in circumstances.offline else move
+        ability = self._automaton.abilities[move.name.rpartition(".")[0]]
+        if move.phase is Phase.START:
+            barred = ability.resource in circumstances.offline or (ability.restart and not circumstances.restart)
+            return None if barred else move
+        if state[ability.flag("executing")] is True:
+            return move
+        # What has not started must do so before it finishes.
+        return replace(move, guard=conjunction(move.guard, ability.enabled, ability.start_guard))
+
+
+def _brought(actions: Iterable[Assignment]) -> Iterator[Fact]:
+    """The values that are written in any case."""
+    for action in actions:
+        if action.condition is None and isinstance(action.value, Constant):
+            yield target(action), action.value.value
+
+
+class _Missing:
+    """What expressions miss in one state."""
+
+    def __init__(self, automaton: Automaton, state: State) -> None:
+        self._automaton = automaton
+        self._state = state
+
+    def of_action(self, action: Assignment, guard: Expression) -> list[Fact]:
+        """What an action misses, and the guard of its transition besides."""
+        facts = [(name, None) for name in variables(action.value)]
+        if action.condition is None:
+            return facts + self.of(guard, True)
+        met = self.of(action.condition, True)
+        there = _Missing(self._automaton, {**self._state, **dict(met)})
+        return facts + met + [(name, value) for name, value in there.of(guard, True) if self._state[name] != value]
+
+    def of(self, predicate: Expression, truth: bool) -> list[Fact]:
+        """Values of which some give `predicate` the value `truth`, unless it has that."""
+        flags = self._automaton.flag_predicates
+        if evaluate(predicate, self._state) is truth:
+            return []
+        match predicate:
+            case Variable(name):
+                return self.of(flags[name], truth) if name in flags else [(name, truth)]
+            case Not(operand):
+                return self.of(operand, not truth)
+            case And(operands) | Or(operands):
+                parts = [self.of(part, truth) for part in operands]
+                if isinstance(predicate, Or) is truth:
+                    least = min(map(len, parts))
+                    parts = [part for part in parts if len(part) == least]
+                return [fact for part in parts for fact in part]
+            case Implies(left, right):
+                return self.of(Or((Not(left), right)), truth)
+            case Comparison("==" | "!=" as relation, Variable(name), Constant(value)) if truth is (relation == "=="):
+                return [(name, value)]
+        return [(name, None) for name in read_variables(self._automaton, (predicate,))]
