@@ -6,9 +6,11 @@ import json
 import shutil
 from pathlib import Path
 
+import pytest
 from pytest import MonkeyPatch
 
 from cli.commands import EXAMPLE, as_json, command, plain
+from sequence_planner.exporting.unified import installed
 
 PLACED = json.dumps({"state": {"bolts": "placed"}})
 
@@ -82,6 +84,41 @@ def test_circumstances() -> None:
     )
 
 
+def test_it_says_why_there_is_no_plan_at_all() -> None:
+    goal = ("plan", EXAMPLE, "--goal", "robot.pose == above", "--offline", "robot", "--offline", "operator")
+    code, out, _ = command(*goal)
+    first, *rest = out.splitlines()
+    assert (code, first.startswith("no plan at all, proven: robot.pose == above (")) == (1, True)
+    assert rest == [
+        "as long as all of these stay as they are",
+        "      robot.pose is home",
+        "      robot is offline",
+        "      the goal robot.pose == above",
+        "there would be a plan again with",
+        "      robot online",
+    ]
+    _, document = as_json(*goal)
+    assert document["why"]["minimal"]
+    assert {"part": "offline", "name": "robot", "value": None} in document["why"]["members"]
+    assert document["why"]["corrections"] == [[{"name": "robot", "value": None}]]
+
+
+@pytest.mark.skipif(installed(), reason="the planners are installed")
+def test_another_planner_needs_the_extra() -> None:
+    code, _, err = command("plan", EXAMPLE, "--goal", "robot.pose == above", "--with", "fast-downward")
+    needs = "fast-downward needs the libraries of the extra `pddl`: run `pip install .[pddl]` in `backend`\n"
+    assert (code, err) == (2, needs)
+
+
+@pytest.mark.skipif(not installed(), reason="needs the libraries of the extra `pddl`")
+def test_another_planner_finds_a_fast_plan() -> None:
+    goal = ("plan", EXAMPLE, "--goal", "robot.pose == above", "--with", "fast-downward")
+    code, document = as_json(*goal)
+    assert (code, document["status"], document["starts"]) == (0, "plan", ["robot.move(above)"])
+    code, _, err = command(*goal[:-1], "fast-upward")
+    assert (code, err.startswith("there is no planner `fast-upward`; did you mean `fast-downward`?")) == (2, True)
+
+
 def test_nothing_to_plan_for() -> None:
     code, _, err = command("plan", EXAMPLE)
     assert (code, err) == (2, "no operation is active in this state: name one whose goal to plan, or give a --goal\n")
@@ -110,6 +147,7 @@ def test_a_plain_automaton(tmp_path: Path) -> None:
     assert document["starts"] == document["transitions"] == ["ask", "grab"]
     code, document = as_json("plan", file, "--goal", "user == has and free")
     assert (code, document["status"]) == (1, "none")
+    assert {"part": "goal", "name": "user == has and free", "value": None} in document["why"]["members"]
     assert command("plan", file, "--restart")[0] == 2
 
 

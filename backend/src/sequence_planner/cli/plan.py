@@ -18,14 +18,15 @@ from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.moments import Moment, StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
 from sequence_planner.cli.plan_answers import because, document, plain_document, said, said_of_plain
-from sequence_planner.exporting.unified import UnifiedPlanning, installed
+from sequence_planner.exporting.unified import UnifiedPlanning, planners
 from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.resolution import Scope, resolve_predicate
+from sequence_planner.expressions.resolution import Scope, resolve_predicate, suggestion
 from sequence_planner.expressions.syntax import Expression, ExpressionError
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import Engines, Lane
 from sequence_planner.planning.goals.pursuit import moved
-from sequence_planner.planning.plain import plan_transitions
+from sequence_planner.planning.plain import PlainAnswer, as_station, plan_transitions
 from sequence_planner.planning.plan import (
     Circumstances,
     Contract,
@@ -37,6 +38,7 @@ from sequence_planner.planning.plan import (
 )
 from sequence_planner.planning.planner import InTurn, Planner, PlannerError
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest, diagnose
+from sequence_planner.planning.reasons.why import SupervisorFor
 from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import SynthesisError
 
@@ -111,7 +113,9 @@ def _of_station(
         answer = _planner(automaton, supervisor, other).answer(request)
     except PlannerError as error:
         refuse(str(error))
-    diagnosis = _diagnosis(automaton, supervisor, request, answer)
+    question = DiagnosisRequest(request.state, request.goals, request.circumstances)
+    more = FewerSpecifications(automaton, supervisor)
+    diagnosis = _diagnosis(automaton, supervisor, more, question.task, request, answer)
     if json:
         print_json(document(answer, diagnosis))
         return answer.plan is not None and not answer.left_out
@@ -129,22 +133,27 @@ def _planner(automaton: Automaton, supervisor: Supervisor, other: str | None) ->
     """Our own engines in turn, or the `other` planner alone."""
     if other is None:
         return Planner(automaton, supervisor)
-    if not installed():
+    if not (known := planners()):
         refuse(f"{other} needs the libraries of the extra `pddl`: run `pip install .[pddl]` in `backend`")
+    if other not in known:
+        refuse(f"there is no planner `{other}`{suggestion(other, known)}; there are {', '.join(known)}")
     lane = Lane(other, dict.fromkeys(Contract, (other,)))
     engines = Engines(automaton, supervisor, lane, {other: partial(UnifiedPlanning, name=other)})
     return Planner(automaton, supervisor, InTurn(engines))
 
 
 def _diagnosis(
-    automaton: Automaton, supervisor: Supervisor, request: PlanRequest, answer: PlanAnswer
+    automaton: Automaton,
+    supervisor: Supervisor,
+    supervisor_for: SupervisorFor,
+    task: Task,
+    request: PlanRequest,
+    answer: PlanAnswer | PlainAnswer,
 ) -> Diagnosis | None:
-    """Why there is no plan at all, in the time that is left."""
+    """Why there is no plan at all for `task`, in the time that is left."""
     if answer.verdict is not Verdict.NONE_AT_ALL:
         return None
-    question = DiagnosisRequest(request.state, request.goals, request.circumstances)
-    budget = Budget.seconds(request.deadline - answer.seconds)
-    return diagnose(automaton, supervisor, FewerSpecifications(automaton, supervisor), question.task, budget)
+    return diagnose(automaton, supervisor, supervisor_for, task, Budget.seconds(request.deadline - answer.seconds))
 
 
 def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest, json: bool) -> bool:
@@ -155,12 +164,16 @@ def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest
         answer = plan_transitions(automaton, supervisor, request.goals, request.state, request.contract, budget=budget)
     except ValueError as error:
         refuse(str(error))
+    derived, task = as_station(automaton, request.state, request.goals)
+    more = FewerSpecifications(automaton, supervisor)
+    diagnosis = _diagnosis(derived, supervisor, more, task, request, answer)
     if json:
-        print_json(plain_document(answer, request.goals))
-    else:
-        for number, name in enumerate(answer.transitions, 1):
-            typer.echo(f"{number:>4}  {name}")
-        typer.echo(said_of_plain(answer, request.goals))
+        print_json(plain_document(answer, request.goals, diagnosis))
+        return answer.verdict is Verdict.FOUND
+    for number, name in enumerate(answer.transitions, 1):
+        typer.echo(f"{number:>4}  {name}")
+    for line in (said_of_plain(answer, request.goals), *because(diagnosis)):
+        typer.echo(line)
     return answer.verdict is Verdict.FOUND
 
 

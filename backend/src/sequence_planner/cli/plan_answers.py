@@ -39,7 +39,7 @@ def document(answer: PlanAnswer, diagnosis: Diagnosis | None) -> dict[str, Any]:
     }
 
 
-def plain_document(answer: PlainAnswer, goals: Iterable[Goal]) -> dict[str, Any]:
+def plain_document(answer: PlainAnswer, goals: Iterable[Goal], diagnosis: Diagnosis | None) -> dict[str, Any]:
     """An answer about a plain automaton as one JSON document."""
     found = answer.verdict is Verdict.FOUND
     return {
@@ -51,6 +51,7 @@ def plain_document(answer: PlainAnswer, goals: Iterable[Goal]) -> dict[str, Any]
         "ticks": len(answer.transitions),
         "searched": answer.searched,
         "proof": _proof(answer.proof),
+        "why": None if diagnosis is None else _why(diagnosis),
         "engine": answer.engine,
         "seconds": answer.seconds,
     }

@@ -37,6 +37,14 @@ def installed() -> bool:
     return all(find_spec(name) is not None for name in ("unified_planning", "up_fast_downward"))
 
 
+def planners() -> tuple[str, ...]:
+    """The names of the one-shot planners that the library can use here; none without the library."""
+    if not installed():
+        return ()
+    factory = import_module("unified_planning.shortcuts").get_environment().factory
+    return tuple(sorted(name for name in factory.engines if factory.engine(name).is_oneshot_planner()))
+
+
 class UnifiedPlanning:
     """Plans by the planner that the library knows as `name`. It has no part in minimal plans, and proves nothing."""
 

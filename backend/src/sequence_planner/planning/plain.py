@@ -19,7 +19,6 @@ from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.syntax import FALSE, TRUE
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.heuristic.best_first import HeuristicSearch
 from sequence_planner.planning.heuristic.fewest import FewestStarts
 from sequence_planner.planning.one_at_a_time import OneAtATime
@@ -69,6 +68,13 @@ def for_planning(automaton: Automaton) -> Automaton:
     return replace(automaton, abilities=abilities, flags=flags, effects=(), one_at_a_time=False, initial=None)
 
 
+def as_station(automaton: Automaton, start: State, goals: Sequence[Goal]) -> tuple[Automaton, Task]:
+    """The plain `automaton` for planning, and the task to reach those of `goals` that do not hold in `start`."""
+    derived = for_planning(automaton)
+    begin = synchronise(derived, {**dict.fromkeys(derived.types), **start})
+    return derived, Task(begin, missing(goals, start))
+
+
 def plan_transitions(
     automaton: Automaton,
     supervisor: Supervisor,
@@ -91,9 +97,9 @@ def plan_transitions(
         raise ValueError(f"no plan begins outside the safe set: {dict(start)}")
     if local := [goal.name for goal in goals if goal.local != TRUE]:
         raise ValueError(f"transitions cannot be planned within local formulas: those of {', '.join(local)}")
-    left = missing(goals, start)
-    if left:
-        question = _Question(for_planning(automaton), supervisor, start, left, contract, longest)
+    derived, task = as_station(automaton, start, goals)
+    if task.goals:
+        question = _Question(derived, supervisor, start, replace(task, contract=contract), longest)
         found = question.answer(budget or Budget.seconds(_SECONDS))
     else:
         found = _Found((), least=0)
@@ -122,31 +128,30 @@ class _Found:
 
 @dataclass(frozen=True)
 class _Question:
-    """Goals that do not hold in `start`, asked of all engines one after the other."""
+    """What `as_station` makes of a question from `start`, asked of all engines one after the other."""
 
     derived: Automaton
     supervisor: Supervisor
     start: State
-    goals: Goals
-    contract: Contract
+    task: Task
     longest: int
 
     def answer(self, budget: Budget) -> _Found:
         """The best answer that there is time for."""
-        begin = synchronise(self.derived, {**dict.fromkeys(self.derived.types), **self.start})
+        begin = self.task.state
         relaxed = reachable(self.derived, begin, Circumstances())
-        if not all(relaxed.may(goal.predicate) for goal in self.goals):
+        if not all(relaxed.may(goal.predicate) for goal in self.task.goals):
             proof = unreached(self.derived, relaxed)
             return _Found(engine="relaxation", none_at_all=True, proof=proof)
         # The flags of abilities that are done at their start say nothing, and cost time.
         bare = replace(self.derived, flags=())
-        task = Task({name: begin[name] for name in bare.variables}, self.goals, contract=self.contract)
+        task = replace(self.task, state={name: begin[name] for name in bare.variables})
         found = self._some(bare, task, budget.part(0.3))
-        if found.order is not None and (self.contract is Contract.FAST or budget.spent):
+        if found.order is not None and (task.contract is Contract.FAST or budget.spent):
             return found
         found = self._fewest(bare, task, found, budget.part(0.3))
         if found.order is None:
-            found = self._proven(replace(task, state=begin), found, budget.part(0.5))
+            found = self._proven(found, budget.part(0.5))
         if found.none_at_all or (found.order is not None and found.least >= len(found.order)):
             return found
         return self._bounded(bare, found, budget)
@@ -165,16 +170,16 @@ class _Question:
             return _Found(engine=FewestStarts.name, none_at_all=True)
         return replace(found, least=max(fewest.least, found.least))
 
-    def _proven(self, task: Task, found: _Found, budget: Budget) -> _Found:
+    def _proven(self, found: _Found, budget: Budget) -> _Found:
         """With a proof that there is no plan at all, if that can be found."""
         # Any order of the abilities will do: each transition could be a tick of its own.
         pdr = Reachability(self.derived, self.supervisor, tuple(self.derived.abilities.values()))
-        proof = pdr.solve(replace(task, contract=Contract.MINIMAL), budget).proof
+        proof = pdr.solve(replace(self.task, contract=Contract.MINIMAL), budget).proof
         return found if proof is None else replace(found, engine=pdr.name, none_at_all=True, proof=proof)
 
     def _bounded(self, bare: Automaton, found: _Found, budget: Budget) -> _Found:
         most = self.longest if found.order is None else len(found.order) - 1
-        unrolled = OneAtATime(bare, self.supervisor, self.start, self.goals)
+        unrolled = OneAtATime(bare, self.supervisor, self.start, self.task.goals)
         order, least = unrolled.fewest(found.least, most, budget)
         if order is not None:
             return _Found(order, least, "bmc")
