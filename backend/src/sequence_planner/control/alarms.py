@@ -164,7 +164,7 @@ def _plan(execution: Execution, planner_trouble: str | None) -> Iterator[Cause]:
         yield Cause("no-plan", Priority.MEDIUM, execution.plan.reason, "See what the active operations need.")
     elif execution.plan.status is not PlanStatus.NONE and _left_out(execution):
         text = f"Left out of the plan: {', '.join(_left_out(execution))}"
-        yield Cause("left-out", Priority.LOW, text, "These goals cannot be reached together with the others for now.")
+        yield Cause("left-out", Priority.LOW, text, "No plan was found that reaches these goals together with the others.")
 
 
 def _left_out(execution: Execution) -> list[str]:

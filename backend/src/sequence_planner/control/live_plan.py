@@ -81,12 +81,14 @@ class LivePlan:
 
     def better(self, present: Present, deadline: float) -> PlanRequest | None:
         """A question for a better plan than the one that is followed; None when it would be answered the same again."""
-        question = _question(present, present.pursued.hopeful)
-        if not self._following(present) or not self.order.ahead or self._asked_better == question:
+        hopeful = present.pursued.hopeful
+        question = _question(present, hopeful)
+        incomplete = bool(self.order.ahead) or not hopeful <= self.order.goals  # something to do, or left out
+        if not self._following(present) or not incomplete or self._asked_better == question:
             return None
         self._asked_better = question
         self._started_since_asked = False
-        return _request(present, present.pursued.hopeful, deadline, Contract.MINIMAL)
+        return _request(present, hopeful, deadline, Contract.MINIMAL)
 
     def unanswered(self, why: str, again: bool) -> None:
         """The planner could not answer. With `again` the same question is asked once more, else only another one."""

@@ -18,6 +18,8 @@ from sequence_planner.planning.reasons.diagnosis import DiagnosisRequest, diagno
 from sequence_planner.planning.reasons.why import SupervisorFor
 from sequence_planner.planning.way_back import WaysBack
 
+STARTING = 30.0  # seconds the lanes may take to start before questions are answered by those that have
+
 
 @dataclass(frozen=True)
 class Model:
@@ -35,6 +37,7 @@ def work(connection: Connection) -> None:
 
 def _prepared(model: Model) -> Callable[[Request, Budget], Iterator[Answer | str]]:
     race = Race(model.automaton, model.supervisor)
+    race.wait(Budget.seconds(STARTING))
     planner = Planner(model.automaton, model.supervisor, race)
     ways = WaysBack(model.automaton, model.supervisor.safe)
 
