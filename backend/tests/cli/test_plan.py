@@ -63,6 +63,12 @@ def test_lanes_that_do_not_fit_become_one(monkeypatch: MonkeyPatch) -> None:
     assert out.splitlines()[1] in ("      robot.move(above)", "      nutrunner.run_nut")
 
 
+def test_what_holds_already_needs_no_plan() -> None:
+    code, out, _ = command("plan", EXAMPLE, "--goal", "robot.pose == home")
+    assert (code, out) == (0, "robot.pose == home: nothing to do, all of it holds already\n")
+    assert as_json("plan", EXAMPLE, "--goal", "robot.pose == home")[1]["contract"] == "minimal"
+
+
 def test_goals_by_expression() -> None:
     code, document = as_json("plan", EXAMPLE, "--goal", "robot.pose == above", "--goal", "bolts == placed")
     assert (code, set(document["goals"])) == (0, {"robot.pose == above", "bolts == placed"})

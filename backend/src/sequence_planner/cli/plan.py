@@ -119,7 +119,7 @@ def _of_station(
     if json:
         print_json(document(answer, diagnosis))
         return answer.plan is not None and not answer.left_out
-    if answer.plan is not None:
+    if answer.plan is not None and answer.plan.ticks:
         width = shutil.get_terminal_size().columns
         for line in lanes(automaton, request.state, answer.plan.ticks, expected, width):
             typer.echo(line)

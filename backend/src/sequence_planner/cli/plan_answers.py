@@ -77,6 +77,8 @@ def said(answer: PlanAnswer) -> str:
     if answer.plan is None:
         return _none(answer, answer.left_out, "ticks")
     plan = answer.plan
+    if not plan.ticks:
+        return f"{', '.join(answer.goals)}: nothing to do, all of it holds already{_left_out(answer)}"
     ticks, starts = _number(len(plan.ticks), "tick"), _number(len(plan.starts), "start")
     if plan.minimal_ticks and plan.minimal_starts:
         kind = "the fewest ticks, then the fewest starts"
@@ -84,11 +86,14 @@ def said(answer: PlanAnswer) -> str:
         kind = "the fewest ticks"
     else:
         kind = f"no plan has fewer than {_number(answer.searched, 'tick')}" if answer.searched > 1 else "found fast"
-    left_out = f"; left out: {', '.join(answer.left_out)}" if answer.left_out else ""
     return (
         f"{', '.join(answer.goals)}: {ticks} and {starts}, {kind} "
-        f"({answer.engine or 'nothing to do'}, {answer.seconds:.2f} s){left_out}"
+        f"({answer.engine}, {answer.seconds:.2f} s){_left_out(answer)}"
     )
+
+
+def _left_out(answer: PlanAnswer) -> str:
+    return f"; left out: {', '.join(answer.left_out)}" if answer.left_out else ""
 
 
 def said_of_plain(answer: PlainAnswer, goals: Iterable[Goal]) -> str:
@@ -96,9 +101,11 @@ def said_of_plain(answer: PlainAnswer, goals: Iterable[Goal]) -> str:
     names = [goal.name for goal in goals]
     if answer.verdict is not Verdict.FOUND:
         return _none(answer, names, "transitions")
+    if not answer.transitions:
+        return f"{', '.join(names)}: nothing to do, all of it holds already"
     kind = "the fewest" if answer.minimal else f"no plan has fewer than {answer.searched}"
     number = _number(len(answer.transitions), "transition")
-    return f"{', '.join(names)}: {number}, {kind} ({answer.engine or 'nothing to do'}, {answer.seconds:.2f} s)"
+    return f"{', '.join(names)}: {number}, {kind} ({answer.engine}, {answer.seconds:.2f} s)"
 
 
 def _none(answer: PlanAnswer | PlainAnswer, goals: Iterable[str], unit: str) -> str:

@@ -164,7 +164,8 @@ def _plan(execution: Execution, planner_trouble: str | None) -> Iterator[Cause]:
         yield Cause("no-plan", Priority.MEDIUM, execution.plan.reason, "See what the active operations need.")
     elif execution.plan.status is not PlanStatus.NONE and _left_out(execution):
         text = f"Left out of the plan: {', '.join(_left_out(execution))}"
-        yield Cause("left-out", Priority.LOW, text, "No plan was found that reaches these goals together with the others.")
+        action = "No plan was found that reaches these goals together with the others."
+        yield Cause("left-out", Priority.LOW, text, action)
 
 
 def _left_out(execution: Execution) -> list[str]:
