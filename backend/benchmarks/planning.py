@@ -33,7 +33,7 @@ from sequence_planner.exporting.ticks import sequential
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import FACTORIES
-from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest
+from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, Proof
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.replaying.replay import Replay, missing
 
@@ -41,7 +41,7 @@ T = TypeVar("T")
 
 LIMIT = 60.0  # seconds for one question
 ONE_PLAN = Path(__file__).parent / "compared" / "one_plan.py"
-ENGINES = ("bmc", "search")  # those that make plans while one is followed
+REPLANS = (("part", Contract.FAST), ("part", Contract.MINIMAL), ("several", Contract.FAST))
 
 
 def main() -> None:
@@ -58,8 +58,8 @@ def main() -> None:
         folder = Path(name)
         for problem in (small,) if quick else (small, middle):
             print(f"\nWarm re-plan while a plan is followed: {problem.name}, {problem.size}")
-            for question in ("part", "several"):
-                replan(problem, question, folder, states=2 if quick else 5)
+            for question, contract in REPLANS:
+                replan(problem, question, contract, folder, states=2 if quick else 7)
         print("\nMinimal plan, cold, whole process")
         whole_process(small if quick else middle, "part", folder)
     print("\nFast plan, cold, in process")
@@ -70,46 +70,57 @@ def main() -> None:
             fast(problem, question, compare=problem is small)
     print("\nNo plan at all, cold")
     with tempfile.TemporaryDirectory() as name:
-        for problem in (mutex(3), blocked(3), capacity(2)) if quick else (mutex(8), blocked(10), capacity(3)):
-            none_at_all(problem, Path(name))
+        for family, sizes in ((mutex, (3, 8)), (blocked, (6, 40)), (capacity, (2, 3))):
+            for size in sizes[:1] if quick else sizes:
+                none_at_all(family(size), Path(name))
 
 
-def replan(problem: Problem, question: str, folder: Path, states: int) -> None:
-    """Plan again from states that a plan leads through, warm, and from each with fresh peers."""
-    goals = problem.questions[question]
-    first = planned(problem, question)
+def replan(problem: Problem, question: str, contract: Contract, folder: Path, states: int) -> None:
+    """Plan again warm, and with fresh peers, from states that a plan leads through and from others.
+
+    On the way the planner remembers the rest of its plan; off it, where starts of a tick were held back, it has only
+    what its engines have kept.
+    """
+    planner = Planner(problem.automaton, problem.supervisor)
+    first = asked(planner, problem, problem.state, question, contract)
     if first.plan is None:
-        say(f"{question}: no plan in {LIMIT:.0f} s")
+        say(f"{question}, {contract}: no plan in {LIMIT:.0f} s")
         return
-    along = spread(list(followed(problem, first.plan)), states)
+    way = list(followed(problem, first.plan))
+    late = [held for held in followed(problem, first.plan, held_back=True) if held not in way]
+    for where, met in (("on its way", spread(way, states)), ("off its way", spread(late, states))):
+        # Each state is asked about once: a second time it would be remembered wherever it is.
+        times = [own(partial(asked, planner, problem, each, question, contract)) for each in met]
+        peers = (
+            f"{peer} {seconds * 1000:.0f} ms, ratio {seconds / statistics.median(times):.1f}"
+            for peer, seconds in fresh_peers(problem, question, met, folder)
+        )
+        if times:
+            say(f"{question}, {contract}, {len(first.plan.ticks)} ticks, {where}", statistics.median(times), *peers)
+
+
+def fresh_peers(problem: Problem, question: str, states: list[State], folder: Path) -> Iterable[tuple[str, float]]:
+    """What the peers take for the same, each state in a fresh process."""
     peers: dict[str, list[float]] = {}
-    for each in along:
-        asked = replace(problem, state=each, questions={question: missing(goals, each)})
+    for each in states:
+        goals = missing(problem.questions[question], each)
+        from_here = replace(problem, state=each, questions={question: goals})
         if fast_downward.programs() is not None:
-            text = pddl_text(sequential(asked.automaton, asked.supervisor, each, asked.questions[question]))
-            sas = fast_downward.translated(text, folder)
-            found = fast_downward.search(text, sas, LIMIT)
+            text = pddl_text(sequential(problem.automaton, problem.supervisor, each, goals))
+            found = fast_downward.search(text, fast_downward.translated(text, folder), LIMIT)
             if found.plan is not None:
-                require_replay(asked, question, found.plan)
+                require_replay(from_here, question, found.plan)
             peers.setdefault("Fast Downward", []).append(found.seconds)
         if abc.PROGRAM is not None:
             circuit = folder / "question.aig"
-            circuit.write_bytes(aiger(asked, question))
+            circuit.write_bytes(aiger(from_here, question))
             peers.setdefault("ABC bmc3", []).append(abc.bmc3(circuit, LIMIT).seconds)
-    for name in ENGINES:
-        engine = FACTORIES[name](problem.automaton, problem.supervisor)
-        times: list[float] = []
-        for warming in (True, False, False):
-            for each in along:
-                task = Task(each, missing(goals, each), contract=Contract.FAST)
-                seconds = own(partial(engine.solve, task, Budget.seconds(LIMIT)))
-                times += [] if warming else [seconds]
-        ours = statistics.median(times)
-        ratios = (
-            f"{peer} {statistics.median(each) * 1000:.0f} ms, ratio {statistics.median(each) / ours:.0f}"
-            for peer, each in peers.items()
-        )
-        say(f"{question}, {len(first.plan.ticks)} ticks, {name}", ours, *ratios)
+    return ((peer, statistics.median(each)) for peer, each in peers.items())
+
+
+def asked(planner: Planner, problem: Problem, state: State, question: str, contract: Contract) -> PlanAnswer:
+    """What `planner` answers."""
+    return planner.answer(PlanRequest(state, problem.questions[question], LIMIT, contract=contract))
 
 
 def whole_process(problem: Problem, question: str, folder: Path) -> None:
@@ -149,40 +160,49 @@ def fast(problem: Problem, question: str, compare: bool) -> None:
 
 
 def none_at_all(problem: Problem, folder: Path) -> None:
-    """A proof from a planner made anew, beside one by ABC."""
+    """A proof, checked, from a planner whose engines take turns, and from its engine alone, beside one by ABC."""
     (question,) = problem.questions
     answers: list[PlanAnswer] = []
     ours = median(lambda: own(lambda: answers.append(planned(problem, question))))
-    more = [f"{answers[-1].verdict}, {answers[-1].engine}"]
+    task = Task(problem.state, problem.questions[question])
+    alone = median(lambda: own(partial(proof_of, problem, task)))
+    more = [f"{answers[-1].verdict}, {answers[-1].engine}", f"engine pdr {alone * 1000:.1f} ms"]
     if abc.PROGRAM is not None:
         circuit = folder / "question.aig"
         circuit.write_bytes(aiger(problem, question))
         theirs = [abc.pdr(circuit, LIMIT) for _ in range(ROUNDS)]
         seconds = statistics.median(each.seconds for each in theirs)
         outcome = "" if theirs[0].proven else ", not proven"
-        more.append(f"ABC pdr {seconds * 1000:.0f} ms{outcome}, ratio {seconds / ours:.1f}")
+        ratios = f"ratio {seconds / ours:.1f}, engine {seconds / alone:.1f}"
+        more.append(f"ABC pdr {seconds * 1000:.0f} ms{outcome}, {ratios}")
     say(f"{problem.name}, {problem.size}", ours, *more)
+
+
+def proof_of(problem: Problem, task: Task) -> Proof:
+    """What the engine that makes proofs, made anew, finds."""
+    proof = FACTORIES["pdr"](problem.automaton, problem.supervisor).solve(task, Budget.seconds(LIMIT)).proof
+    assert proof is not None
+    return proof
 
 
 def planned(problem: Problem, question: str, contract: Contract = Contract.FAST) -> PlanAnswer:
     """The answer of a new planner."""
-    request = PlanRequest(problem.state, problem.questions[question], deadline=LIMIT, contract=contract)
-    return Planner(problem.automaton, problem.supervisor).answer(request)
+    return asked(Planner(problem.automaton, problem.supervisor), problem, problem.state, question, contract)
 
 
-def followed(problem: Problem, plan: Plan) -> Iterable[State]:
-    """The states at the ends of the plan's ticks, but for the last."""
+def followed(problem: Problem, plan: Plan, held_back: bool = False) -> Iterable[State]:
+    """The states at the ends of the plan's ticks, but for the last; or had their last starts been `held_back`."""
     automaton, state = problem.automaton, problem.state
     effects = {effect.name: effect for effect in automaton.effects}
     for tick in plan.ticks[:-1]:
         sensed = apply_effects(state, [effects[name] for name in tick.effects])
         assert sensed is not None
-        state = synchronise(automaton, finish(automaton, sensed).state)
+        state = settled = synchronise(automaton, finish(automaton, sensed).state)
         for name in tick.starts:
             after = start(automaton, state, automaton.abilities[name])
             assert after is not None
             state = after
-        yield state
+        yield settled if held_back else state
 
 
 def spread(items: list[T], count: int) -> list[T]:

@@ -14,6 +14,7 @@ from sequence_planner.planning.plan import Contract
 from sequence_planner.planning.relaxed.projection import Projection
 from sequence_planner.planning.replaying.replay import Replay, missing
 from sequence_planner.planning.sat.bounded import BoundedModelChecking
+from sequence_planner.planning.sat.seen import PartialSight
 
 from .breadth_first import Shortest, shortest
 from .choices import Choices
@@ -47,6 +48,7 @@ def engines(given: Problem) -> tuple[Engine, ...]:
     """All of them, for one problem."""
     return (
         BoundedModelChecking(given.automaton, given.supervisor),
+        PartialSight(given.automaton, given.supervisor, most=1.0),
         Projection(given.automaton, given.supervisor),
         HeuristicSearch(given.automaton, given.supervisor),
         ShortestSearch(given.automaton, given.supervisor),

@@ -17,7 +17,7 @@ from sequence_planner.planning.replaying.replay import missing
 
 from .budget import examples
 from .choices import Choices, made_by
-from .exhaustive import can_reach
+from .exhaustive import alike, can_reach
 from .random_problems import Problem, problem
 
 
@@ -74,6 +74,24 @@ def test_no_proof_of_what_is_wrong_is_accepted(case: tuple[Problem, Clause]) -> 
         return
     if accepted(made, task, Proof("guess", (claim,))) or accepted(made, task, Proof("guess", ())):
         assert not possible(made, task)
+
+
+@examples(60)
+@given(made_by(with_claim))
+def test_nor_one_that_is_wrong_of_some_states_in_question(case: tuple[Problem, Clause]) -> None:
+    """Whatever is claimed of a state and all that are like it but for the variables of the claim."""
+    made, claim = case
+    free = frozenset(literal.name for literal in claim) & made.automaton.variables.keys()
+    task = Task(made.state, made.goals, made.circumstances)
+    states = list(alike(made.automaton, made.state, free))
+    wrong = can_reach(made.automaton, made.supervisor, states, task.goals, task.circumstances)
+    for proof in (Proof("guess", (claim,)), Proof("guess", ())):
+        for whole in (False, True):
+            try:
+                check(made.automaton, made.supervisor, task, proof, Budget.seconds(60), whole=whole, free=free)
+            except CertificateError:
+                continue
+            assert not wrong
 
 
 @examples(80)

@@ -12,6 +12,7 @@ from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Circumstances, Contract, goals_of
 from sequence_planner.planning.relaxed.projection import Projection
+from sequence_planner.planning.relaxed.relevance import Relevance
 
 from .budget import examples
 from .building import Does, automaton
@@ -79,3 +80,38 @@ def test_what_is_frozen_but_would_change_is_let_loose() -> None:
 
 def test_minimal_plans_are_left_to_others() -> None:
     assert ask(lamps(5), "lit", Contract.MINIMAL) == Finding()
+
+
+def test_only_what_could_matter_is_looked_at() -> None:
+    station = lamps(40)
+    found = Relevance(station).towards([station.operations["lit"].goal], initial_state(station), Circumstances())
+    assert [move.name for move in found] == ["shines_3", "light_3.start", "fit.start"]
+
+
+def test_it_goes_on_where_the_budget_was_spent() -> None:
+    station = lamps(40)
+    task = Task(initial_state(station), goals_of(station, ("pair",)), Circumstances(), Contract.FAST)
+    engine = Projection(station, EVERYTHING)
+    called_off = Budget.seconds(20)
+    called_off.call_off()
+    assert engine.solve(task, called_off) == Finding()
+    assert engine.solve(task, Budget.seconds(20)) == ask(station, "pair")
+
+
+def test_what_keeps_others_from_starting_starts_after_them() -> None:
+    """Each is declared before that which must start first, and still all start in one tick."""
+    station = automaton(
+        {
+            "leave": Does(start=("gone := true",), enabled="loaded and not gone"),
+            "load": Does(start=("loaded := true",), enabled="open and not gone and not loaded"),
+            "unlock": Does(start=("open := true",), enabled="not open and not gone"),
+        },
+        measured={"away": OFF},
+        output={"gone": OFF},
+        estimated={"loaded": OFF, "open": OFF},
+        effects={"goes": ("gone and not away", ("away := true",))},
+        goals={"away": "away"},
+    )
+    plan = ask(station, "away").plan
+    assert plan is not None
+    assert [tick.starts for tick in plan.ticks] == [("unlock", "load", "leave"), ()]

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from hypothesis import given
 
+from sequence_planner.automaton.structure import State
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.pdr.certificate import check
+from sequence_planner.planning.pdr.engine import FirstSight, Reachability
 from sequence_planner.planning.plan import Circumstances, Contract, goals_of
 from sequence_planner.planning.replaying.replay import Replay, missing
 
@@ -14,6 +16,7 @@ from .budget import examples
 from .choices import Choices, made_by
 from .exhaustive import alike, can_reach
 from .random_problems import Problem, problem
+from .random_stations import state_of
 
 
 def decides(given_: Problem) -> None:
@@ -57,9 +60,45 @@ def test_a_proof_can_be_about_many_states(case: tuple[Problem, frozenset[str]]) 
     states = list(alike(made.automaton, made.state, free))
     possible = can_reach(made.automaton, made.supervisor, states, made.goals, made.circumstances)
     assert (decision.proof is None) == possible
-    if possible:
+    if decision.proof is not None:
+        for whole in (False, True):
+            check(made.automaton, made.supervisor, task, decision.proof, Budget.seconds(60), whole=whole, free=free)
+    else:
         assert decision.state in states
         assert can_reach(made.automaton, made.supervisor, [decision.state], made.goals, made.circumstances)
+
+
+def one_after_the_other(choices: Choices) -> tuple[Problem, list[State]]:
+    """A problem, and the states to plan from one after the other."""
+    made = problem(choices, unknown=choices.chance(3), demanding=choices.chance(2))
+    unknown = choices.chance(3)
+    return made, [made.state, *(state_of(choices, made.automaton, unknown) for _ in range(4)), made.state]
+
+
+@examples(60)
+@given(made_by(one_after_the_other))
+def test_what_is_kept_from_other_questions_makes_no_difference(case: tuple[Problem, list[State]]) -> None:
+    made, states = case
+    engine = Reachability(made.automaton, made.supervisor)
+    for state in states:
+        task = Task(state, made.goals, made.circumstances, Contract.FAST)
+        finding = engine.solve(task, Budget.seconds(60))
+        possible = can_reach(made.automaton, made.supervisor, [state], made.goals, made.circumstances)
+        assert (finding.plan is None, finding.proof is None) == (not possible, possible)
+        if finding.proof is not None:
+            check(made.automaton, made.supervisor, task, finding.proof, Budget.seconds(60))
+
+
+@examples(80)
+@given(made_by(one_after_the_other))
+def test_at_first_sight_there_are_proofs_only_where_there_is_no_plan(case: tuple[Problem, list[State]]) -> None:
+    made, states = case
+    engine = FirstSight(made.automaton, made.supervisor)
+    for state in states:
+        task = Task(state, made.goals, made.circumstances, Contract.FAST)
+        if (proof := engine.solve(task, Budget.seconds(60)).proof) is not None:
+            check(made.automaton, made.supervisor, task, proof, Budget.seconds(60), whole=True)
+            assert not can_reach(made.automaton, made.supervisor, [state], made.goals, made.circumstances)
 
 
 @examples(1)

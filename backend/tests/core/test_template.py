@@ -61,7 +61,9 @@ def unrolled(given_: Problem, number: int) -> set[Key]:
     station, supervisor, state = given_.automaton, given_.supervisor, given_.state
     unknown = frozenset(name for name in station.types if state[name] is None)
     budget, inside = Budget.seconds(60), supervisor.safe.includes(state)
-    unrolling = Unrolling(station, supervisor, sweep_order(station, supervisor), unknown, inside, {}, frozenset(), budget)
+    unrolling = Unrolling(
+        station, supervisor, sweep_order(station, supervisor), unknown, inside, {}, frozenset(), budget
+    )
     unrolling.extend(number, budget)
     position = unrolling.ticks[number - 1].synchronised
     symbols = [position[name].literals for name in station.types]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -193,6 +194,25 @@ class Automaton:
     def flag_predicates(self) -> Mapping[str, Expression]:
         """The predicate of each flag."""
         return {flag.name: flag.predicate for flag in self.flags}
+
+    @cached_property
+    def flag_readers(self) -> Mapping[str, tuple[int, ...]]:
+        """By variable or flag, the numbers of the flags whose predicates read it, ascending."""
+        readers: dict[str, list[int]] = defaultdict(list)
+        for number, flag in enumerate(self.flags):
+            for name in dict.fromkeys(variables(flag.predicate)):
+                readers[name].append(number)
+        return {name: tuple(numbers) for name, numbers in readers.items()}
+
+    @cached_property
+    def finish_readers(self) -> Mapping[str, tuple[str, ...]]:
+        """By variable or flag, the abilities whose finish guard or finish actions read it."""
+        readers: dict[str, dict[str, None]] = defaultdict(dict)
+        for ability in self.abilities.values():
+            guard = () if ability.finish_guard is None else variables(ability.finish_guard)
+            for name in (*guard, *(name for action in ability.finish_actions for name in reads(action))):
+                readers[name][ability.name] = None
+        return {name: tuple(names) for name, names in readers.items()}
 
     @cached_property
     def initial_valuation(self) -> State:

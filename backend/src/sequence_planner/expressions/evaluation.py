@@ -42,16 +42,25 @@ def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
     Raises KeyError for a variable that `valuation` does not have, TypeError for an unresolved name and for a temporal
     formula, which has a value only over a trace (see `traces`).
     """
-    match expression:
-        case Constant(value):
-            return value
+    match expression:  # what is most frequent comes first, and without a detour
+        case Comparison(relation, Variable(name), Constant(value)):
+            known = valuation[name]
+            return None if known is None else RELATIONS[relation](known, value)
+        case And(operands):
+            unknown = False
+            for part in operands:
+                truth = evaluate(part, valuation)
+                if truth is False:
+                    return False
+                unknown = unknown or truth is None
+            return None if unknown else True
         case Variable(name):
             return valuation[name]
+        case Constant(value):
+            return value
         case Not(operand):
             truth = evaluate(operand, valuation)
             return None if truth is None else not truth
-        case And(operands):
-            return least(evaluate(part, valuation) for part in operands)
         case Or(operands):
             return greatest(evaluate(part, valuation) for part in operands)
         case Implies(left, right):

@@ -219,13 +219,18 @@ def occurrences(expression: Expression) -> Iterator[Variable]:
         part = pending.pop()
         if isinstance(part, Variable):
             yield part
+        elif isinstance(part, Comparison):  # most are comparisons, or these
+            pending += (part.right, part.left)
+        elif isinstance(part, And | Or):
+            pending += reversed(part.operands)
         elif not isinstance(part, Constant):
-            pending.extend(reversed(children(part)))
+            pending += reversed(children(part))
 
 
 def variables(expression: Expression) -> Iterator[str]:
     """Full names of the variables a resolved expression reads, with repetitions."""
-    return (variable.name for variable in occurrences(expression))
+    for variable in occurrences(expression):
+        yield variable.name
 
 
 def first_temporal(expression: Expression) -> UnaryTemporal | BinaryTemporal | None:

@@ -13,11 +13,12 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Engine, Finding, Task
 from sequence_planner.planning.plan import Contract
-from sequence_planner.planning.relaxed.relaxation import reachable, unreached
 
 LOG = logging.getLogger(__name__)
 
-FIRST_TURN = 0.1  # seconds; each further turn is twice as long, so that no engine costs another more than its own time
+# Seconds; each further turn is twice as long, so that no engine costs another much more than its own time.
+FIRST_TURN = 0.1
+LONG_FIRST_TURNS = {"partial sight": 2.0, "projection": 2.0, "search": 0.5, "bmc": 1.5}
 
 Factory = Callable[[Automaton, Supervisor], Engine]
 
@@ -45,21 +46,6 @@ class Lane:
         return tuple(dict.fromkeys(name for names in self.engines.values() for name in names))
 
 
-class Relaxing:
-    """Proves that a goal cannot be reached where not even the delete relaxation reaches it."""
-
-    name = "relaxation"
-
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
-        self._automaton = automaton
-
-    def solve(self, task: Task, budget: Budget) -> Finding:
-        """A proof, or nothing."""
-        relaxed = reachable(self._automaton, task.state, task.circumstances)
-        reached = all(relaxed.may(goal.predicate) for goal in task.goals)
-        return Finding() if reached else Finding(proof=unreached(self._automaton, relaxed))
-
-
 @dataclass(frozen=True)
 class Maker:
     """Makes engines of a class that is imported only when one is made: a command needs few of them."""
@@ -81,13 +67,14 @@ FACTORIES: Mapping[str, Factory] = {
     "projection": Maker("relaxed.projection", "Projection"),
     "search": Maker("heuristic.best_first", "HeuristicSearch"),
     "breadth-first": Maker("heuristic.breadth_first", "ShortestSearch"),
-    "relaxation": Relaxing,
+    "relaxation": Maker("relaxed.relaxing", "Relaxing"),
     "pdr": Maker("pdr.engine", "Reachability"),
+    "first sight": Maker("pdr.engine", "FirstSight"),
 }
 
 # Racing, in processes of their own.
 LANES = (
-    Lane("sat", {Contract.MINIMAL: ("bmc",), Contract.FAST: ("projection", "bmc")}),
+    Lane("sat", {Contract.MINIMAL: ("partial sight", "bmc"), Contract.FAST: ("projection", "bmc")}),
     Lane("search", {Contract.MINIMAL: ("breadth-first", "search"), Contract.FAST: ("search",)}),
     Lane("proof", dict.fromkeys(Contract, ("relaxation", "pdr")), niceness=10),
 )
@@ -96,8 +83,8 @@ LANES = (
 ALONE = Lane(
     "alone",
     {
-        Contract.MINIMAL: ("bmc", "relaxation", "pdr"),
-        Contract.FAST: ("projection", "search", "relaxation", "bmc", "pdr"),
+        Contract.MINIMAL: ("first sight", "partial sight", "bmc", "relaxation", "pdr"),
+        Contract.FAST: ("first sight", "projection", "search", "relaxation", "bmc", "pdr"),
     },
 )
 
@@ -128,18 +115,19 @@ class Engines:
         task: what it has learnt could be wrong.
         """
         waiting: Sequence[str] = self._lane.engines[task.contract]
-        turn = FIRST_TURN
+        longer = 1
         while waiting and not budget.spent:
             going_on: list[str] = []
             for name in waiting:
-                own = _at_most(budget, min(turn if len(waiting) > 1 else inf, patience()))
+                turn = longer * LONG_FIRST_TURNS.get(name, FIRST_TURN) if len(waiting) > 1 else inf
+                own = _at_most(budget, min(turn, patience()))
                 report = self._turn(name, task, own)
                 yield report
                 if own.spent and not report.trouble:
                     going_on.append(name)  # one that ends before its time has nothing more to say
                 if budget.spent:
                     return
-            waiting, turn = going_on, 2 * turn
+            waiting, longer = going_on, 2 * longer
 
     def _turn(self, name: str, task: Task, budget: Budget) -> Report:
         try:

@@ -114,7 +114,8 @@ class Proof:
     Every tick leads from states that satisfy all `invariant` clauses into such states, and the goals that are reached
     on the way never are all of them. Of several goals clauses also say whether one has been reached,
     `goal.<name>.reached`, and of formulas in which state their automata are, `goal.<name>.at`. `by` is the method that
-    found it; each was checked by a solver of its own.
+    found it. One by `pdr` has been checked by a solver of its own; one by `relaxation`, whose clauses say no more than
+    that values are never taken, has not, but passes the same check (`pdr.certificate`).
     """
 
     by: str

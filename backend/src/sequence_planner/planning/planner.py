@@ -16,7 +16,6 @@ from sequence_planner.planning.engines import ALONE, Engines, Report
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, Proof, Verdict
 from sequence_planner.planning.recollection import NAME, Recollection
-from sequence_planner.planning.relaxed.relaxation import reachable, unreached
 from sequence_planner.planning.replaying.acceptance import Acceptance
 from sequence_planner.planning.replaying.replay import missing
 
@@ -132,6 +131,8 @@ class Planner:
 
     def _without_unreachable(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
         """What the delete relaxation excludes is looked at only now: most questions have an answer without."""
+        from sequence_planner.planning.relaxed.relaxation import reachable, unreached  # noqa: PLC0415
+
         relaxed = reachable(self._automaton, request.state, request.circumstances)
         possible = tuple(goal for goal in outcome.goals if relaxed.may(goal.predicate))
         if possible == outcome.goals:

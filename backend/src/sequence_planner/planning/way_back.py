@@ -36,20 +36,24 @@ class WaysBack:
         self._automaton = automaton
         self._safe = safe
 
-    def answer(self, request: WayBackRequest) -> WayBackAnswer:
-        """The shortest way, and what threatens meanwhile. Raises `PlannerError` when a way does not replay."""
+    def answer(self, request: WayBackRequest, budget: Budget | None = None) -> WayBackAnswer:
+        """The shortest way, and what threatens meanwhile. Raises `PlannerError` when a way does not replay.
+
+        `budget` can be called off from another thread; without one the deadline of the request is kept.
+        """
         began = time.monotonic()
+        budget = budget or Budget.seconds(request.deadline)
         state = request.state
         plan, searched = None, request.longest
         unknown = frozenset(name for name in self._automaton.variables if state[name] is None)
         safe = self._safe.for_all(unknown)
         try:
             plan = self._ways.search(state).plan_into(
-                safe, state, Circumstances(), request.longest, Budget(began + _SHARE * request.deadline)
+                safe, state, Circumstances(), request.longest, budget.part(_SHARE)
             )
         except SearchTimeoutError as late:
             searched = late.searched
-        threatened = self._threatened(state, request.longest, began + request.deadline)
+        threatened = self._threatened(state, request.longest, budget)
         if plan is None:
             return WayBackAnswer(None, threatened, searched, time.monotonic() - began)
         way = self._replayed(state, plan)
@@ -70,13 +74,13 @@ class WaysBack:
         )
         return Searches(everything, _UNSUPERVISED, ())
 
-    def _threatened(self, state: State, longest: int, deadline: float) -> tuple[str, ...]:
+    def _threatened(self, state: State, longest: int, budget: Budget) -> tuple[str, ...]:
         if not self._automaton.specifications or violated(self._automaton, state):
             return ()
         forbidden = Or(tuple(specification.forbidden for specification in self._automaton.specifications.values()))
         goals = (Goal("violated", forbidden),)
         try:
-            plan = self._threats.search(state).plan(state, goals, Circumstances(), longest, Budget(deadline))
+            plan = self._threats.search(state).plan(state, goals, Circumstances(), longest, budget)
         except SearchTimeoutError:
             return ()
         if plan is None:

@@ -47,7 +47,7 @@ def _prepared(model: Model) -> Callable[[Request, Budget], Iterator[Answer | str
                 case PlanRequest():
                     yield planner.answer(request, budget)
                 case WayBackRequest():
-                    yield ways.answer(request)
+                    yield ways.answer(request, budget)
                 case DiagnosisRequest(task=task):
                     yield diagnose(model.automaton, model.supervisor, model.supervisor_for, task, budget)
         except PlannerError as error:

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.planning.goals.monitor import monitor_of
 from sequence_planner.planning.plan import Goal
+
+if TYPE_CHECKING:
+    from sequence_planner.planning.goals.monitor import Monitor
 
 Goals = tuple[Goal, ...]
 
@@ -20,7 +23,7 @@ def settled(goals: Iterable[Goal], state: State) -> Goals | None:
     for goal in goals:
         if not holds(goal.predicate, state):
             missing.append(goal)
-        elif goal.local != TRUE and not monitor_of(goal.local).satisfied(goal.at, state):
+        elif goal.local != TRUE and not _monitor(goal).satisfied(goal.at, state):
             return None
     return moved(missing, state)
 
@@ -30,10 +33,17 @@ def moved(goals: Iterable[Goal], state: State) -> Goals | None:
     after: list[Goal] = []
     for goal in goals:
         if goal.local != TRUE:
-            monitor = monitor_of(goal.local)
+            monitor = _monitor(goal)
             at = monitor.step(goal.at, state)
             if at in monitor.hopeless:
                 return None
             goal = replace(goal, at=at)
         after.append(goal)
     return tuple(after)
+
+
+def _monitor(goal: Goal) -> Monitor:
+    # Not before there is a formula: importing it takes a tenth of the time that importing the planner takes.
+    from sequence_planner.planning.goals.monitor import monitor_of  # noqa: PLC0415
+
+    return monitor_of(goal.local)

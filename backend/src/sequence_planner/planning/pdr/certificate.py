@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from pysat.solvers import Solver
-
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.syntax import TRUE, Variable
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.goals.monitor import monitor_of
 from sequence_planner.planning.goals.tracking import Progress, Tracker
-from sequence_planner.planning.pdr.invariants import asserted
+from sequence_planner.planning.pdr.invariants import asserted, one_of, open_to
 from sequence_planner.planning.pdr.localisation import localisable, localised
 from sequence_planner.planning.pdr.ordering import Orders
+from sequence_planner.planning.pdr.second_solver import SecondSolver
 from sequence_planner.planning.plan import Clause, Goal, Literal, Proof
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.encoding import Encoding, SymbolicTick
@@ -38,20 +37,31 @@ def check(
     budget: Budget,
     orders: Orders | None = None,
     whole: bool = False,
+    free: frozenset[str] = frozenset(),
 ) -> None:
     """Raises `CertificateError` unless `proof` shows that the goals of `task` cannot be reached from its state.
+
+    Nor may they from one like it with any values of the variables `free`; flags follow what is free.
 
     What the proof speaks of is looked at first, which is enough for most; the whole automaton if that is not enough or
     if it is wanted. `orders` are those of the automaton, if they are at hand. Where the state's flags are as
     synchronisation leaves them, those of every state on the way are. Raises `SpentError`.
     """
     orders = orders or Orders(automaton, supervisor)
-    if whole or not _without_need_of_the_rest(automaton, supervisor, task, proof, budget, orders):
-        _Check(automaton, supervisor, task, orders.whole(task, budget), budget).run(proof, frozenset())
+    task = replace(task, state=one_of(automaton, task.state, free))
+    open_ = open_to(automaton, free)
+    if whole or not _without_need_of_the_rest(automaton, supervisor, task, proof, budget, orders, open_):
+        _Check(automaton, supervisor, task, orders.whole(task, budget), budget).run(proof, open_)
 
 
 def _without_need_of_the_rest(
-    automaton: Automaton, supervisor: Supervisor, task: Task, proof: Proof, budget: Budget, orders: Orders
+    automaton: Automaton,
+    supervisor: Supervisor,
+    task: Task,
+    proof: Proof,
+    budget: Budget,
+    orders: Orders,
+    open_: frozenset[str],
 ) -> bool:
     """Whether the proof is one for the part of the automaton that it speaks of, and so for all of it."""
     if not localisable(automaton, task.state, task.goals):
@@ -64,7 +74,7 @@ def _without_need_of_the_rest(
     part = replace(task, state=seen.state(task.state))
     order = orders.part(seen, task, budget)
     try:
-        _Check(seen.automaton, seen.supervisor, part, order, budget).run(proof, frozenset(seen.oracles))
+        _Check(seen.automaton, seen.supervisor, part, order, budget).run(proof, open_ | seen.oracles.keys())
     except CertificateError:
         return False
     return True
@@ -77,7 +87,7 @@ class _Check:
         self._budget = budget
         self._task = task
         self._automaton = automaton
-        self._solver = Solver("cadical153")
+        self._solver = SecondSolver()
         self._circuit = Circuit(self._solver)
         self._reading = Reading(self._circuit)
         unknown = frozenset(name for name in automaton.variables if task.state[name] is None)
@@ -99,9 +109,9 @@ class _Check:
         open_ = -self._circuit.conjunction(each.reached for each in progress.values())
         self._given = [open_, *encoding.assumptions(task.circumstances), *self._avoided(tick)]
 
-    def run(self, proof: Proof, oracles: frozenset[str]) -> None:
-        """All steps of the proof; `oracles` have any value in any tick."""
-        beginning = self._beginning(oracles)
+    def run(self, proof: Proof, open_: frozenset[str]) -> None:
+        """All steps of the proof, from the state with any values of what is `open_`."""
+        beginning = self._beginning(open_)
         before = [self._clause(clause, self._values_before) for clause in proof.invariant]
         after = [self._clause(clause, self._values_after) for clause in proof.invariant]
         if self._satisfiable([*beginning, -self._circuit.conjunction(before)]):
@@ -113,12 +123,12 @@ class _Check:
         if self._synchronised and self._satisfiable([-self._circuit.conjunction(self._follow(self._end))]):
             raise CertificateError("a tick leaves flags unsynchronised")
 
-    def _beginning(self, oracles: frozenset[str]) -> list[int]:
+    def _beginning(self, open_: frozenset[str]) -> list[int]:
         given = asserted(self._task.state, self._task.goals)
         return [
             literal if given[name] == value else -literal
             for name, symbol in self._values_before.items()
-            if name not in oracles
+            if name not in open_
             for value, literal in symbol.literals.items()
         ]
 
@@ -158,9 +168,7 @@ class _Check:
         ]
 
     def _satisfiable(self, assumptions: list[int]) -> bool:
-        if self._budget.spent:
-            raise SpentError
-        return bool(self._solver.solve(assumptions))
+        return self._solver.solve(assumptions, self._budget)
 
 
 def _values(state: SymbolicState, progress: Mapping[Goal, Progress]) -> dict[str, Symbol]:

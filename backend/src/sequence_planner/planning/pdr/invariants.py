@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from sequence_planner.automaton.structure import State
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Clause, Literal
+from sequence_planner.planning.sat.following import Following
 
 
 def asserted(state: State, goals: Goals) -> Mapping[str, Value | None]:
@@ -26,3 +28,15 @@ def is_met(literal: Literal, values: Mapping[str, Value | None]) -> bool:
 def satisfies(values: Mapping[str, Value | None], clauses: Iterable[Clause]) -> bool:
     """Whether the values satisfy all clauses."""
     return all(any(is_met(literal, values) for literal in clause) for clause in clauses)
+
+
+def one_of(automaton: Automaton, state: State, free: frozenset[str]) -> State:
+    """One of the states like `state` in which the variables `free` have any values; flags follow what is free."""
+    if not free:
+        return state
+    return synchronise(automaton, {**state, **{name: automaton.variables[name].type.domain[0] for name in free}})
+
+
+def open_to(automaton: Automaton, free: frozenset[str]) -> frozenset[str]:
+    """The variables `free`, and the flags that follow them."""
+    return free | {flag.name for flag in Following(automaton).flags(free)}

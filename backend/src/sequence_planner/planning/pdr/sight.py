@@ -76,6 +76,6 @@ class Sight:
                 for name in transition.writes:
                     deciding[name] |= read
         behind = {flag.name: read_variables(self._automaton, (flag.predicate,)) for flag in self._automaton.flags}
-        for read in deciding.values():
-            read.update(*(behind[name] for name in read & behind.keys()))
+        for names in deciding.values():
+            names.update(*(behind[name] for name in names & behind.keys()))
         return deciding

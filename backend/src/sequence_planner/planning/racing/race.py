@@ -57,6 +57,7 @@ class _Runner:
         self._before: Companion[LaneModel, Task] | None = None  # one that is replaced and still to be ended
         self._generation = 0  # of the process; what earlier ones say counts no more
         self._ready = False  # to work on tasks
+        self.started = threading.Event()  # it has been ready once
         self._deaths = 0  # since it last came back from a task
         self._asked = self._off = self._back = (
             0  # the last task it was given, that was called off, that it is done with
@@ -117,6 +118,7 @@ class _Runner:
             match word:
                 case Ready():
                     self._ready = True
+                    self.started.set()
                     if self._timer is not None:  # a task was called off meanwhile
                         self._timer.cancel()
                         self._later(PATIENCE, self._look, self._off)
@@ -185,6 +187,11 @@ class Race:
         self._runners = [
             _Runner(LaneModel(automaton, supervisor, lane, factories, memory), self._heard.put) for lane in lanes
         ]
+
+    def wait(self, budget: Budget) -> None:
+        """Until every lane has been ready once, or the budget is spent: a task that comes earlier has less time."""
+        for runner in self._runners:
+            runner.started.wait(budget.remaining)
 
     def solve(self, attempt: Attempt, budget: Budget) -> None:
         """Have the lanes report until that answers, or is not worth waiting for any more, or the budget is spent."""

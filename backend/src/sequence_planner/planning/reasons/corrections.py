@@ -14,7 +14,7 @@ from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.pdr.invariants import asserted, satisfies
-from sequence_planner.planning.plan import Plan, Proof
+from sequence_planner.planning.plan import Contract, Plan, Proof
 from sequence_planner.planning.replaying.replay import Replay, missing
 
 MOST_CHANGES = 2
@@ -50,8 +50,8 @@ def corrections(
 ) -> tuple[Correction, ...]:
     """Corrections of the fewest changes, of which there are at most `most_changes`, and up to `most_found` of these.
 
-    It is proven that no fewer changes bring a plan back. What is unknown stays unknown. When the budget is spent, what
-    has been found of the fewest changes.
+    It is proven that no fewer changes bring a plan back. Those that do what the goals ask for by themselves come last.
+    What is unknown stays unknown. When the budget is spent, what has been found of the fewest changes.
     """
     return tuple(_Corrections(automaton, supervisor, task, budget, most_changes).found(most_found))
 
@@ -62,7 +62,7 @@ class _Corrections:
     ) -> None:
         self._automaton = automaton
         self._supervisor = supervisor
-        self._task = task
+        self._task = replace(task, contract=Contract.FAST)
         self._budget = budget
         self._most_changes = most_changes
         self._engine = Reachability(automaton, supervisor)
@@ -73,8 +73,8 @@ class _Corrections:
         try:
             for size in range(1, self._most_changes + 1):
                 some = False
-                for changes in self._candidates(size):
-                    if (plan := self._plan(changes)) is not None:
+                for changes, task in self._in_order(size):
+                    if (plan := self._plan(task)) is not None:
                         some = True
                         yield Correction(changes, plan)
                         most -= 1
@@ -84,6 +84,21 @@ class _Corrections:
                     return
         except SpentError:
             return
+
+    def _in_order(self, size: int) -> Iterator[tuple[tuple[Change, ...], Task]]:
+        """All sets of so many changes that lead into a safe state, with what is to be done then: at last those that
+        say no more than the goals do, after which there is nothing to do. Raises `SpentError`.
+        """
+        restating: list[tuple[tuple[Change, ...], Task]] = []
+        for changes in self._candidates(size):
+            self._budget.require()
+            task = self._changed(changes)
+            if self._supervisor.safe.includes(task.state):
+                if task.goals:
+                    yield changes, task
+                else:
+                    restating.append((changes, task))
+        yield from restating
 
     def _candidates(self, size: int) -> Iterator[tuple[Change, ...]]:
         """All sets of so many changes."""
@@ -102,23 +117,20 @@ class _Corrections:
             options[f"resource {resource}"] = (Change(resource, None),)
         return options
 
-    def _plan(self, changes: tuple[Change, ...]) -> Plan | None:
-        """A plan after `changes`, if they lead into a safe state and there is one. Raises `SpentError`."""
-        self._budget.require()
-        task = self._changed(changes)
-        if not self._supervisor.safe.includes(task.state):
-            return None
+    def _plan(self, task: Task) -> Plan | None:
+        """A plan, if there is one. Raises `SpentError`."""
         if not task.goals:
             return Plan((), minimal_ticks=True, minimal_starts=True)
         if any(_covers(refuted, proof, task) for refuted, proof in self._refuted):
             return None
-        decision = self._engine.decide(task, self._budget)
-        if decision.proof is not None:
-            self._refuted.append((task, decision.proof))
+        finding = self._engine.solve(task, self._budget)
+        if finding.plan is None:
+            if finding.proof is None:
+                raise SpentError
+            self._refuted.append((task, finding.proof))
             return None
-        plan = Plan(decision.ticks, minimal_ticks=False, minimal_starts=False)
         replay = Replay(self._automaton, self._supervisor, task.circumstances)
-        return replay.tightened(task.state, task.goals, plan)
+        return replay.tightened(task.state, task.goals, finding.plan)
 
     def _changed(self, changes: tuple[Change, ...]) -> Task:
         values = {change.name: change.value for change in changes if change.value is not None}

@@ -1,18 +1,21 @@
 """Why there is no plan: few circumstances that exclude every plan together, each of which does its part.
 
 What excludes plans is taken away piece by piece. A piece is needed if there is a plan without it (deletion filter,
-Chinneck and Dravnieks 1991); since taking away only ever allows more, one pass over all pieces is enough.
+Chinneck and Dravnieks 1991); since taking away only ever allows more, one pass over all pieces is enough. Only where
+values are unknown does it not, and passes go on until one takes nothing away.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.types import Value
@@ -121,38 +124,49 @@ class _Explanation:
         self._supervisor_for = supervisor_for
         self._budget = budget
         self._engines: dict[frozenset[str], Reachability] = {}
+        self._certain = True  # that there is a plan wherever nothing has been proven, in the last pass
 
     def of(self, task: Task) -> Reason | None:
         automaton = self._automaton
         situation = _Situation(task, frozenset(automaton.specifications), frozenset(automaton.variables))
         try:
-            proof = self._proof(situation)
+            proven = self._proven(situation)
         except SpentError:
             return None
-        if proof is None:
+        if proven is None:
             return None
-        situation = self._eased(situation, proof)
-        minimal = True
-        try:
-            for member in tuple(situation.members(automaton)):
-                if member not in tuple(situation.members(automaton)):
-                    continue  # an earlier proof did without it
-                relaxed = situation.without(member)
-                if (further := self._proof(relaxed)) is not None:
-                    situation, proof = self._eased(relaxed, further), further
-        except SpentError:
-            minimal = False
-        return Reason(tuple(situation.members(automaton)), minimal, proof)
+        minimal = False
+        with suppress(SpentError):
+            while not minimal:
+                before, self._certain = proven[0], True
+                for member in tuple(before.members(automaton)):
+                    if member in tuple(proven[0].members(automaton)):  # else an earlier proof did without it
+                        proven = self._proven(proven[0].without(member)) or proven
+                minimal = self._monotone(task) or proven[0] == before
+        situation, proof = proven
+        return Reason(tuple(situation.members(automaton)), minimal and self._certain, proof)
 
-    def _proof(self, situation: _Situation) -> Proof | None:
-        """That there is no plan; None if there is one."""
+    def _monotone(self, task: Task) -> bool:
+        """Whether one pass is enough. A value that is awaited is none of those that a free variable may have."""
+        return None not in task.state.values() and synchronise(self._automaton, task.state) == dict(task.state)
+
+    def _proven(self, situation: _Situation) -> tuple[_Situation, Proof] | None:
+        """As much of the situation as it takes for a proof that there is no plan; None if there is one."""
         if not situation.task.goals:
             return None
         names = situation.specifications
         if names not in self._engines:
             self._engines[names] = Reachability(self._automaton, self._supervisor_for(names))
-        free = frozenset(self._automaton.variables) - situation.fixed
-        return self._engines[names].decide(situation.task, self._budget, free).proof
+        engine, task = self._engines[names], situation.task
+        decision = engine.decide(task, self._budget, self._free(situation))
+        if decision.proof is None:
+            self._certain &= decision.certain
+            return None
+        eased = self._eased(situation, decision.proof)
+        return eased, engine.checked(task, self._budget, self._free(eased), decision.proof)
+
+    def _free(self, situation: _Situation) -> frozenset[str]:
+        return frozenset(self._automaton.variables) - situation.fixed
 
     def _eased(self, situation: _Situation, proof: Proof) -> _Situation:
         """The same with all values free but those by which the invariant holds at the beginning.

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Set
+from collections.abc import Iterable, Iterator, Set
 from dataclasses import replace
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State, reads, target
+from sequence_planner.automaton.structure import Automaton, State, VariableDeclaration, reads, target
 from sequence_planner.automaton.transitions import Phase
-from sequence_planner.expressions.syntax import Assignment, Constant, Expression, variables
+from sequence_planner.expressions.syntax import TRUE, Assignment, Constant, Expression, variables
+from sequence_planner.expressions.types import EnumerationType
 from sequence_planner.planning.relaxed.relevance import Relevance
+from sequence_planner.planning.relaxed.usefulness import useful, written_by
 
 _FLAGS = ("enabled", "executing", "finished")
 
@@ -21,9 +23,12 @@ def part_of(
     state: State,
     loose: Set[str],
     asked: Iterable[Expression],
+    serving: Iterable[str] | None = None,
 ) -> Automaton:
     """`automaton` without what would change another variable in `state` than those `loose`, and without the flags and
     variables that nothing of it, of the supervisor or of what is `asked` then reads.
+
+    With `serving`, names of abilities and effects, also without what is of no use to these.
     """
 
     def kept(*actions: Assignment) -> bool:
@@ -36,23 +41,48 @@ def part_of(
     happening = {move.name for move in writing if move.phase is Phase.SENSE}
     effects = tuple(each for each in automaton.effects if each.name in happening and kept(*each.actions))
 
-    read = {name for expression in asked for name in variables(expression)} | set(supervisor.safe.names)
-    for ability in abilities.values():
-        predicates = (ability.enabled, ability.start_guard, ability.finish_guard)
-        read.update(name for each in predicates if each is not None for name in variables(each))
-        read.update(name for each in (*ability.start_actions, *ability.finish_actions) for name in reads(each))
-        read.update(ability.flag(which) for which in _FLAGS)
-        read.update(() if (guard := supervisor.guards.get(ability.name)) is None else guard.names)
-    for effect in effects:
-        read.update((*variables(effect.guard), *(name for each in effect.actions for name in reads(each))))
-    known = _with_flags(automaton, read) | loose
+    part = replace(automaton, abilities=abilities, effects=effects)
+    if serving is not None:
+        part = useful(part, serving, asked)
+    known = _with_flags(automaton, (*_read(part, supervisor), *(name for each in asked for name in variables(each))))
     return replace(
-        automaton,
-        variables={name: automaton.variables[name] for name in automaton.variables if name in known},
-        abilities=abilities,
-        effects=effects,
+        part,
+        variables=_narrowed(part, state, known | loose),
         flags=tuple(flag for flag in automaton.flags if flag.name in known),
     )
+
+
+def _read(part: Automaton, supervisor: Supervisor) -> Iterator[str]:
+    """What its abilities and effects read, and what the supervisor reads of them."""
+    yield from supervisor.safe.names
+    for ability in part.abilities.values():
+        for predicate in (ability.enabled, ability.start_guard, ability.finish_guard or TRUE):
+            yield from variables(predicate)
+        for action in (*ability.start_actions, *ability.finish_actions):
+            yield from reads(action)
+        yield from map(ability.flag, _FLAGS)
+        if (guard := supervisor.guards.get(ability.name)) is not None:
+            yield from guard.names
+    for effect in part.effects:
+        yield from variables(effect.guard)
+        for action in effect.actions:
+            yield from reads(action)
+
+
+def _narrowed(part: Automaton, state: State, names: Set[str]) -> dict[str, VariableDeclaration]:
+    """The variables `names` and all that are written.
+
+    Those of enumerations are without the values that they do not have and that nothing in `part` gives them.
+    """
+    values = written_by(part)
+    narrowed: dict[str, VariableDeclaration] = {}
+    for name, variable in part.variables.items():
+        if name in names or name in values:
+            if isinstance(variable.type, EnumerationType):
+                possible = tuple(v for v in variable.type.values if v == state[name] or v in values[name])
+                variable = replace(variable, type=EnumerationType(possible))
+            narrowed[name] = variable
+    return narrowed
 
 
 def _with_flags(automaton: Automaton, names: Iterable[str]) -> set[str]:

@@ -7,31 +7,43 @@ it does not, or there is none, more variables are let loose, and in the end othe
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
+from dataclasses import dataclass
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, target
+from sequence_planner.automaton.structure import Automaton, State, target
 from sequence_planner.automaton.transitions import Phase, Transition
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Contract, Plan
+from sequence_planner.planning.relaxed.likely_order import likely_order
 from sequence_planner.planning.relaxed.part import part_of
 from sequence_planner.planning.relaxed.relaxed_plan import RelaxedPlan
 from sequence_planner.planning.relaxed.relevance import Relevance
-from sequence_planner.planning.relaxed.shortest import shortest
+from sequence_planner.planning.relaxed.shortest import Shortest
+from sequence_planner.planning.relaxed.usefulness import written_by
 from sequence_planner.planning.replaying.acceptance import Acceptance
-from sequence_planner.planning.sat.sweep import Sweep
 from sequence_planner.planning.sat.unrolling import Unrolling
 
 # A plan that is much longer than the relaxed one, in ticks, is left to others.
 _LONGER, _MORE = 2, 4
-_SHARE = 0.4  # of the time that is left, for each attempt
-_MOST = 0.7  # of the variables; beyond, nothing is gained
+# Of the variables, unless they are few; beyond, nothing is gained.
+_MOST, _FEW = 0.7, 50
+
+
+@dataclass
+class _Work:
+    """What has been begun on a task: the parts of the automaton still to be tried, and the one that is being tried."""
+
+    task: Task
+    longest: int
+    parts: Iterator[Automaton]
+    shortest: Shortest | None = None
 
 
 class Projection:
-    """Fast plans for one automaton under one supervisor."""
+    """Fast plans for one automaton under one supervisor; asked again, it goes on where the budget was spent."""
 
     name = "projection"
 
@@ -40,38 +52,78 @@ class Projection:
         self._supervisor = supervisor
         self._relevance = Relevance(automaton)
         self._acceptance = Acceptance(automaton, supervisor)
+        # Where nothing happens by itself, a search is sooner done.
+        self._reacts = any(not effect.fault for effect in automaton.effects) or any(
+            ability.finish_guard is not None for ability in automaton.abilities.values()
+        )
+        self._work: _Work | None = None
 
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A plan, if freezing what does not seem to matter leaves one that replays; nothing by another contract."""
-        if task.contract is not Contract.FAST:
+        if task.contract is not Contract.FAST or not self._reacts:
             return Finding()
+        if self._work is None or self._work.task is not task:
+            self._work = self._begun(task)
+        try:
+            plan = None if self._work is None else self._plan(self._work, budget)
+        except SpentError:
+            return Finding()
+        self._work = None
+        return Finding(plan)
+
+    def _begun(self, task: Task) -> _Work | None:
         found = self._relaxed_plan(task)
         if found is None:
-            return Finding()
+            return None
         relaxed, layers = found
-        longest = min(task.longest, _LONGER * layers + _MORE)
+        return _Work(task, min(task.longest, _LONGER * layers + _MORE), self._parts(task, relaxed))
+
+    def _plan(self, work: _Work, budget: Budget) -> Plan | None:
+        """A plan of the first part that has one which replays. Raises `SpentError`."""
+        while True:
+            if work.shortest is None:
+                budget.require()
+                part = next(work.parts, None)
+                if part is None:
+                    return None
+                work.shortest = Shortest(self._unrolling(work.task.state, part, budget), work.task)
+            plan = work.shortest.plan(work.longest, budget)
+            if plan is not None and self._acceptance.accepts(work.task, plan):
+                return plan
+            work.shortest = None
+
+    def _unrolling(self, state: State, part: Automaton, budget: Budget) -> Unrolling:
+        written = written_by(part)
+        frozen = {n: value for n in part.variables if n not in written and (value := state[n]) is not None}
+        unknown = frozenset(name for name in part.types if state[name] is None)
+        order = likely_order(part)
+        inside = self._supervisor.safe.includes(state)
+        return Unrolling(part, self._supervisor, order, unknown, inside, frozen, oracles=frozenset(), budget=budget)
+
+    def _parts(self, task: Task, relaxed: Sequence[Transition]) -> Iterator[Automaton]:
+        """The parts to be tried, from the smallest on: of the first only what serves the relaxed plan."""
+        serving: list[str] | None = [_unit(move) for move in relaxed]
         last: Set[str] = frozenset()
         for loose in self._loosened(task, relaxed):
-            if budget.spent or loose == last or len(loose) > max(_MOST * len(self._automaton.variables), 1):
-                break
-            last = loose
-            plan = self._planned(task, loose, longest, budget.part(_SHARE))
-            if plan is not None and self._acceptance.accepts(task, plan):
-                return Finding(plan)
-        return Finding()
+            if loose == last or len(loose) > max(_MOST * len(self._automaton.variables), _FEW):
+                return
+            part = part_of(self._automaton, self._supervisor, self._relevance, task.state, loose, _asked(task), serving)
+            yield part
+            serving, last = None, loose
 
     def _relaxed_plan(self, task: Task) -> tuple[Sequence[Transition], int] | None:
         """A relaxed plan, made of what seems to matter if possible, and its layers."""
         goals = [goal.predicate for goal in task.goals]
-        for moves in (
-            lambda: self._relevance.towards(goals, task.state, task.circumstances),
-            lambda: self._relevance.counted_on(task.state, task.circumstances),
-        ):
-            guess = RelaxedPlan(self._automaton, task.state, moves())
+        for moves in self._moves(task, goals):
+            guess = RelaxedPlan(self._automaton, task.state, moves)
             relaxed = guess.towards(goals)
             if relaxed is not None:
                 return relaxed, guess.layers
         return None
+
+    def _moves(self, task: Task, goals: Sequence[Expression]) -> Iterator[Sequence[Transition]]:
+        yield self._relevance.towards(goals, task.state, task.circumstances)
+        yield self._relevance.counted_on(task.state, task.circumstances)
 
     def _loosened(self, task: Task, relaxed: Sequence[Transition]) -> Iterator[frozenset[str]]:
         """Sets of variables to be let loose, each larger than the one before.
@@ -106,18 +158,10 @@ class Projection:
             found |= set(() if guard is None else guard.names)
         return frozenset(found)
 
-    def _planned(self, task: Task, loose: Set[str], longest: int, budget: Budget) -> Plan | None:
-        state = task.state
-        part = part_of(self._automaton, self._supervisor, self._relevance, state, loose, _asked(task))
-        frozen = {name: value for name in part.variables if name not in loose and (value := state[name]) is not None}
-        unknown = frozenset(name for name in part.types if state[name] is None)
-        order = Sweep(part, self._supervisor).quick()
-        inside = self._supervisor.safe.includes(state)
-        try:
-            unrolling = Unrolling(part, self._supervisor, order, unknown, inside, frozen, budget)
-            return shortest(unrolling, task, longest, budget)
-        except SpentError:
-            return None
+
+def _unit(move: Transition) -> str:
+    """The effect or the ability that a transition is of."""
+    return move.name if move.phase is Phase.SENSE else move.name.rpartition(".")[0]
 
 
 def _asked(task: Task) -> list[Expression]:

@@ -1,8 +1,8 @@
 """The transitions that could matter to a question, found backwards from its goals, however large the station is.
 
 What holds already is never looked for: only values that are missing lead on, to the transitions that write them and to
-what these miss in turn. Of alternatives those that miss the least are followed, and no transition that needs another
-value of a variable than what it would be taken for. It is a guess; where it leaves too little, all transitions are left.
+what these miss in turn. Of alternatives those that miss the least are followed, and what an ability's start brings is
+not looked for elsewhere when it finishes. It is a guess; where it leaves too little, all transitions are left.
 """
 
 from __future__ import annotations

@@ -6,15 +6,14 @@ than what a step can affect: flags and finishes whose variables have not changed
 
 from __future__ import annotations
 
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Iterable, Set
 from dataclasses import dataclass, replace
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State, reads, target
+from sequence_planner.automaton.structure import Automaton, State, target
 from sequence_planner.automaton.tick import apply_effects, finish, supervised_start, synchronise
 from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import TRUE, variables
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.goals.pursuit import Goals, moved, settled
 from sequence_planner.planning.plan import Plan, PlanTick
@@ -45,11 +44,6 @@ class Acceptance:
         self._effects = {effect.name: effect for effect in automaton.effects}
         self._following = Following(automaton)
         self._narrow: dict[frozenset[str], Automaton] = {}  # by the variables that have changed
-        self._finishing: dict[str, set[str]] = defaultdict(set)  # the abilities whose finish reads a variable or flag
-        for ability in automaton.abilities.values():
-            actions = [name for action in ability.finish_actions for name in reads(action)]
-            for name in (*variables(ability.finish_guard or TRUE), *actions):
-                self._finishing[name].add(ability.name)
 
     def accepts(self, task: Task, plan: Plan) -> bool:
         """Whether the ticks of `plan`, exactly as they are written, are a run that the task asks for."""
@@ -110,7 +104,7 @@ class Acceptance:
             return self._automaton
         names = set(position.finished)
         for name in _changed(position.sensed, sensed):
-            names |= self._finishing.get(name, set())
+            names.update(self._automaton.finish_readers.get(name, ()))
         abilities = self._automaton.abilities
         return replace(self._automaton, abilities={name: abilities[name] for name in abilities if name in names})
 

@@ -1,8 +1,8 @@
 """The fewest starts of plans with so many ticks.
 
-First the starts of one plan that it can do without are left out. Then sets of starts are collected of which every plan
-has one, until a plan has no more starts than these demand (Morgado et al. 2014, *Core-guided MaxSAT with soft
-cardinality constraints*).
+Sets of starts are collected of which every plan has one, until a plan has no more starts than these demand (Morgado et
+al. 2014, *Core-guided MaxSAT with soft cardinality constraints*). Where there is no time for that, the starts of one
+plan that it can do without are left out.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from sequence_planner.planning.sat.unrolling import Unrolling
 
 # Of the time that is left, what a fast plan may still cost once there is one.
 _SHARE = 0.02
+_PROVING = 0.8  # of a minimal one, for the proof that no other has fewer starts
 
 
 def fewest_starts(
@@ -24,11 +25,14 @@ def fewest_starts(
 
     The solver has just found one. Of a fast contract, it is only tried for a moment whether there are fewer.
     """
-    first = unrolling.read(length, starting, unrolling.solver.model())
-    lighter = _without_needless(unrolling, given, first, starting, budget)
+    model = unrolling.solver.model()
+    ticks, proven = unrolling.read(length, starting, model), False
+    if contract is Contract.MINIMAL:
+        ticks, proven = _proven_fewest(unrolling, given, ticks, starting, budget.part(_PROVING))
+    if not proven:
+        ticks = _without_needless(unrolling, given, ticks, model, starting, budget)
     if contract is Contract.FAST:
-        budget = budget.part(_SHARE)
-    ticks, proven = _proven_fewest(unrolling, given, lighter, starting, budget)
+        ticks, proven = _proven_fewest(unrolling, given, ticks, starting, budget.part(_SHARE))
     return Plan(ticks, minimal_ticks=True, minimal_starts=proven)
 
 
@@ -37,13 +41,18 @@ def _count(ticks: Sequence[PlanTick]) -> int:
 
 
 def _without_needless(
-    unrolling: Unrolling, given: Sequence[int], ticks: tuple[PlanTick, ...], starting: int, budget: Budget
+    unrolling: Unrolling,
+    given: Sequence[int],
+    ticks: tuple[PlanTick, ...],
+    model: Sequence[int],
+    starting: int,
+    budget: Budget,
 ) -> tuple[PlanTick, ...]:
-    """The plan in the solver, less the starts without which the rest of it still is one."""
+    """The plan of a model of the solver, less the starts without which the rest of it still is one."""
     choices = set(unrolling.starts(starting))
-    taken = choices.intersection(unrolling.solver.model())
+    taken = choices.intersection(model)
     kept: list[int] = []
-    model: list[int] = []
+    model = []
     while taken.difference(kept):
         choice = min(taken.difference(kept))
         left_out = [-each for each in choices - taken]

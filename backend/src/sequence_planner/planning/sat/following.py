@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Iterable
 
 from sequence_planner.automaton.structure import Automaton, Flag
-from sequence_planner.expressions.syntax import variables
 
 
 class Following:
@@ -14,10 +12,7 @@ class Following:
 
     def __init__(self, automaton: Automaton) -> None:
         self._flags = automaton.flags
-        self._readers: dict[str, list[int]] = defaultdict(list)
-        for number, flag in enumerate(automaton.flags):
-            for name in dict.fromkeys(variables(flag.predicate)):
-                self._readers[name].append(number)
+        self._readers = automaton.flag_readers
 
     def flags(self, names: Iterable[str]) -> list[Flag]:
         """The flags that can change when the variables `names` do, in their order."""

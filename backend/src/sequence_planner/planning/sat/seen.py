@@ -7,9 +7,8 @@ starts. One of these that replays on the whole is therefore one of the best; as 
 
 from __future__ import annotations
 
-from collections import OrderedDict
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections import OrderedDict, defaultdict
+from collections.abc import Collection, Iterable
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
@@ -18,7 +17,7 @@ from sequence_planner.automaton.transitions import Transition, transitions
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.pdr.localisation import Localised, localisable, localised
+from sequence_planner.planning.pdr.localisation import localisable, localised
 from sequence_planner.planning.plan import Circumstances, Contract, Plan
 from sequence_planner.planning.relaxed.relaxation import counted_on
 from sequence_planner.planning.relaxed.relaxed_plan import RelaxedPlan
@@ -30,12 +29,27 @@ _MOST = 0.7  # of the variables; beyond, nothing is gained
 _KEPT = 3  # parts
 
 
-@dataclass(frozen=True)
 class _Part:
-    """What is seen of the automaton, and a search in it."""
+    """What is seen of the automaton through its variables `kept`, and a search in it."""
 
-    seen: Localised
-    search: Search
+    def __init__(self, automaton: Automaton, supervisor: Supervisor, kept: frozenset[str]) -> None:
+        self._seen = localised(automaton, supervisor, kept)
+        self._sweep = Sweep(self._seen.automaton, self._seen.supervisor)
+        self._search: Search | None = None
+
+    def plan(self, task: Task, budget: Budget) -> Plan | None:
+        """As `Search.plan`. Raises `SpentError` too."""
+        seen = self._seen
+        if self._search is None:
+            order = seen.order(self._sweep.complete(budget))
+            oracles = frozenset(seen.oracles)
+            self._search = Search(seen.automaton, seen.supervisor, order, frozenset(), inside=True, oracles=oracles)
+        return self._search.plan(seen.state(task.state), task.goals, task.circumstances, task.longest, budget)
+
+    def close(self) -> None:
+        """Give the memory of its solver back."""
+        if self._search is not None:
+            self._search.close()
 
 
 class PartialSight:
@@ -43,13 +57,18 @@ class PartialSight:
 
     name = "partial sight"
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+    def __init__(self, automaton: Automaton, supervisor: Supervisor, most: float = _MOST) -> None:
+        """It gives up where more than the share `most` of all variables matters."""
+        self._most = most * len(automaton.variables)
         self._automaton = automaton
         self._supervisor = supervisor
         self._acceptance = Acceptance(automaton, supervisor)
-        self._transitions = {move.name: move for move in transitions(automaton)}
+        self._effects = frozenset(effect.name for effect in automaton.effects)
+        self._moves: dict[str, list[Transition]] = defaultdict(list)  # by ability or effect
+        for move in transitions(automaton):
+            self._moves[self._owner(move.name)].append(move)
         self._parts: OrderedDict[frozenset[str], _Part] = OrderedDict()
-        self._sufficient: dict[tuple[Goals, Circumstances], frozenset[str]] = {}
+        self._kept: dict[tuple[Goals, Circumstances], frozenset[str]] = {}
 
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A plan with the fewest ticks and then the fewest starts, or up to how many there is none.
@@ -61,20 +80,20 @@ class PartialSight:
         if not localisable(self._automaton, task.state, task.goals):
             return Finding()
         searched = 0
+        question = task.goals, task.circumstances
         try:
-            kept = self._first(task)
-            while len(kept) <= _MOST * len(self._automaton.variables):
-                plan = self._planned(task, kept, budget)
+            kept = self._kept[question] = self._kept.get(question) or self._first(task)
+            while len(kept) <= self._most:
+                plan = self._part(kept).plan(task, budget)
                 if plan is None:
                     return Finding(searched=task.longest)
                 if self._acceptance.accepts(task, plan):
-                    self._sufficient[task.goals, task.circumstances] = kept
                     return Finding(plan, searched=len(plan.ticks))
                 searched = max(searched, len(plan.ticks) - 1)
-                wider = kept | self._touched(plan)
+                wider = kept | self._touched(_made_of(plan))
                 if wider == kept:
                     break
-                kept = wider
+                kept = self._kept[question] = wider
         except SpentError:
             pass
         except SearchTimeoutError as late:
@@ -82,39 +101,28 @@ class PartialSight:
         return Finding(searched=searched)
 
     def _first(self, task: Task) -> frozenset[str]:
-        """The variables to begin with: what was enough last time, or else what a relaxed plan touches."""
-        known = self._sufficient.get((task.goals, task.circumstances))
-        if known is not None:
-            return known
+        """The variables to begin with: what a relaxed plan touches."""
         asked = [goal.predicate for goal in task.goals]
         moves = counted_on(self._automaton, task.circumstances)
         relaxed = RelaxedPlan(self._automaton, task.state, moves).towards(asked) or ()
-        return read_variables(self._automaton, asked).union(*map(self._reads, relaxed))
+        return read_variables(self._automaton, asked) | self._touched({self._owner(move.name) for move in relaxed})
 
-    def _planned(self, task: Task, kept: frozenset[str], budget: Budget) -> Plan | None:
-        part = self._part(kept, budget)
-        state = part.seen.state(task.state)
-        return part.search.plan(state, task.goals, task.circumstances, task.longest, budget)
-
-    def _part(self, kept: frozenset[str], budget: Budget) -> _Part:
+    def _part(self, kept: frozenset[str]) -> _Part:
         if kept not in self._parts:
-            seen = localised(self._automaton, self._supervisor, kept)
-            order = seen.order(Sweep(seen.automaton, seen.supervisor).complete(budget))
-            oracles = frozenset(seen.oracles)
-            search = Search(seen.automaton, seen.supervisor, order, frozenset(), inside=True, oracles=oracles)
-            self._parts[kept] = _Part(seen, search)
+            self._parts[kept] = _Part(self._automaton, self._supervisor, kept)
             if len(self._parts) > _KEPT:
-                self._parts.popitem(last=False)[1].search.close()
+                self._parts.popitem(last=False)[1].close()
         self._parts.move_to_end(kept)
         return self._parts[kept]
 
-    def _touched(self, plan: Plan) -> frozenset[str]:
-        """All that decides whether the effects and starts of a plan, and the ends of these, can happen."""
-        effects = {name for tick in plan.ticks for name in tick.effects}
-        abilities = {name for _, name in plan.starts}
-        names = [*effects, *(f"{name}.{phase}" for name in abilities for phase in ("start", "finish"))]
-        moves = (self._transitions[name] for name in names if name in self._transitions)
-        guards = (self._supervisor.guards[name].names for name in abilities if name in self._supervisor.guards)
+    def _owner(self, transition: str) -> str:
+        """The effect or ability whose transition it is."""
+        return transition if transition in self._effects else transition.rpartition(".")[0]
+
+    def _touched(self, owners: Collection[str]) -> frozenset[str]:
+        """All that decides whether these effects, and the starts and finishes of these abilities, can happen."""
+        moves = [move for owner in owners for move in self._moves[owner]]
+        guards = (self._supervisor.guards[owner].names for owner in owners if owner in self._supervisor.guards)
         return frozenset[str]().union(*map(self._reads, moves), *guards)
 
     def _reads(self, move: Transition) -> Iterable[str]:
@@ -122,3 +130,8 @@ class PartialSight:
         values = (action.value for action in move.actions)
         conditions = (action.condition for action in move.actions if action.condition is not None)
         return move.writes | read_variables(self._automaton, (move.guard, *values, *conditions))
+
+
+def _made_of(plan: Plan) -> Collection[str]:
+    """The effects and abilities of a plan."""
+    return {name for tick in plan.ticks for name in (*tick.effects, *tick.starts)}

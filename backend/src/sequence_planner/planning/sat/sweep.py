@@ -14,7 +14,9 @@ from graphlib import TopologicalSorter
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, target
+from sequence_planner.automaton.structure import Ability, Automaton, State, target
+from sequence_planner.expressions.evaluation import evaluate
+from sequence_planner.expressions.syntax import Constant
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.encoding import Encoding
@@ -39,6 +41,7 @@ class Sweep:
         self._supervisor = supervisor
         self._before: dict[str, set[str]] = {name: set() for name in automaton.abilities}
         self._written = {a.name: frozenset(map(target, a.start_actions)) for a in automaton.abilities.values()}
+        self._left: dict[str, State] = {}  # by what has started, values that are known then
         self._undecided: list[tuple[str, str]] | None = None
 
     def complete(self, budget: Budget, seen: Set[str] = frozenset()) -> Order:
@@ -52,7 +55,7 @@ class Sweep:
         while self._undecided:
             budget.require()
             one, other = self._undecided[-1]
-            if self._pairs.order_matters(one, other):
+            if not self._excludes(one, other) and self._pairs.order_matters(one, other):
                 self._before[other].add(one)
             self._undecided.pop()
         before = {name: earlier | seen - {name} if name in seen else earlier for name, earlier in self._before.items()}
@@ -86,6 +89,19 @@ class Sweep:
         for name in self._automaton.abilities:
             visit(name)
         return tuple(self._automaton.abilities[name] for name in ordered)
+
+    def _excludes(self, one: str, other: str) -> bool:
+        """Whether what `one` writes alone shows that `other` cannot start after it."""
+        if one not in self._left:
+            actions = self._automaton.abilities[one].start_actions
+            constants = {
+                target(each): each.value.value
+                for each in actions
+                if each.condition is None and isinstance(each.value, Constant)
+            }
+            self._left[one] = {**dict.fromkeys(self._automaton.types), **constants}
+        ability = self._automaton.abilities[other]
+        return any(evaluate(each, self._left[one]) is False for each in (ability.enabled, ability.start_guard))
 
     def _interfering(self) -> list[tuple[str, str]]:
         """The pairs, either way round, of which one writes what the other reads, writes or is kept by."""

@@ -1,0 +1,24 @@
+"""The engine that proves what not even the delete relaxation reaches."""
+
+from __future__ import annotations
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.planning.relaxed.relaxation import reachable, unreached
+
+
+class Relaxing:
+    """Proves that a goal cannot be reached where not even the delete relaxation reaches it."""
+
+    name = "relaxation"
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self._automaton = automaton
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        """A proof, or nothing."""
+        relaxed = reachable(self._automaton, task.state, task.circumstances)
+        reached = all(relaxed.may(goal.predicate) for goal in task.goals)
+        return Finding() if reached else Finding(proof=unreached(self._automaton, relaxed))
