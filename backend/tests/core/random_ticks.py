@@ -15,6 +15,7 @@ from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.structure import (
     Ability,
     Automaton,
+    Effect,
     Flag,
     Kind,
     Operation,
@@ -48,6 +49,7 @@ def automaton(choices: Choices) -> Automaton:
     names = [f"tool.a{number}(p)" for number in range(choices.number(1, 5))]
     flags = [Variable(f"{name}.{which}", BOOLEAN) for name in names for which in FLAGS]
     written = [each for each in plain if declared[each.name].kind in (Kind.OUTPUT, Kind.ESTIMATED)]
+    measured = [each for each in plain if declared[each.name].kind is Kind.MEASURED]
     abilities = {
         name: _ability(choices, name, plain, written, flags, number * len(FLAGS)) for number, name in enumerate(names)
     }
@@ -60,6 +62,17 @@ def automaton(choices: Choices) -> Automaton:
         variables=declared,
         abilities=abilities,
         flags=tuple(Flag(a.flag(which), getattr(a, which)) for a in abilities.values() for which in FLAGS),
+        effects=tuple(
+            Effect(
+                f"react{number}",
+                "tool",
+                "starting",
+                _any(choices, everything),
+                actions(choices, measured, everything, least=1),
+                fault=choices.chance(4),
+            )
+            for number in range(choices.number(0, 3))
+        ),
         operations={
             name: Operation(name, name, _any(choices, everything), _any(choices, everything)) for name in operations
         },
@@ -192,7 +205,9 @@ class SideBySide:
         if name not in self._run.startable() and not self._choices.chance(3):
             return
         after = reference.start(self._automaton, self._state, ability)
-        assert self._run.after_start(name) == after
+        fork = self._run.fork()
+        assert fork.start(name) is (after is not None)
+        self._same(fork, self._state if after is None else after)
         self.seen["starts" if after is not None else "undetermined starts"] += 1
         self._agree()
         if self._choices.chance(4):
@@ -202,12 +217,23 @@ class SideBySide:
         self._agree()
 
     def _agree(self) -> None:
-        """The states are the same, and so is what may start in them."""
-        assert self._run.state == self._state
+        """The states are the same, and so is what may start and happen in them; a fork changes nothing about that."""
         self.seen["undetermined flags"] += any(self._state[flag.name] is None for flag in self._automaton.flags)
+        fork = self._run.fork()
+        self._same(fork, self._state)
+        self._same(self._run, self._state)
+        self._same(fork, self._state)
+
+    def _same(self, run: CompiledRun, state: State) -> None:
+        assert run.state == state
         abilities = self._automaton.abilities.items()
-        may_start = {name for name, ability in abilities if reference.start_guard_holds(ability, self._state)}
-        assert self._run.startable() == may_start
+        assert run.startable() == {name for name, each in abilities if reference.start_guard_holds(each, state)}
+        changes: dict[str, reference.Writes] = {}
+        for effect in self._automaton.effects:
+            written = None if effect.fault else reference.effect_writes(effect, state)
+            if changed := {name: value for name, value in (written or {}).items() if state[name] != value}:
+                changes[effect.name] = changed
+        assert run.effects() == changes
 
     @property
     def _measured(self) -> Sequence[str]:

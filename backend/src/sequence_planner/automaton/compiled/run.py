@@ -58,13 +58,10 @@ class CompiledRun:
         fork._levels = self._levels.copy()
         fork._flags = {level: set(flags) for level, flags in self._flags.items()}
         fork._finishes, fork._due = self._finishes.copy(), self._due.copy()
-        if self._operations is not None:
-            fork._operations = self._operations.copy()
-            fork._activating, fork._completing = self._activating.copy(), self._completing.copy()
-        if self._starts is not None:
-            fork._starts, fork._startable = self._starts.copy(), self._startable.copy()
-        if self._effects is not None:
-            fork._effects, fork._possible = self._effects.copy(), self._possible.copy()
+        fork._operations, fork._starts, fork._effects = map(_copied, (self._operations, self._starts, self._effects))
+        # Also what is still empty is filled by each run for itself.
+        fork._activating, fork._completing = self._activating.copy(), self._completing.copy()
+        fork._startable, fork._possible = self._startable.copy(), self._possible.copy()
         return fork
 
     @property
@@ -186,16 +183,6 @@ class CompiledRun:
         self.synchronise()
         return True
 
-    def after_start(self, name: str) -> State | None:
-        """The state after the start of `name`, which is not taken; None when its actions are undetermined."""
-        kept = self._values, self._snapshot, {level: set(flags) for level, flags in self._flags.items()}
-        self._values = self._values.copy()
-        try:
-            return self._values if self.start(name) else None
-        finally:
-            self._values, self._snapshot, self._flags = kept
-            self._levels = sorted(self._flags)
-
     def _set(self, name: str, value: Value | None) -> None:
         self._values[name] = value
         self._snapshot = None
@@ -228,6 +215,10 @@ class CompiledRun:
         self._written = {}
         for name in finished:
             self._written |= self._due[name]
+
+
+def _copied(names: set[str] | None) -> set[str] | None:
+    return None if names is None else names.copy()
 
 
 def _keep(names: set[str], name: str, belongs: bool) -> None:
