@@ -25,6 +25,7 @@ from compared import abc, fast_downward
 from compared.aiger import aiger
 from compared.families import Problem, blocked, blocks, capacity, logistics, mutex, stations
 from compared.timing import ROUNDS, child, median, own
+from compared.truck import truck_engine_station
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import apply_effects, finish, start, synchronise
@@ -53,10 +54,11 @@ def main() -> None:
         print("Fast Downward is not installed, and left out")
     if abc.PROGRAM is None:
         print("Berkeley ABC is not installed, and left out")
-    small, middle, large = stations(3, 2, 2), stations(20, 8, 2), stations(40, 16, 2)
+    truck, small = truck_engine_station(), stations(3, 2, 2)
+    middle, large = stations(20, 8, 2), stations(40, 16, 2)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for problem in (small,) if quick else (small, middle):
+        for problem in (truck, small) if quick else (truck, small, middle):
             print(f"\nWarm re-plan while a plan is followed: {problem.name}, {problem.size}")
             for question, contract in REPLANS:
                 replan(problem, question, contract, folder, states=2 if quick else 7)
@@ -64,10 +66,12 @@ def main() -> None:
         whole_process(small if quick else middle, "part", folder)
     print("\nFast plan, cold, in process")
     for problem in (
-        (small, logistics(5, 2), blocks(4)) if quick else (small, middle, large, logistics(40, 4), blocks(10))
+        (truck, small, logistics(5, 2), blocks(4))
+        if quick
+        else (truck, small, middle, large, logistics(40, 4), blocks(10))
     ):
         for question in problem.questions:
-            fast(problem, question, compare=problem is small)
+            fast(problem, question, compare=problem in (truck, small))
     print("\nNo plan at all, cold")
     with tempfile.TemporaryDirectory() as name:
         for family, sizes in ((mutex, (3, 8)), (blocked, (6, 40)), (capacity, (2, 3))):
@@ -102,12 +106,18 @@ def replan(problem: Problem, question: str, contract: Contract, folder: Path, st
 def fresh_peers(problem: Problem, question: str, states: list[State], folder: Path) -> Iterable[tuple[str, float]]:
     """What the peers take for the same, each state in a fresh process."""
     peers: dict[str, list[float]] = {}
+    translates = True
     for each in states:
         goals = missing(problem.questions[question], each)
         from_here = replace(problem, state=each, questions={question: goals})
-        if fast_downward.programs() is not None:
+        if translates and fast_downward.programs() is not None:
             text = pddl_text(sequential(problem.automaton, problem.supervisor, each, goals))
-            found = fast_downward.search(text, fast_downward.translated(text, folder), LIMIT)
+            try:
+                found = fast_downward.search(text, fast_downward.translated(text, folder), LIMIT)
+            except fast_downward.TranslationError as error:
+                print(f"  Fast Downward cannot translate {problem.name}: {error}")
+                translates = False
+                continue
             if found.plan is not None:
                 require_replay(from_here, question, found.plan)
             peers.setdefault("Fast Downward", []).append(found.seconds)

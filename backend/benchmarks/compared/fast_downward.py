@@ -30,11 +30,16 @@ def programs() -> Path | None:
     return Path(found.origin).parent / "downward" / "builds" / "release" / "bin"
 
 
-def translated(text: PddlText, folder: Path, limit: float = 120) -> Path:
-    """The question in its own format, which the search reads; made once, and not measured."""
+class TranslationError(Exception):
+    """It could not bring the question into its own format, or not in time."""
+
+
+def translated(text: PddlText, folder: Path, limit: float = 30) -> Path:
+    """The question in its own format, which the search reads; not measured. Raises `TranslationError`."""
     bin_ = programs()
     assert bin_ is not None
     domain, problem, sas = folder / "domain.pddl", folder / "problem.pddl", folder / "question.sas"
+    sas.unlink(missing_ok=True)  # that of the question before
     domain.write_text(text.domain)
     problem.write_text(text.problem)
     # That many candidates are its variables themselves, which is what we want to know the invariants of.
@@ -42,7 +47,7 @@ def translated(text: PddlText, folder: Path, limit: float = 120) -> Path:
     command = (sys.executable, "-m", "fast_downward.translate", *options, "--sas-file", sas, domain, problem)
     ended = child(command, limit, folder=bin_)
     if not sas.exists():
-        raise RuntimeError(f"Fast Downward could not translate the question: {ended.output[-500:]}")
+        raise TranslationError(ended.output[-500:].strip() or f"not within {limit:g} s")
     return sas
 
 
