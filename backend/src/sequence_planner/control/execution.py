@@ -172,7 +172,8 @@ class Execution:
         started: list[str] = []
         if self.mode is not Mode.AUTOMATIC or self.production is not Production.STARTED or self.obstacles:
             return ()
-        while self.plan.next_may_start(self._present, self.startable):
+        # An ability starts once in a tick, or its first command would never be published.
+        while self.plan.next_may_start(self._present, lambda name: None if name in started else self.startable(name)):
             step = self.plan.start(now)
             self._run.start(step.ability)
             self.pursued = self.pursued.moved(self._run.values, now)

@@ -17,6 +17,7 @@ from sequence_planner.control.plan_reasons import why_new, why_none, why_violate
 from sequence_planner.control.pursued import Pursued
 from sequence_planner.control.start_order import StartOrder, Step
 from sequence_planner.control.view import PlanStatus
+from sequence_planner.planning.goals.pursuit import Goals, moved
 from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest, Verdict
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
 from sequence_planner.planning.replaying.lookahead import Lookahead
@@ -56,6 +57,7 @@ class LivePlan:
         self._asked_better: _Question | None = None
         self._started_since_asked = False
         self._none_while_blind = False  # the last answer was that there is no plan, and values were unknown
+        self._undecided = False  # whether there is a plan: nobody could say when asked last
         self._none: PlanRequest | None = None  # what there is no plan at all for, as long as nobody has said why
         self.diagnosis: Diagnosis | None = None  # why there is no plan at all
 
@@ -80,8 +82,13 @@ class LivePlan:
         return _request(present, wanted, deadline, Contract.FAST)
 
     def better(self, present: Present, deadline: float) -> PlanRequest | None:
-        """A question for a better plan than the one that is followed; None when it would be answered the same again."""
+        """A question for a better plan than the one that is followed; None when it would be answered the same again.
+
+        Where no answer came in time, it is the same question once more: engines go on where they were.
+        """
         hopeful = present.pursued.hopeful
+        if self._undecided and self.status is PlanStatus.NONE and hopeful:
+            return _request(present, hopeful, deadline, Contract.FAST)
         question = _question(present, hopeful)
         incomplete = bool(self.order.ahead) or not hopeful <= self.order.goals  # something to do, or left out
         if not self._following(present) or not incomplete or self._asked_better == question:
@@ -98,6 +105,7 @@ class LivePlan:
             self.status = PlanStatus.NONE
             self.reason = f"no plan: {why}"
             self._none_while_blind = False
+            self._undecided = True
 
     def unexplained(self, deadline: float) -> DiagnosisRequest | None:
         """A question why there is no plan at all; None when there may be one, or it has been answered."""
@@ -164,7 +172,6 @@ class LivePlan:
         after = after_start(self.order.ahead[0].ability)
         if after is not None and self.may_go_on(present, after):
             return True
-        goals = present.pursued.of(self.order.goals)
         tried = {self.order.ahead[0].ability}
         for index, step in enumerate(self.order.ahead[1:], start=1):
             if step.ability in tried:
@@ -172,7 +179,10 @@ class LivePlan:
             tried.add(step.ability)
             after = after_start(step.ability)
             rest = self.order.names[:index] + self.order.names[index + 1 :]
-            if after is not None and self._lookahead.length(after, present.published, goals, rest) is not None:
+            goals = None if after is None else self._goals_after(present, after)
+            if after is None or goals is None:
+                continue
+            if self._lookahead.length(after, present.published, goals, rest) is not None:
                 self.order.pull_forward(index)
                 return True
         return False
@@ -180,8 +190,20 @@ class LivePlan:
     def may_go_on(self, present: Present, after: CompiledRun) -> bool:
         """Whether the order after its first start, which leads to `after`, still reaches the goals."""
         starts, ticks = self.order.rest(taken=1)
-        goals = present.pursued.of(self.order.goals)
-        return self._lookahead.may_go_on(present.run, after, present.published, goals, starts, ticks)
+        goals = self._goals_after(present, after)
+        return goals is not None and self._lookahead.may_go_on(
+            present.run, after, present.published, goals, starts, ticks
+        )
+
+    def _goals_after(self, present: Present, after: CompiledRun) -> Goals | None:
+        """The goals of the plan after a start; None when it violates a formula of theirs.
+
+        Nor may it violate one that the planner has not been asked about yet.
+        """
+        new = present.pursued.hopeful - self.order.requested
+        if moved(present.pursued.of(new), after.values) is None:
+            return None
+        return moved(present.pursued.of(self.order.goals), after.values)
 
     def start(self, now: Moment) -> Step:
         """The first ability of the order has been started."""
@@ -247,6 +269,7 @@ class LivePlan:
         self.status = PlanStatus.NONE
         self._none_while_blind = any(request.state[name] is None for name in self._automaton.names(Kind.MEASURED))
         self.reason = why_none(answer, self._none_while_blind)
+        self._undecided = answer.verdict is Verdict.LATE
         self._none = request if answer.verdict is Verdict.NONE_AT_ALL else None
         if self._none is None:
             self.diagnosis = None  # else what was said a moment ago stays until more is known

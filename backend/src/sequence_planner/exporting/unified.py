@@ -80,9 +80,11 @@ class UnifiedPlanning:
                 stderr=subprocess.PIPE,
                 start_new_session=True,  # so that the planner it starts ends with it
             )
-            with budget.interrupting(lambda: _kill(process)):
-                _, said = process.communicate()
-            _kill(process)
+            try:
+                with budget.interrupting(lambda: _kill(process)):
+                    _, said = process.communicate()
+            finally:
+                _kill(process)
             if process.returncode and not budget.spent:
                 lines = said.decode(errors="replace").strip().splitlines() or ["it said nothing"]
                 raise UnifiedPlanningError(f"the planner {self.name} failed: {lines[-1]}")

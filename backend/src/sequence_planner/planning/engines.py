@@ -83,7 +83,7 @@ LANES = (
 ALONE = Lane(
     "alone",
     {
-        Contract.MINIMAL: ("first sight", "partial sight", "bmc", "relaxation", "pdr"),
+        Contract.MINIMAL: ("first sight", "partial sight", "bmc", "relaxation", "pdr", "breadth-first"),
         Contract.FAST: ("first sight", "projection", "search", "relaxation", "bmc", "pdr"),
     },
 )

@@ -46,8 +46,13 @@ class CompiledGoals:
         return tuple(sorted((self._number(goal), goal.at) for goal in goals))
 
     def missing(self, progress: Progress, state: State) -> Progress:
-        """What is left without the goals whose predicates hold already."""
-        return tuple(each for each in progress if not self._compiled[each[0]].holds(state))
+        """What is left without the goals that are met already; with a formula, none is before the next step 3."""
+        goals = self._compiled
+        return tuple(
+            (number, at)
+            for number, at in progress
+            if goals[number].formula is not None or not goals[number].holds(state)
+        )
 
     def settled(self, progress: Progress, state: State) -> Progress | None:
         """What is left after step 3 has led to `state`; None when a goal can never be reached any more."""

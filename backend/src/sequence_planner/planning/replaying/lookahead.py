@@ -17,7 +17,7 @@ from sequence_planner.planning.replaying.moments import Moment, Moments, Values
 from sequence_planner.planning.replaying.replay import starts_now
 
 LOOKAHEAD = 250  # moments that one look may visit: it belongs to a tick, which must not be held up
-_REMEMBERED = 20_000  # moments; then all are forgotten
+_REMEMBERED = 1_000_000  # values of moments; then all are forgotten
 _NEVER = -1
 
 # The values, the outputs published, the goals, what is left of the order and, of that, what this tick has started.
@@ -32,6 +32,7 @@ class Lookahead:
         self._supervisor = supervisor
         self._goals = CompiledGoals(compiled.names)
         self._goals.progress(goals_of(compiled.automaton, compiled.automaton.operations))  # not first in some tick
+        self._most = max(_REMEMBERED // len(compiled.names), LOOKAHEAD)
         self._known: dict[_Key, int] = {}  # how many ticks the goals take from there, eagerly; or that they never come
         self._exact: dict[tuple[_Key, tuple[PlanTick, ...]], bool] = {}
         self.face(Circumstances())
@@ -50,7 +51,7 @@ class Lookahead:
         present = self._moments.present(run, published, goals)
         if not present.progress:
             return 0
-        if len(self._known) > _REMEMBERED:
+        if len(self._known) > self._most:
             self._known.clear()
         ticks = self._known.get(_key(present, tuple(order)))
         if ticks is None:
@@ -64,7 +65,7 @@ class Lookahead:
         present = self._moments.present(run, published, goals)
         key = (_key(present, tuple(now)), tuple(ticks))
         if key not in self._exact:
-            if len(self._exact) > _REMEMBERED:
+            if len(self._exact) > self._most:
                 self._exact.clear()
             self._exact[key] = self._replays(present, now, ticks)
         return self._exact[key]
@@ -90,7 +91,7 @@ class Lookahead:
         order: Sequence[str],
         ticks: Sequence[PlanTick],
     ) -> bool:
-        """Whether a start that leads from `before` to `after` leaves `order` able to reach `goals`.
+        """Whether a start that leads from `before` to `after` leaves `order` able to reach what then are the `goals`.
 
         See `Replay.may_go_on`.
         """

@@ -20,6 +20,7 @@ from sequence_planner.automaton.tick import (
     synchronise,
 )
 from sequence_planner.expressions.evaluation import evaluate, holds
+from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.goals.pursuit import Goals, moved, settled
 from sequence_planner.planning.plan import Circumstances, Goal, Plan, PlanTick
@@ -95,7 +96,7 @@ class Replay:
         order: Sequence[str],
         ticks: Sequence[PlanTick],
     ) -> bool:
-        """Whether a start that leads from `before` to `after` leaves `order` able to reach `goals`.
+        """Whether a start that leads from `before` to `after` leaves `order` able to reach what then are the `goals`.
 
         As long as something can still happen by itself, a start that needs a device to be slow is not taken.
         """
@@ -201,8 +202,11 @@ class Replay:
 
 
 def missing(goals: Iterable[Goal], state: State) -> Goals:
-    """The goals that are not met already; those that are need no plan."""
-    return tuple(goal for goal in goals if not holds(goal.predicate, state))
+    """The goals that are not met already; those that are need no plan.
+
+    One with a formula is met after step 3 only: the next decides whether its formula is satisfied.
+    """
+    return tuple(goal for goal in goals if goal.local != TRUE or not holds(goal.predicate, state))
 
 
 def starts_now(order: Sequence[str], ticks: Sequence[PlanTick]) -> Sequence[str]:

@@ -52,6 +52,9 @@ class _Part:
             self._search.close()
 
 
+_MOST_KEPT = 1000  # questions of which it is remembered what matters
+
+
 class PartialSight:
     """Minimal plans for one automaton under one supervisor, warm from question to question."""
 
@@ -82,6 +85,8 @@ class PartialSight:
         searched = 0
         question = task.goals, task.circumstances
         try:
+            if len(self._kept) > _MOST_KEPT:
+                self._kept.clear()
             kept = self._kept[question] = self._kept.get(question) or self._first(task)
             while len(kept) <= self._most:
                 plan = self._part(kept).plan(task, budget)
