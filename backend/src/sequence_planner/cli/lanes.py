@@ -25,7 +25,7 @@ def lanes(automaton: Automaton, state: State, ticks: Sequence[PlanTick], effects
     rows = [[_short(row.get(name, []), name) for name in used] for row in cells]
     widths = [max(len(name), *(len(text) for row in rows for text in row[lane])) for lane, name in enumerate(used)]
     if sum(widths) + len(_GAP) * len(widths) + 4 > width:
-        yield from _one_lane(cells)
+        yield from _one_lane(ticks, activities, effects)
         return
     yield _line("tick", used, widths)
     for number, row in enumerate(rows, start=1):
@@ -45,12 +45,12 @@ def _cells(
         cells.setdefault(resource[name], []).append(f"{_EXPECTED}{name}")
     for each in activities:
         lane = cells.setdefault(resource[each.ability], [])
-        if each.started == number:
-            lane.append(each.ability)
-        elif each.started < number and (each.finished is None or number < each.finished):
+        if each.started < number and (each.finished is None or number < each.finished):
             lane.append(_RUNS)
-        elif each.finished == number:
+        elif each.started < number and each.finished == number:
             lane.append(_DONE)
+    for name in tick.starts:
+        cells[resource[name]].append(name)
     return {name: texts for name, texts in cells.items() if texts}
 
 
@@ -64,8 +64,10 @@ def _line(tick: str, texts: Sequence[str], widths: Sequence[int]) -> str:
     return _GAP.join((f"{tick:>4}", *padded)).rstrip()
 
 
-def _one_lane(cells: Sequence[Cells]) -> Iterator[str]:
-    for number, row in enumerate(cells, start=1):
-        texts = [text for lane in row.values() for text in lane if text not in (_RUNS, _DONE)]
-        for place, text in enumerate(texts or ["·"]):
+def _one_lane(ticks: Sequence[PlanTick], activities: Sequence[Activity], effects: bool) -> Iterator[str]:
+    for number, tick in enumerate(ticks, start=1):
+        texts = [f"{_EXPECTED}{name}" for name in tick.effects] if effects else []
+        texts += [f"{_DONE} {each.ability}" for each in activities if each.started < number == each.finished]
+        texts += tick.starts
+        for place, text in enumerate(texts or [_RUNS]):
             yield f"{'' if place else number:>4}{_GAP}{text}"

@@ -18,6 +18,8 @@ from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.moments import Moment, StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
 from sequence_planner.cli.plan_answers import because, document, plain_document, said, said_of_plain
+from sequence_planner.exporting.sequential import ExportError
+from sequence_planner.exporting.ticks import sequential
 from sequence_planner.exporting.unified import UnifiedPlanning, planners
 from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate, suggestion
@@ -110,8 +112,10 @@ def _of_station(
     automaton: Automaton, supervisor: Supervisor, request: PlanRequest, other: str | None, expected: bool, json: bool
 ) -> bool:
     try:
+        if other is not None:
+            sequential(automaton, supervisor, request.state, request.goals, request.circumstances)
         answer = _planner(automaton, supervisor, other).answer(request)
-    except PlannerError as error:
+    except (PlannerError, ExportError) as error:
         refuse(str(error))
     question = DiagnosisRequest(request.state, request.goals, request.circumstances)
     more = FewerSpecifications(automaton, supervisor)

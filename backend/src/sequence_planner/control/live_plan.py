@@ -18,7 +18,7 @@ from sequence_planner.control.pursued import Pursued
 from sequence_planner.control.start_order import StartOrder, Step
 from sequence_planner.control.view import PlanStatus
 from sequence_planner.planning.goals.pursuit import Goals, moved
-from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest, Verdict
+from sequence_planner.planning.plan import Circumstances, Contract, Plan, PlanAnswer, PlanRequest, Verdict
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
 from sequence_planner.planning.replaying.lookahead import Lookahead
 
@@ -140,11 +140,13 @@ class LivePlan:
         )
         if ticks is None:
             return following
-        if following and not self._is_better(present, goals, ticks, len(starts)):
+        if following and not self._is_better(present, goals, ticks, answer.plan):
             return True
-        replacing = self.status in (PlanStatus.FOLLOWED, PlanStatus.BROKEN) and bool(self.order.ahead)
+        same = starts == self.order.names
+        replacing = not same and self.status in (PlanStatus.FOLLOWED, PlanStatus.BROKEN) and bool(self.order.ahead)
         self.replanned += replacing
-        self.reason = why_new(self._automaton, self.status, hopeful, self.order.requested, replacing)
+        if not (following and same):
+            self.reason = why_new(self._automaton, self.status, hopeful, self.order.requested, replacing)
         self.order.adopt(answer.plan, goals, (goal.name for goal in request.goals))
         self.answer = answer
         self.status = PlanStatus.FOLLOWED
@@ -240,15 +242,16 @@ class LivePlan:
         goals = present.pursued.of(self.order.goals)
         return self._lookahead.remaining(present.run, present.published, goals, *self.order.rest())
 
-    def _is_better(self, present: Present, goals: frozenset[str], ticks: int, starts: int) -> bool:
-        """Whether a plan for `goals` has more of them than the one that is followed, or fewer ticks, or fewer starts.
+    def _is_better(self, present: Present, goals: frozenset[str], ticks: int, plan: Plan) -> bool:
+        """Whether `plan` has more goals than the one that is followed, or fewer ticks, or fewer starts, or more proof.
 
         Only what is better takes a plan's place: were it enough to be as good, plans would take turns.
         """
         left = self._left(present)
         if left is None or not goals >= self.order.goals:
             return left is None
-        return (-len(goals), ticks, starts) < (-len(self.order.goals), left, len(self.order.ahead))
+        mine = (-len(self.order.goals), left, len(self.order.ahead), not _is_proven(self.order.plan))
+        return (-len(goals), ticks, len(plan.starts), not _is_proven(plan)) < mine
 
     def _carry_on(self, request: PlanRequest) -> bool:
         """Whether the plan at hand still leads to its goals; others that were asked for are left out for now."""
@@ -277,6 +280,10 @@ class LivePlan:
             self._asked = _question(present, asked)
             self.order.adopt(None, (), asked)
         return current
+
+
+def _is_proven(plan: Plan | None) -> bool:
+    return plan is not None and plan.minimal_ticks and plan.minimal_starts
 
 
 def _question(present: Present, goals: frozenset[str]) -> _Question:

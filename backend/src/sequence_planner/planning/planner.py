@@ -122,11 +122,23 @@ class Planner:
         outcome = _Outcome(ordered, ordered, self._attempt(request, ordered, budget))
         if outcome.plan is None and not budget.spent:
             outcome = self._without_unreachable(request, outcome, budget)
+        proven = True  # that no more goals can be reached together than those tried last
         while outcome.plan is None and outcome.goals:
+            proven = proven and outcome.attempt.proof is not None
             outcome = outcome.fewer()
             if budget.spent:
                 break
             outcome = self._attempted(request, outcome, budget)
+        return self._more(request, outcome, budget) if proven and outcome.plan is not None else outcome
+
+    def _more(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
+        """With each goal that was left out only because of another one."""
+        for goal in outcome.possible:
+            if goal not in outcome.goals and not budget.spent:
+                goals = tuple(each for each in outcome.possible if each in outcome.goals or each == goal)
+                attempt = self._attempt(request, goals, budget)
+                if attempt.plan is not None:
+                    outcome = replace(outcome, goals=goals, attempt=attempt)
         return outcome
 
     def _without_unreachable(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
