@@ -197,7 +197,8 @@ PARENT = f"""
 import threading, time
 from pathlib import Path
 from sequence_planner.planning.racing.companion import Companion
-from sequence_planner.planning.worker import Model, work
+from sequence_planner.planning.reasons.diagnoser import Model
+from sequence_planner.planning.worker import work
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import synthesise

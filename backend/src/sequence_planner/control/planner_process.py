@@ -19,7 +19,8 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.planning.plan import PlanRequest
 from sequence_planner.planning.questions import Answer, Request
 from sequence_planner.planning.racing.companion import Answered, Companion, Ended, Finished, Question, Ready, Word
-from sequence_planner.planning.worker import Model, work
+from sequence_planner.planning.reasons.diagnoser import Model
+from sequence_planner.planning.worker import work
 from sequence_planner.synthesis.fewer import FewerSpecifications
 
 LOG = structlog.get_logger(__name__)

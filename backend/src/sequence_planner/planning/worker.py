@@ -3,31 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from multiprocessing.connection import Connection
 
-from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import PlanRequest, WayBackRequest
 from sequence_planner.planning.planner import Planner, PlannerError
 from sequence_planner.planning.questions import Answer, Request
 from sequence_planner.planning.racing.companion import stand_by
 from sequence_planner.planning.racing.race import Race
-from sequence_planner.planning.reasons.diagnosis import DiagnosisRequest, diagnose
-from sequence_planner.planning.reasons.why import SupervisorFor
+from sequence_planner.planning.reasons.diagnoser import Diagnoser, Model
+from sequence_planner.planning.reasons.diagnosis import DiagnosisRequest
 from sequence_planner.planning.way_back import WaysBack
 
 STARTING = 30.0  # seconds the lanes may take to start before questions are answered by those that have
-
-
-@dataclass(frozen=True)
-class Model:
-    """What is planned for; `supervisor_for` is asked when there is no plan at all."""
-
-    automaton: Automaton
-    supervisor: Supervisor
-    supervisor_for: SupervisorFor
 
 
 def work(connection: Connection) -> None:
@@ -39,6 +27,7 @@ def _prepared(model: Model) -> Callable[[Request, Budget], Iterator[Answer | str
     race = Race(model.automaton, model.supervisor)
     race.wait(Budget.seconds(STARTING))
     planner = Planner(model.automaton, model.supervisor, race)
+    diagnoser = Diagnoser(model)
     ways = WaysBack(model.automaton, model.supervisor.safe)
 
     def answer(request: Request, budget: Budget) -> Iterator[Answer | str]:
@@ -49,7 +38,7 @@ def _prepared(model: Model) -> Callable[[Request, Budget], Iterator[Answer | str
                 case WayBackRequest():
                     yield ways.answer(request, budget)
                 case DiagnosisRequest(task=task):
-                    yield diagnose(model.automaton, model.supervisor, model.supervisor_for, task, budget)
+                    yield diagnoser.diagnose(task, budget)
         except PlannerError as error:
             yield str(error)
 

@@ -1,0 +1,78 @@
+"""Diagnoses in a process of their own: synthesis cannot be interrupted, so it ends with its process."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from queue import Empty, SimpleQueue
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.racing.companion import Answered, Companion, Ended, Finished, Question, Word, stand_by
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, diagnose
+from sequence_planner.planning.reasons.why import SupervisorFor
+
+_SHARE = 0.9  # of the time, for the process: it says what it has found before nobody listens any more
+
+
+@dataclass(frozen=True)
+class Model:
+    """What is planned for; `supervisor_for` is asked which specifications matter."""
+
+    automaton: Automaton
+    supervisor: Supervisor
+    supervisor_for: SupervisorFor
+
+
+def work(connection: Connection) -> None:
+    """The life of the process."""
+    stand_by(connection, _prepared)
+
+
+def _prepared(model: Model) -> Callable[[Task, Budget], Iterator[Diagnosis]]:
+    def answer(task: Task, budget: Budget) -> Iterator[Diagnosis]:
+        yield diagnose(model.automaton, model.supervisor, model.supervisor_for, task, budget)
+
+    return answer
+
+
+class Diagnoser:
+    """Asks a process that is started for the first question, and ended when its answer is not wanted any more."""
+
+    def __init__(self, model: Model) -> None:
+        self._model = model
+        self._companion: Companion[Model, Task] | None = None
+        self._heard: SimpleQueue[Word | None] = SimpleQueue()
+        self._number = 0
+
+    def diagnose(self, task: Task, budget: Budget) -> Diagnosis:
+        """What is found before the budget is spent; as soon as it is called off, nothing."""
+        if self._companion is None:
+            self._heard = SimpleQueue()
+            self._companion = Companion(work, self._model, self._heard.put, "diagnosis")
+        self._number += 1
+        self._companion.ask(Question(self._number, _SHARE * budget.remaining, task))
+        heard = self._heard
+        with budget.interrupting(lambda: heard.put(None)):
+            while not budget.spent:
+                with contextlib.suppress(Empty):
+                    match heard.get(timeout=budget.remaining):
+                        case Answered(number, diagnosis) if number == self._number:
+                            found: Diagnosis = diagnosis
+                            return found
+                        case Ended():
+                            break
+                        case Finished(number, trouble) if trouble and number == self._number:
+                            break
+        self.close()
+        return Diagnosis(None, ())
+
+    def close(self) -> None:
+        """End the process."""
+        if self._companion is not None:
+            self._companion.close()
+        self._companion = None
