@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping
 from itertools import product
 from math import prod
 
-from sequence_planner.automaton.structure import Automaton, Flag, Kind, State, target
+from sequence_planner.automaton.structure import Automaton, Flag, State, target
 from sequence_planner.automaton.transitions import Transition, transitions
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import (
@@ -28,7 +28,7 @@ from sequence_planner.expressions.syntax import (
     variables,
 )
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.plan import Circumstances, Clause, Goal, Literal, Proof
+from sequence_planner.planning.plan import Circumstances, Clause, Literal, Proof
 
 Possible = Mapping[str, set[Value | None]]
 
@@ -36,19 +36,12 @@ Possible = Mapping[str, set[Value | None]]
 _MOST_COMBINATIONS = 4096
 
 
-def unreachable_goals(
-    automaton: Automaton, state: State, goals: Iterable[Goal], circumstances: Circumstances
-) -> frozenset[Goal]:
-    """Those of `goals` whose predicate no run from `state` can ever reach."""
-    relaxed = reachable(automaton, state, circumstances)
-    return frozenset(goal for goal in goals if not relaxed.may(goal.predicate))
-
-
 def reachable(automaton: Automaton, state: State, circumstances: Circumstances) -> Relaxation:
-    """All that runs from `state` can make of variables and flags, and perhaps more."""
+    """All that runs from `state` can make of variables and flags, and perhaps more.
+
+    Operations stay as active as they are.
+    """
     first: dict[str, set[Value | None]] = {name: {value} for name, value in state.items()}
-    # Plans take what is active as it is, but a run may change it: only without that is there a proof.
-    first |= {name: {False, True} for name in automaton.names(Kind.ACTIVITY)}
     return Relaxation(automaton, first, counted_on(automaton, circumstances))
 
 
