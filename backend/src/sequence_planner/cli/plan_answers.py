@@ -116,7 +116,8 @@ def _none(answer: PlanAnswer | PlainAnswer, goals: Iterable[str], unit: str) -> 
         case Verdict.NONE_UP_TO:
             return f"no plan of up to {answer.searched} {unit}: {names} ({answer.seconds:.2f} s)"
         case _:
-            return f"no answer in time, and no plan of up to {answer.searched} {unit}: {names} ({answer.seconds:.2f} s)"
+            known = f", and no plan of up to {answer.searched} {unit}" if answer.searched > 0 else ""
+            return f"no answer in time{known}: {names} ({answer.seconds:.2f} s)"
 
 
 def _why(diagnosis: Diagnosis) -> dict[str, Any]:

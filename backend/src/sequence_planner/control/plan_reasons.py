@@ -33,7 +33,8 @@ def why_none(answer: PlanAnswer, blind: bool) -> str:
     if blind:
         return "no plan while measured values are unknown"
     if answer.verdict is Verdict.LATE:
-        return f"no answer in time: no plan of up to {answer.searched} ticks, and longer ones may exist"
+        known = f"no plan of up to {answer.searched} ticks, and longer ones" if answer.searched > 0 else "a plan"
+        return f"no answer in time: {known} may exist"
     return f"no plan of up to {answer.searched} ticks: there may be a longer one"
 
 

@@ -92,8 +92,29 @@ class UnifiedPlanning:
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
+    """End it with all that it has started: planners put their own processes into groups of their own."""
+    descendants = _descendants(process.pid)
     with contextlib.suppress(ProcessLookupError):
         os.killpg(process.pid, signal.SIGKILL)
+    for each in descendants:
+        with contextlib.suppress(ProcessLookupError):
+            os.kill(each, signal.SIGKILL)
+
+
+def _descendants(pid: int) -> list[int]:
+    """What the process, and what it has started, has started; where the system lists processes in files."""
+    children: dict[int, list[int]] = {}
+    for status in Path("/proc").glob("[0-9]*/stat"):
+        with contextlib.suppress(OSError):
+            parent = int(status.read_text().rpartition(")")[2].split()[1])
+            children.setdefault(parent, []).append(int(status.parent.name))
+    found: list[int] = []
+    pending = [pid]
+    while pending:
+        new = children.get(pending.pop(), [])
+        found += new
+        pending += new
+    return found
 
 
 def _solve(name: str, domain: str, problem: str, written: str) -> None:
