@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Annotated
 
@@ -27,7 +28,7 @@ from sequence_planner.expressions.syntax import Expression, ExpressionError
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import Engines, Lane
-from sequence_planner.planning.goals.pursuit import moved
+from sequence_planner.planning.goals.monitor import monitor_of
 from sequence_planner.planning.plain import PlainAnswer, as_station, plan_transitions
 from sequence_planner.planning.plan import (
     Circumstances,
@@ -200,10 +201,7 @@ def _asked(
     for name in sorted(chosen):
         goal = goal_of(automaton.operations[name])
         # The state at its activation is the first position of its formula.
-        begun = moved((goal,), state)
-        if begun is None:
-            refuse(f"the local formula of `{name}` is violated in this state already")
-        goals += begun
+        goals.append(replace(goal, at=monitor_of(goal.local).step(goal.at, state)))
     goals += (Goal(text, _predicate(automaton, text, "--goal")) for text in texts)
     return state, tuple(goals)
 
