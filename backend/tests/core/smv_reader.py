@@ -86,7 +86,9 @@ def _domain(written: str) -> list[Any]:
 
 
 def _case(line: str) -> tuple[Read, Read]:
-    where, value = re.fullmatch(r"    (.*) : (.*);", line).groups()  # type: ignore[union-attr]
+    case = re.fullmatch(r"    (.*) : (.*);", line)
+    assert case is not None, line
+    where, value = case.groups()
     return _read(where), _read(value)
 
 

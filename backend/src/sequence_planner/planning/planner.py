@@ -97,7 +97,7 @@ class Planner:
     def answer(self, request: PlanRequest, budget: Budget | None = None) -> PlanAnswer:
         """The plan for as many of the goals as can be planned together, the lowest priority given up first.
 
-        Goals that are proven impossible by themselves are left out before all others. `budget` can be called off from
+        What was left out only because of another goal is taken in again. `budget` can be called off from
         another thread; without one the deadline of the request is kept. Raises `PlannerError`.
         """
         began = time.monotonic()
