@@ -137,7 +137,7 @@ def whole_process(problem: Problem, question: str, folder: Path) -> None:
     """From the start of Python to the answer; and what of it is the planner's import."""
     model, circuit = folder / "model", folder / "question.aig"
     model.write_bytes(pickle.dumps((problem.automaton, problem.supervisor, problem.state, problem.questions[question])))
-    ours = median(lambda: child((sys.executable, ONE_PLAN, model, "minimal"), LIMIT).seconds)
+    ours = median(lambda: child((sys.executable, ONE_PLAN, "minimal"), LIMIT, stdin=model).seconds)
     peers: list[str] = []
     if abc.PROGRAM is not None:
         circuit.write_bytes(aiger(problem, question))

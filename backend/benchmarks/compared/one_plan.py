@@ -1,13 +1,12 @@
-"""One plan in a process of its own, for its CPU time: `one_plan.py FILE CONTRACT`.
+"""One plan in a process of its own, for its CPU time: `one_plan.py CONTRACT`.
 
-FILE is what `pickle` made of an automaton, its supervisor, a state and goals. Prints the number of ticks, or 0.
+Its input is what `pickle` made of an automaton, its supervisor, a state and goals. Prints the number of ticks, or 0.
 """
 
 from __future__ import annotations
 
 import pickle
 import sys
-from pathlib import Path
 
 from sequence_planner.planning.plan import Contract, PlanRequest
 from sequence_planner.planning.planner import Planner
@@ -15,8 +14,8 @@ from sequence_planner.planning.planner import Planner
 
 def main() -> None:
     """Plan and print."""
-    automaton, supervisor, state, goals = pickle.loads(Path(sys.argv[1]).read_bytes())
-    request = PlanRequest(state, goals, deadline=120, contract=Contract(sys.argv[2]))
+    automaton, supervisor, state, goals = pickle.load(sys.stdin.buffer)
+    request = PlanRequest(state, goals, deadline=120, contract=Contract(sys.argv[1]))
     answer = Planner(automaton, supervisor).answer(request)
     print(0 if answer.plan is None else len(answer.plan.ticks), answer.engine)
 

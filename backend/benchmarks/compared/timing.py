@@ -23,7 +23,7 @@ class Ended(NamedTuple):
 
 
 def child(command: Sequence[str | Path], limit: float, stdin: Path | None = None, folder: Path | None = None) -> Ended:
-    """Run a process for at most `limit` seconds."""
+    """Run a process for at most `limit` seconds; Python keeps what it has compiled, also where that is switched off."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     stopped, output = False, ""
     with (stdin or Path(os.devnull)).open("rb") as given:
@@ -35,6 +35,7 @@ def child(command: Sequence[str | Path], limit: float, stdin: Path | None = None
                 stderr=subprocess.STDOUT,
                 timeout=limit,
                 cwd=folder,
+                env={**os.environ, "PYTHONDONTWRITEBYTECODE": ""},
                 check=False,
             )
             output = ended.stdout.decode(errors="replace")

@@ -12,7 +12,7 @@ from sequence_planner.planning.plan import Plan, PlanRequest, PlanTick
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.replaying.acceptance import Acceptance
 from sequence_planner.planning.replaying.replay import Replay, missing
-from sequence_planner.planning.replaying.tightening import Tightening
+from sequence_planner.planning.replaying.tightening import tightened
 
 from .budget import examples
 from .choices import Choices, made_by
@@ -83,9 +83,15 @@ def test_a_tightened_plan_is_one_of_the_same_starts_and_no_longer(given_: Proble
     if found is None:
         return
     task, plan = found
-    tightening = Tightening(given_.automaton, given_.supervisor)
-    early = tightening.tightened(task, plan, Budget.seconds(20))
-    assert Acceptance(given_.automaton, given_.supervisor).accepts(task, early)
+    acceptance = Acceptance(given_.automaton, given_.supervisor)
+    course = tightened(acceptance, task, plan, Budget.seconds(20))
+    if course is None:
+        return
+    early = course.plan
+    again = acceptance.course(task, early)
+    assert again is not None
+    assert again.ends == course.ends
+    assert [(point.tick, point.starts) for point in again.way] == [(point.tick, point.starts) for point in course.way]
     assert len(early.ticks) <= len(plan.ticks)
     assert sorted(name for _, name in early.starts) == sorted(name for _, name in plan.starts)
-    assert tightening.tightened(task, plan, Budget.seconds(0)) == plan
+    assert tightened(acceptance, task, plan, Budget.seconds(0)) is None

@@ -7,14 +7,19 @@ from dataclasses import replace
 import pytest
 from hypothesis import given
 
+from sequence_planner.automaton.tick import initial_state
+from sequence_planner.expressions.types import BOOLEAN, IntegerRange
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.plan import Contract
+from sequence_planner.planning.pdr.localisation import localisable
+from sequence_planner.planning.plan import ORDINARY, Contract, goals_of
 from sequence_planner.planning.replaying.replay import Replay, missing
 from sequence_planner.planning.sat.seen import PartialSight
+from sequence_planner.synthesis.supervision import synthesise
 
 from .breadth_first import shortest
 from .budget import examples
+from .building import Does, automaton
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 from .random_stations import state_of
@@ -76,3 +81,42 @@ def test_it_leaves_to_others_what_cannot_be_seen_in_part(contract: Contract, giv
     if task.goals and (contract is Contract.FAST or None in state.values()):
         engine = PartialSight(given_.automaton, given_.supervisor, most=1.0)
         assert engine.solve(task, Budget.seconds(60)) == Finding()
+
+
+def test_what_seems_to_finish_by_itself_is_looked_at() -> None:
+    """Two parts go through one slot, which a pusher frees: it seems to end a push of which nothing is seen."""
+    station = automaton(
+        {
+            "fill": Does(start=("slot := true", "filled := filled + 1"), enabled="not slot and filled < 2"),
+            "push": Does(
+                start=("pushing := true",),
+                enabled="slot and not pushing and not pushed",
+                executing="pushing and not pushed",
+                finish="pushing and pushed",
+                finally_=("pushing := false", "slot := false"),
+            ),
+        },
+        measured={"pushed": (BOOLEAN, False)},
+        output={"pushing": (BOOLEAN, False), "lamp": (BOOLEAN, False)},
+        estimated={"slot": (BOOLEAN, False), "filled": (IntegerRange(0, 2), 0)},
+        effects={"extends": ("pushing and not pushed", ("pushed := true",))},
+        goals={"both": "filled == 2"},
+    )
+    supervisor, state = synthesise(station), initial_state(station)
+    finding = PartialSight(station, supervisor, most=1.0).solve(
+        Task(state, goals_of(station, station.operations)), Budget.seconds(60)
+    )
+    assert finding.plan is not None
+    assert [tick.starts for tick in finding.plan.ticks] == [("fill", "push"), ("fill",), ()]
+    assert (finding.plan.minimal_ticks, finding.plan.minimal_starts) == (True, True)
+
+
+@examples(60)
+@given(made_by(problem))
+def test_it_finds_whatever_there_is_where_it_may_look_at_everything(given_: Problem) -> None:
+    task = Task(given_.state, missing(given_.goals, given_.state), longest=LONGEST)
+    engine = PartialSight(given_.automaton, given_.supervisor, most=1.0)
+    localised = localisable(given_.automaton, task.state, task.goals)
+    best = shortest(given_.automaton, given_.supervisor, given_.state, task.goals, LONGEST, ORDINARY)
+    if task.goals and localised and best is not None:
+        assert engine.solve(task, Budget.seconds(60)).plan is not None

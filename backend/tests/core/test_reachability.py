@@ -8,7 +8,8 @@ from sequence_planner.automaton.structure import State
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.certificate import check
-from sequence_planner.planning.pdr.engine import FirstSight, Reachability
+from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.pdr.first_sight import FirstSight
 from sequence_planner.planning.plan import Circumstances, Contract, goals_of
 from sequence_planner.planning.replaying.replay import Replay, missing
 

@@ -58,10 +58,10 @@ def test_the_rest_of_a_plan_is_known_to_be_the_shortest(given_: Problem) -> None
         return
     planned = tuple(goal for goal in given_.goals if goal.name in answer.goals)
     task = Task(given_.state, missing(planned, given_.state), given_.circumstances, longest=LONGEST)
-    ends = Acceptance(given_.automaton, given_.supervisor).ends(task, answer.plan)
-    assert ends is not None
+    course = Acceptance(given_.automaton, given_.supervisor).course(task, answer.plan)
+    assert course is not None
     asked, replay = counting.asked, Replay(given_.automaton, given_.supervisor, given_.circumstances)
-    for number, (state, goals) in enumerate(ends[:-1], start=1):
+    for number, (state, goals) in enumerate(course.ends[:-1], start=1):
         if missing(goals, state) != goals:
             continue
         for contract in Contract:
@@ -88,9 +88,9 @@ def test_nothing_else_is_taken_for_it(given_: Problem) -> None:
         return
     recollection = Recollection(given_.automaton)
     assert recollection.finding(task) is None
-    ends = Acceptance(given_.automaton, given_.supervisor).ends(task, plan)
-    assert ends is not None
-    recollection.keep_plan(task, plan, ends)
+    course = Acceptance(given_.automaton, given_.supervisor).course(task, plan)
+    assert course is not None
+    recollection.keep_plan(task, plan, course.ends)
     assert recollection.plan(task) == plan
     assert recollection.plan(replace(task, longest=len(plan.ticks) - 1)) is None
     assert recollection.plan(replace(task, goals=(*task.goals, task.goals[0]))) is None
@@ -103,11 +103,11 @@ def test_a_plan_with_more_proven_of_it_is_kept() -> None:
     task = Task(given_.state, missing(given_.goals, given_.state), given_.circumstances, longest=LONGEST)
     plan = BoundedModelChecking(given_.automaton, given_.supervisor).solve(task, Budget.seconds(60)).plan
     assert plan is not None
-    ends = Acceptance(given_.automaton, given_.supervisor).ends(task, plan)
-    assert ends is not None
+    course = Acceptance(given_.automaton, given_.supervisor).course(task, plan)
+    assert course is not None
     unproven, recollection = replace(plan, minimal_ticks=False, minimal_starts=False), Recollection(given_.automaton)
     for offered, kept in ((unproven, unproven), (plan, plan), (unproven, plan)):
-        recollection.keep_plan(task, offered, ends)
+        recollection.keep_plan(task, offered, course.ends)
         assert recollection.plan(task) == kept
 
 

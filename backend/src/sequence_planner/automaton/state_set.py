@@ -7,11 +7,11 @@ plain data, so that it goes from process to process and into files.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
 
 # References to nodes: the two sets that test no variable, and then the nodes in their order.
 NOTHING, EVERYTHING = 0, 1
@@ -20,8 +20,7 @@ _FIRST = 2
 Node = tuple[int, tuple[int, ...]]  # the position of the variable in `names`; a reference for each value of its domain
 
 
-@dataclass(frozen=True)
-class StateSet:
+class StateSet(Immutable):
     """`nodes` is a reduced, ordered decision diagram with a branch for each value of a variable (Kam et al. 1998).
 
     Every way from `root` tests variables in the order of `names`, and a node comes after those it refers to. Two equal
@@ -188,8 +187,7 @@ class Builder:
         return StateSet(names, domains, tuple(kept), number[root])
 
 
-@dataclass(frozen=True)
-class Supervisor:
+class Supervisor(Immutable):
     """Which starts are safe: a start must lead from a safe state into one.
 
     `guards` says the same per ability, over few variables and for safe states only; an ability without an entry may

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from enum import StrEnum
 from functools import cached_property
 
 from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.syntax import Assignment, Expression, Variable, variables
 from sequence_planner.expressions.types import BOOLEAN, Type, Value
+from sequence_planner.immutable import Immutable, uncompared
 
 # A state gives every variable and every ability flag a value; None is unknown. Never changed once made.
 State = Mapping[str, Value | None]
@@ -25,8 +25,7 @@ class Kind(StrEnum):
     ACTIVITY = "activity"  # the tick: whether an operation is active; only of operations that some expression reads
 
 
-@dataclass(frozen=True)
-class VariableDeclaration:
+class VariableDeclaration(Immutable):
     """A variable by its full name; `resource` is None for those of the station."""
 
     name: str
@@ -36,8 +35,7 @@ class VariableDeclaration:
     resource: str | None
 
 
-@dataclass(frozen=True)
-class Effect:
+class Effect(Immutable):
     """An expected reaction of measured variables, taking between `shortest` and `longest` seconds."""
 
     name: str
@@ -50,16 +48,14 @@ class Effect:
     fault: bool = False
 
 
-@dataclass(frozen=True)
-class HumanTask:
+class HumanTask(Immutable):
     """What a person is asked to do, and the measured variable that says it is done."""
 
     text: str
     acknowledgement: str
 
 
-@dataclass(frozen=True)
-class Timeouts:
+class Timeouts(Immutable):
     """Seconds after a start by which an ability must have reacted, and have finished, before an alarm is raised.
 
     It has reacted when it has been seen executing, or has finished.
@@ -69,8 +65,7 @@ class Timeouts:
     finish: float | None = None
 
 
-@dataclass(frozen=True)
-class Ability:
+class Ability(Immutable):
     """A ground ability. `finish_guard` is None when it is done at its start.
 
     `cancel_actions` are taken when a running ability is called off; `duration` is the shortest and longest time in
@@ -98,16 +93,14 @@ class Ability:
         return f"{self.name}.{which}"
 
 
-@dataclass(frozen=True)
-class Flag:
+class Flag(Immutable):
     """A truth value that equals its predicate after every synchronisation."""
 
     name: str
     predicate: Expression
 
 
-@dataclass(frozen=True)
-class Operation:
+class Operation(Immutable):
     """A ground operation; of several that cannot be planned together, the highest `priority` is kept.
 
     `local` is a formula of LTL over finite traces (`expressions.traces`) for the run from its activation to its goal.
@@ -126,8 +119,7 @@ class Operation:
         return f"operation.{self.name}.active"
 
 
-@dataclass(frozen=True)
-class Specification:
+class Specification(Immutable):
     """A ground specification: no state may satisfy `forbidden`."""
 
     name: str
@@ -135,8 +127,7 @@ class Specification:
     forbidden: Expression
 
 
-@dataclass(frozen=True)
-class WorkMaster:
+class WorkMaster(Immutable):
     """What a job consists of: its operations, each with those that must be completed before it.
 
     `brings` are the estimated values that a new product has.
@@ -148,8 +139,7 @@ class WorkMaster:
     brings: tuple[Assignment, ...] = ()
 
 
-@dataclass(frozen=True)
-class Automaton:
+class Automaton(Immutable):
     """All of it. `flags` are in an order in which none depends on a later one.
 
     A station's automaton goes by the tick. With `one_at_a_time` it is a plain automaton: it has neither flags nor
@@ -166,14 +156,14 @@ class Automaton:
     abilities: Mapping[str, Ability]
     flags: tuple[Flag, ...]
     effects: tuple[Effect, ...] = ()
-    operations: Mapping[str, Operation] = field(default_factory=dict)
-    specifications: Mapping[str, Specification] = field(default_factory=dict)
+    operations: Mapping[str, Operation] = {}
+    specifications: Mapping[str, Specification] = {}
     rest: Expression | None = None  # None: every state is one of rest
-    work_masters: Mapping[str, WorkMaster] = field(default_factory=dict)
+    work_masters: Mapping[str, WorkMaster] = {}
     one_at_a_time: bool = False
     initial: Expression | None = None
     goals: tuple[Expression, ...] = ()
-    places: Mapping[str, Place] = field(default_factory=dict, compare=False, repr=False)
+    places: Mapping[str, Place] = uncompared(default={})
 
     def names(self, kind: Kind) -> tuple[str, ...]:
         """The variables of a kind, in order of declaration."""

@@ -7,20 +7,19 @@ of measurements. No function changes a state: each returns a new one.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, State, target
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.syntax import Assignment, conjunction
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
 
 Writes = dict[str, Value]
 Conflicts = tuple[tuple[str, str, str], ...]  # two abilities and the variable
 
 
-@dataclass(frozen=True)
-class Finishing:
+class Finishing(Immutable):
     """The outcome of step 2: who finished, and which abilities would have written different values to one variable."""
 
     state: State

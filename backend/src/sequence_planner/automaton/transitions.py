@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import StrEnum
 from functools import cached_property
 
 from sequence_planner.automaton.structure import Automaton, reads, target
 from sequence_planner.expressions.syntax import Assignment, Expression, conjunction, variables
+from sequence_planner.immutable import Immutable
 
 
 class Phase(StrEnum):
@@ -18,8 +18,7 @@ class Phase(StrEnum):
     START = "start"
 
 
-@dataclass(frozen=True)
-class Transition:
+class Transition(Immutable):
     """A guarded update. Only a start is controllable."""
 
     name: str

@@ -15,7 +15,6 @@ from sequence_planner.expressions.syntax import (
     Expression,
     Implies,
     Membership,
-    Name,
     Not,
     Or,
     UnaryTemporal,
@@ -42,33 +41,43 @@ def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
     Raises KeyError for a variable that `valuation` does not have, TypeError for an unresolved name and for a temporal
     formula, which has a value only over a trace (see `traces`).
     """
-    match expression:  # what is most frequent comes first, and without a detour
-        case Comparison(relation, Variable(name), Constant(value)):
-            known = valuation[name]
-            return None if known is None else RELATIONS[relation](known, value)
-        case And(operands):
-            unknown = False
-            for part in operands:
-                truth = evaluate(part, valuation)
-                if truth is False:
-                    return False
-                unknown = unknown or truth is None
-            return None if unknown else True
-        case Variable(name):
-            return valuation[name]
-        case Constant(value):
-            return value
-        case Not(operand):
-            truth = evaluate(operand, valuation)
-            return None if truth is None else not truth
-        case Or(operands):
-            return greatest(evaluate(part, valuation) for part in operands)
+    # What is most frequent comes first, and is asked for without patterns, which take several times as long to match.
+    if isinstance(expression, And):
+        unknown = False
+        for part in expression.operands:
+            truth = evaluate(part, valuation)
+            if truth is False:
+                return False
+            unknown = unknown or truth is None
+        return None if unknown else True
+    if isinstance(expression, Comparison):
+        left, right = expression.left, expression.right
+        a = valuation[left.name] if isinstance(left, Variable) else evaluate(left, valuation)
+        b = right.value if isinstance(right, Constant) else evaluate(right, valuation)
+        return None if a is None or b is None else RELATIONS[expression.operator](a, b)
+    if isinstance(expression, Variable):
+        return valuation[expression.name]
+    if isinstance(expression, Not):
+        truth = evaluate(expression.operand, valuation)
+        return None if truth is None else not truth
+    if isinstance(expression, Or):
+        unknown = False
+        for part in expression.operands:
+            truth = evaluate(part, valuation)
+            if truth is True:
+                return True
+            unknown = unknown or truth is None
+        return None if unknown else False
+    if isinstance(expression, Constant):
+        return expression.value
+    return _less_frequent(expression, valuation)
+
+
+def _less_frequent(expression: Expression, valuation: Valuation) -> Value | None:
+    match expression:
         case Implies(left, right):
             premise = evaluate(left, valuation)
             return greatest((None if premise is None else not premise, evaluate(right, valuation)))
-        case Comparison(relation, left, right):
-            a, b = evaluate(left, valuation), evaluate(right, valuation)
-            return None if a is None or b is None else RELATIONS[relation](a, b)
         case Membership(left, options):
             a = evaluate(left, valuation)
             if a is None:
@@ -80,10 +89,9 @@ def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
             if a is None or b is None:
                 return None
             return int(a) + int(b) if sign == "+" else int(a) - int(b)
-        case Name():
-            raise TypeError(f"unresolved name {expression}")
         case UnaryTemporal(operator_) | BinaryTemporal(operator_):
             raise TypeError(f"a formula with `{operator_}` has no value in a single state")
+    raise TypeError(f"unresolved name {expression}")
 
 
 def holds(expression: Expression, valuation: Valuation) -> bool:

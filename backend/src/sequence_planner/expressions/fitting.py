@@ -8,7 +8,6 @@ as in a plain automaton, `fits_condition` is what to ask before.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import product
 from math import prod
 
@@ -30,6 +29,7 @@ from sequence_planner.expressions.syntax import (
     variables,
 )
 from sequence_planner.expressions.types import EnumerationType, IntegerRange, Type, Value, contains
+from sequence_planner.immutable import Immutable
 
 # How many combinations of values are tried; beyond them, conditions are left out.
 MOST_COMBINATIONS = 20_000
@@ -37,8 +37,7 @@ MOST_COMBINATIONS = 20_000
 _Domains = Mapping[str, tuple[Value, ...]]
 
 
-@dataclass(frozen=True)
-class Misfit:
+class Misfit(Immutable):
     """A state in which an action is taken and writes `value`, which is outside the target's domain.
 
     `valuation` gives the variables on which that depends; it is empty where there were too many of them to find such a

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
 
 from sequence_planner.expressions.lexer import KEYWORDS, PREFIX_LETTERS
 from sequence_planner.expressions.parser import temporal_refused
@@ -40,10 +39,10 @@ from sequence_planner.expressions.types import (
     Type,
     contains,
 )
+from sequence_planner.immutable import Immutable
 
 
-@dataclass(frozen=True)
-class Scope:
+class Scope(Immutable):
     """What names mean at one place of a model.
 
     `variables` maps full names to types; `prefixes` are tried in order before the bare name (such as
@@ -52,7 +51,7 @@ class Scope:
 
     variables: Mapping[str, Type]
     prefixes: tuple[str, ...] = ()
-    parameters: Mapping[str, tuple[str, EnumerationType]] = field(default_factory=dict)
+    parameters: Mapping[str, tuple[str, EnumerationType]] = {}
 
     def substitute(self, name: Name) -> Name:
         """`name` with the parameters among its arguments replaced by their values."""

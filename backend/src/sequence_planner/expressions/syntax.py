@@ -7,11 +7,11 @@ source text and take no part in comparison, so that equal expressions written at
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
 from functools import cached_property
 from typing import NamedTuple
 
 from sequence_planner.expressions.types import Type, Value
+from sequence_planner.immutable import Immutable, uncompared
 
 
 class Span(NamedTuple):
@@ -33,12 +33,11 @@ class ExpressionError(Exception):
         self.span = span
 
 
-@dataclass(frozen=True)
-class Constant:
+class Constant(Immutable):
     """A truth value, an integer, or the name of an enumeration's value."""
 
     value: Value
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
 class Component(NamedTuple):
@@ -55,12 +54,11 @@ class Component(NamedTuple):
         return f"{self.name}{opening}{', '.join(self.arguments)}{closing}"
 
 
-@dataclass(frozen=True)
-class Name:
+class Name(Immutable):
     """A name not yet resolved: a variable, a flag, a parameter or a value."""
 
     path: tuple[Component, ...]
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
     def __str__(self) -> str:
         return self._text
@@ -75,94 +73,84 @@ class Name:
         return len(self.path) == 1 and not self.path[0].arguments
 
 
-@dataclass(frozen=True)
-class Variable:
+class Variable(Immutable):
     """A variable by its full name, with its type."""
 
     name: str
     type: Type
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
-@dataclass(frozen=True)
-class Not:
+class Not(Immutable):
     """Negation."""
 
     operand: Expression
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
-@dataclass(frozen=True)
-class And:
+class And(Immutable):
     """Conjunction of two or more."""
 
     operands: tuple[Expression, ...]
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
-@dataclass(frozen=True)
-class Or:
+class Or(Immutable):
     """Disjunction of two or more."""
 
     operands: tuple[Expression, ...]
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
-@dataclass(frozen=True)
-class Implies:
+class Implies(Immutable):
     """`left implies right`."""
 
     left: Expression
     right: Expression
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
-@dataclass(frozen=True)
-class Comparison:
+class Comparison(Immutable):
     """`==`, `!=`, and on integers `<`, `<=`, `>`, `>=`."""
 
     operator: str
     left: Expression
     right: Expression
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
-@dataclass(frozen=True)
-class Membership:
+class Membership(Immutable):
     """`left in {a, b}`."""
 
     left: Expression
     options: tuple[Expression, ...]
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
-@dataclass(frozen=True)
-class Arithmetic:
+class Arithmetic(Immutable):
     """`+` and `-` on integers."""
 
     operator: str
     left: Expression
     right: Expression
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
-@dataclass(frozen=True)
-class UnaryTemporal:
+class UnaryTemporal(Immutable):
     """`X` (next), `N` (next, if there is one), `F` (eventually) and `G` (always) before a formula."""
 
     operator: str
     operand: Expression
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
-@dataclass(frozen=True)
-class BinaryTemporal:
+class BinaryTemporal(Immutable):
     """`U` (until), `R` (release) and `W` (weak until) between two formulas."""
 
     operator: str
     left: Expression
     right: Expression
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
 Expression = (
@@ -181,14 +169,13 @@ Expression = (
 )
 
 
-@dataclass(frozen=True)
-class Assignment:
+class Assignment(Immutable):
     """An action `target := value`, taken only where `condition` holds."""
 
     target: Name | Variable
     value: Expression
     condition: Expression | None = None
-    span: Span = field(default=NOWHERE, compare=False, repr=False)
+    span: Span = uncompared(default=NOWHERE)
 
 
 TRUE = Constant(True)
@@ -212,6 +199,9 @@ def children(expression: Expression) -> tuple[Expression, ...]:
             return ()
 
 
+_JUNCTIONS = (And, Or)
+
+
 def occurrences(expression: Expression) -> Iterator[Variable]:
     """Each place where a resolved expression reads a variable, left to right."""
     pending = [expression]
@@ -221,7 +211,7 @@ def occurrences(expression: Expression) -> Iterator[Variable]:
             yield part
         elif isinstance(part, Comparison):  # most are comparisons, or these
             pending += (part.right, part.left)
-        elif isinstance(part, And | Or):
+        elif isinstance(part, _JUNCTIONS):
             pending += reversed(part.operands)
         elif not isinstance(part, Constant):
             pending += reversed(children(part))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from sequence_planner.immutable import Immutable
 
 Value = bool | int | str
 
 
-@dataclass(frozen=True)
-class BooleanType:
+class BooleanType(Immutable):
     """`false` and `true`."""
 
     @property
@@ -20,8 +19,7 @@ class BooleanType:
         return "bool"
 
 
-@dataclass(frozen=True)
-class EnumerationType:
+class EnumerationType(Immutable):
     """Named values. Two enumerations are comparable when they share a name: values are their names."""
 
     values: tuple[str, ...]
@@ -35,8 +33,7 @@ class EnumerationType:
         return "{" + ", ".join(self.values) + "}"
 
 
-@dataclass(frozen=True)
-class IntegerRange:
+class IntegerRange(Immutable):
     """The integers from `minimum` to `maximum`, both included."""
 
     minimum: int

@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import logging
 import time
 from collections.abc import Callable
-from dataclasses import replace
 from math import inf
 
+from sequence_planner.immutable import replace
+from sequence_planner.planning import troubles
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import Report
 from sequence_planner.planning.plan import Contract, Plan, Proof
-
-LOG = logging.getLogger(__name__)
 
 # For a shorter plan a fast one waits this share of the time it took, in seconds at least and at most.
 _SHARE, _LEAST_GRACE, _MOST_GRACE = 0.2, 0.002, 0.1
@@ -80,7 +78,7 @@ class Attempt:
         if report.trouble:
             self.troubles.append(f"{report.engine}: {report.trouble}")
         elif finding.plan is not None and not self._accepts(finding.plan):
-            LOG.error("the plan %s by %s for %s does not replay", finding.plan, report.engine, self.task)
+            troubles.log("the plan %s by %s for %s does not replay", finding.plan, report.engine, self.task)
             self.troubles.append(f"{report.engine}: its plan does not replay on the reference tick")
         elif finding.plan is not None:
             self.heard = True
@@ -95,7 +93,7 @@ class Attempt:
 
     def _take_plan(self, engine: str, plan: Plan) -> None:
         if self.proof is not None:
-            LOG.error("%s has a plan for %s, which %s has proven to have none", engine, self.task, self.engine)
+            troubles.log("%s has a plan for %s, which %s has proven to have none", engine, self.task, self.engine)
             self.proof = None
         if self._plan is None or _rank(plan) < _rank(self._plan):
             self._plan, self.engine = plan, engine

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 from sequence_planner.automaton.structure import State
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import ORDINARY, Circumstances, Contract, Plan, Proof
 
 
-@dataclass(frozen=True)
-class Task:
+class Task(Immutable):
     """Reach all of `goals`, none of which holds in `state`, in at most `longest` ticks."""
 
     state: State
@@ -22,8 +21,7 @@ class Task:
     longest: int = 60
 
 
-@dataclass(frozen=True)
-class Finding:
+class Finding(Immutable):
     """A plan, or a proof that there is none, or neither.
 
     No plan has at most `searched` ticks, or, when there is a plan, none has fewer than `searched`.

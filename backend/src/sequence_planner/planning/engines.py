@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import logging
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from importlib import import_module
 from math import inf
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.immutable import Immutable
+from sequence_planner.planning import troubles
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Engine, Finding, Task
 from sequence_planner.planning.plan import Contract
-
-LOG = logging.getLogger(__name__)
 
 # Seconds; each further turn is twice as long, so that no engine costs another much more than its own time.
 FIRST_TURN = 0.1
@@ -23,8 +21,7 @@ LONG_FIRST_TURNS = {"partial sight": 2.0, "projection": 2.0, "search": 0.5, "bmc
 Factory = Callable[[Automaton, Supervisor], Engine]
 
 
-@dataclass(frozen=True)
-class Report:
+class Report(Immutable):
     """What an engine has found in one turn; with `trouble` it failed at that, and found nothing."""
 
     engine: str
@@ -32,8 +29,7 @@ class Report:
     trouble: str = ""
 
 
-@dataclass(frozen=True)
-class Lane:
+class Lane(Immutable):
     """Engines that share a process, in the order of their turns, for each contract."""
 
     name: str
@@ -46,8 +42,7 @@ class Lane:
         return tuple(dict.fromkeys(name for names in self.engines.values() for name in names))
 
 
-@dataclass(frozen=True)
-class Maker:
+class Maker(Immutable):
     """Makes engines of a class that is imported only when one is made: a command needs few of them."""
 
     module: str
@@ -69,7 +64,7 @@ FACTORIES: Mapping[str, Factory] = {
     "breadth-first": Maker("heuristic.breadth_first", "ShortestSearch"),
     "relaxation": Maker("relaxed.relaxing", "Relaxing"),
     "pdr": Maker("pdr.engine", "Reachability"),
-    "first sight": Maker("pdr.engine", "FirstSight"),
+    "first sight": Maker("pdr.first_sight", "FirstSight"),
 }
 
 # Racing, in processes of their own.
@@ -106,7 +101,7 @@ class Engines:
             try:
                 self._engine(name)
             except Exception:
-                LOG.exception("the engine %s cannot be made", name)
+                troubles.log("the engine %s cannot be made", name, trace=True)
 
     def work(self, task: Task, budget: Budget, patience: Callable[[], float] = lambda: inf) -> Iterator[Report]:
         """What they find, turn by turn, until each has given up or the budget is spent.
@@ -133,7 +128,7 @@ class Engines:
         try:
             return Report(name, self._engine(name).solve(task, budget))
         except Exception as error:
-            LOG.exception("the engine %s failed", name)
+            troubles.log("the engine %s failed", name, trace=True)
             self._made.pop(name, None)
             return Report(name, Finding(), f"{type(error).__name__}: {error}")
 

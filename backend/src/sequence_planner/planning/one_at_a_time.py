@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Goal

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 from sequence_planner.automaton.plain.meaning import event_of
 from sequence_planner.automaton.plain.steps import plain_transitions, step
@@ -17,6 +16,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, Flag, State
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.syntax import FALSE, TRUE
+from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.heuristic.best_first import HeuristicSearch
@@ -32,8 +32,7 @@ _LONGEST = 1000  # transitions, unless it is said otherwise
 _SECONDS = 5.0
 
 
-@dataclass(frozen=True)
-class PlainAnswer:
+class PlainAnswer(Immutable):
     """Whether there is a plan, and its transitions by name; `minimal` says that it is proven that none has fewer.
 
     No plan has up to `searched` transitions, or, when there is a plan, none has fewer than `searched`. `engine` gave
@@ -115,8 +114,7 @@ def plan_transitions(
     return PlainAnswer(verdict, (), False, max(found.least - 1, 0), seconds, found.engine, found.proof)
 
 
-@dataclass(frozen=True)
-class _Found:
+class _Found(Immutable):
     """What is known: some order, that none has fewer than `least` transitions, or that there is none at all."""
 
     order: tuple[str, ...] | None = None
@@ -126,8 +124,7 @@ class _Found:
     proof: Proof | None = None
 
 
-@dataclass(frozen=True)
-class _Question:
+class _Question(Immutable):
     """What `as_station` makes of a question from `start`, asked of all engines one after the other."""
 
     derived: Automaton

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from enum import StrEnum
 
 from sequence_planner.automaton.structure import Automaton, Operation
 from sequence_planner.expressions.syntax import TRUE, Expression
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
 
 
 class Contract(StrEnum):
@@ -18,8 +18,7 @@ class Contract(StrEnum):
     FAST = "fast"  # soon, nearly as short, and without needless starts
 
 
-@dataclass(frozen=True)
-class Goal:
+class Goal(Immutable):
     """A predicate that shall hold after step 3 of some tick, and what a run must keep to until then.
 
     `local` is a formula of LTL over finite traces. Its positions are the states after step 3 and after each start, up
@@ -35,8 +34,7 @@ class Goal:
     priority: int = 0
 
 
-@dataclass(frozen=True)
-class Circumstances:
+class Circumstances(Immutable):
     """What a plan must cope with besides the state.
 
     Abilities of `offline` resources do not start and their effects do not happen. With `restart`, restart abilities may
@@ -52,16 +50,14 @@ class Circumstances:
 ORDINARY = Circumstances()
 
 
-@dataclass(frozen=True)
-class PlanTick:
+class PlanTick(Immutable):
     """One tick of a plan: the effects that are expected in its sense, then the starts, in order."""
 
     effects: tuple[str, ...]
     starts: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Plan:
+class Plan(Immutable):
     """A way to the goals. The goals hold after step 3 of the last tick at the latest, so it has no starts."""
 
     ticks: tuple[PlanTick, ...]
@@ -74,8 +70,7 @@ class Plan:
         return starts_of(self.ticks)
 
 
-@dataclass(frozen=True)
-class PlanRequest:
+class PlanRequest(Immutable):
     """A state to plan from and the goals that shall be reached, until `deadline` seconds have passed."""
 
     state: Mapping[str, Value | None]
@@ -95,8 +90,7 @@ class Verdict(StrEnum):
     LATE = "deadline"  # neither a plan nor a proof in time
 
 
-@dataclass(frozen=True)
-class Literal:
+class Literal(Immutable):
     """A variable or flag has the value, or with `equal` false it has not: it has another one, or none."""
 
     name: str
@@ -107,8 +101,7 @@ class Literal:
 Clause = tuple[Literal, ...]
 
 
-@dataclass(frozen=True)
-class Proof:
+class Proof(Immutable):
     """Why there is no plan at all: an inductive invariant of the state to plan from, in which no goal is reached.
 
     Every tick leads from states that satisfy all `invariant` clauses into such states, and the goals that are reached
@@ -122,8 +115,7 @@ class Proof:
     invariant: tuple[Clause, ...]
 
 
-@dataclass(frozen=True)
-class PlanAnswer:
+class PlanAnswer(Immutable):
     """An answer. `left_out` are goals that could not be planned together with the others, lowest priority first.
 
     `searched` is the number of ticks up to which it is proven that there is no shorter plan; `engine` gave the answer,
@@ -140,8 +132,7 @@ class PlanAnswer:
     proof: Proof | None = None
 
 
-@dataclass(frozen=True)
-class WayBackRequest:
+class WayBackRequest(Immutable):
     """A state outside the safe set, from which a way back is wanted until `deadline` seconds have passed."""
 
     state: Mapping[str, Value | None]
@@ -149,8 +140,7 @@ class WayBackRequest:
     longest: int = 40
 
 
-@dataclass(frozen=True)
-class WayBack:
+class WayBack(Immutable):
     """A way into the safe set, with the fewest ticks and then the fewest starts.
 
     `end` is the first safe state on it, one after step 3 or after the last of its starts. `breaks` are the
@@ -168,8 +158,7 @@ class WayBack:
         return starts_of(self.ticks)
 
 
-@dataclass(frozen=True)
-class WayBackAnswer:
+class WayBackAnswer(Immutable):
     """An answer. Without a way, there is none of up to `searched` ticks.
 
     `threatened` are specifications that are not violated yet and that what happens without starts, faults included, can

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
-from functools import cached_property, partial
-from typing import TYPE_CHECKING, Protocol
+from functools import partial
+from typing import Protocol
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.attempt import Attempt
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
@@ -16,11 +16,11 @@ from sequence_planner.planning.engines import ALONE, Engines, Report
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Contract, Plan, PlanAnswer, PlanRequest, Proof, Verdict
 from sequence_planner.planning.recollection import NAME, Recollection
-from sequence_planner.planning.replaying.acceptance import Acceptance
+from sequence_planner.planning.repair import NAME as REPAIR
+from sequence_planner.planning.repair import Repair
+from sequence_planner.planning.replaying.acceptance import Acceptance, Course
 from sequence_planner.planning.replaying.replay import missing
-
-if TYPE_CHECKING:
-    from sequence_planner.planning.replaying.tightening import Tightening
+from sequence_planner.planning.replaying.tightening import tightened
 
 _NOTHING_TO_DO = Finding(Plan((), minimal_ticks=True, minimal_starts=True))
 
@@ -51,8 +51,7 @@ class InTurn:
                 return
 
 
-@dataclass(frozen=True)
-class _Outcome:
+class _Outcome(Immutable):
     """The last `attempt`, the goals still to be planned, and of these and those left out the `possible` ones.
 
     `proof` says why a goal that is not among them is none of them.
@@ -92,6 +91,7 @@ class Planner:
         self._supervisor = supervisor
         self._acceptance = Acceptance(automaton, supervisor)
         self._recollection = Recollection(automaton)
+        self._repair = Repair(automaton, self._acceptance, self._recollection)
         self._solvers = solvers or InTurn(Engines(automaton, supervisor, ALONE))
 
     def answer(self, request: PlanRequest, budget: Budget | None = None) -> PlanAnswer:
@@ -171,6 +171,8 @@ class Planner:
                 attempt.take(Report("", _NOTHING_TO_DO))
             elif (known := self._recollection.finding(task)) is not None:
                 attempt.take(Report(NAME, known))
+            elif (repaired := self._repaired(task)) is not None:
+                attempt.take(Report(REPAIR, repaired))
             if not attempt.answered:
                 self._solvers.solve(attempt, budget)
             if attempt.proof is not None:
@@ -184,25 +186,32 @@ class Planner:
     def _tightened(self, outcome: _Outcome, budget: Budget) -> Plan | None:
         """The plan; a minimal one, for which somebody waits anyhow, with its starts as early as there is time for."""
         plan, task = outcome.plan, outcome.attempt.task
-        recalled = outcome.attempt.engine == NAME
+        recalled = outcome.attempt.engine in (NAME, REPAIR)
         if plan is None or not plan.starts or task.contract is Contract.FAST or recalled:
             return plan
-        early = self._tightening.tightened(task, plan, budget.part(0.5))
-        return early if self._accepts(task, early) else plan
+        early = tightened(self._acceptance, task, plan, budget.part(0.5))
+        if early is None:
+            return plan
+        self._keep(task, early)
+        return early.plan
 
     def _accepts(self, task: Task, plan: Plan) -> bool:
         """Whether it replays; one that is known has been replayed, and one that does is known from now on."""
         if self._recollection.plan(task) == plan:
             return True
-        ends = self._acceptance.ends(task, plan)
-        if ends is None:
+        course = self._acceptance.course(task, plan)
+        if course is None:
             return False
-        self._recollection.keep_plan(task, plan, ends)
+        self._keep(task, course)
         return True
 
-    @cached_property
-    def _tightening(self) -> Tightening:
-        # Not before there is a plan to be tightened: importing it takes a third of the time that importing this takes.
-        from sequence_planner.planning.replaying.tightening import Tightening  # noqa: PLC0415
+    def _keep(self, task: Task, course: Course) -> None:
+        self._recollection.keep_plan(task, course.plan, course.ends)
+        self._repair.keep(task, course)
 
-        return Tightening(self._automaton, self._supervisor)
+    def _repaired(self, task: Task) -> Finding | None:
+        """A repaired plan, which is known from now on: it has been replayed as it was made."""
+        finding = self._repair.finding(task)
+        if finding is not None and finding.plan is not None:
+            self._recollection.keep_plan(task, finding.plan, ())
+        return finding

@@ -9,11 +9,11 @@ from __future__ import annotations
 
 from collections import OrderedDict, deque
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
 
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.pdr.invariants import asserted, satisfies
@@ -28,8 +28,7 @@ _MOST_PROOFS = 10
 _Key = tuple[tuple[Value | None, ...], Goals, Circumstances]
 
 
-@dataclass(frozen=True)
-class _Proven:
+class _Proven(Immutable):
     """A proof, and of whom it holds: `goals` whatever the states of their formulas' automata."""
 
     goals: Goals
@@ -96,7 +95,7 @@ class Recollection:
         return None
 
     def _key(self, state: State, goals: Goals, circumstances: Circumstances) -> _Key:
-        return tuple([state[name] for name in self._names]), goals, circumstances
+        return tuple(map(state.__getitem__, self._names)), goals, circumstances
 
     def _synchronised(self, state: State) -> bool:
         return synchronise(self._automaton, state) == dict(state)

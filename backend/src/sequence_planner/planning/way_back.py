@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
 from functools import cached_property
 
 from sequence_planner.automaton.cone import cone_of_influence, read_variables
@@ -17,6 +16,7 @@ from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import apply_effects, finish, supervised_start, synchronise
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import Or, Variable
+from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Circumstances, Goal, Plan, PlanTick, WayBack, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.planner import PlannerError

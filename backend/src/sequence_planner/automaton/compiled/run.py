@@ -9,17 +9,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
 from copy import copy
-from dataclasses import dataclass
 from heapq import heappop, heappush
 
 from sequence_planner.automaton.compiled.tables import CompiledTick
 from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import Conflicts, Writes, conflicts_of
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
 
 
-@dataclass(frozen=True)
-class Finished:
+class Finished(Immutable):
     """The outcome of step 2: who finished, and which abilities would have written different values to one variable."""
 
     finished: tuple[str, ...] = ()

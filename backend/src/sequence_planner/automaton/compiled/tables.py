@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple, TypeVar
 
 from sequence_planner.automaton.compiled.closures import Closures
@@ -21,6 +20,7 @@ from sequence_planner.expressions.syntax import (
     variables,
 )
 from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.immutable import Immutable
 
 F = TypeVar("F")
 
@@ -38,8 +38,7 @@ class Dependants(NamedTuple):
     effects: tuple[str, ...]
 
 
-@dataclass(frozen=True)
-class Actions:
+class Actions(Immutable):
     """Actions taken at once: what they always write, or else the target, condition and value of each."""
 
     always: Writes | None

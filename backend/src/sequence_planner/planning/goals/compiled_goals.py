@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 from sequence_planner.automaton.compiled.functions import Compiler, Predicate, Truth
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.syntax import TRUE, Expression
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.goals.monitor import Choice, Decision, monitor_of
 from sequence_planner.planning.plan import Goal
 
@@ -17,8 +17,7 @@ Progress = tuple[tuple[int, int], ...]
 _Branch = int | tuple[Truth, "_Branch", "_Branch", "_Branch"]  # where a position leads: when true, false, unknown
 
 
-@dataclass(frozen=True)
-class _Formula:
+class _Formula(Immutable):
     """A monitor of which every predicate is a function."""
 
     steps: tuple[_Branch, ...]
@@ -26,8 +25,7 @@ class _Formula:
     hopeless: frozenset[int]
 
 
-@dataclass(frozen=True)
-class _CompiledGoal:
+class _CompiledGoal(Immutable):
     goal: Goal
     holds: Predicate
     formula: _Formula | None

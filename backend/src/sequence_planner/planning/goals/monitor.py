@@ -9,7 +9,6 @@ satisfaction, as in `expressions.progression.progress` without doubt.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from itertools import product
 
@@ -26,6 +25,7 @@ from sequence_planner.expressions.syntax import (
     UnaryTemporal,
     first_temporal,
 )
+from sequence_planner.immutable import Immutable
 
 MOST_STATES = 256  # of one automaton; nobody has written a formula that needs more
 
@@ -34,8 +34,7 @@ class TooManyStatesError(Exception):
     """The automaton of a formula would be too large to plan with."""
 
 
-@dataclass(frozen=True)
-class Choice:
+class Choice(Immutable):
     """Where a step goes depends on a predicate: on whether it is certainly true, certainly false, or unknown."""
 
     predicate: Expression
@@ -47,8 +46,7 @@ class Choice:
 Decision = int | Choice
 
 
-@dataclass(frozen=True)
-class Monitor:
+class Monitor(Immutable):
     """A complete deterministic automaton over the positions of a run; state 0 is the first.
 
     `steps` has for each state where a position leads that is not the last; `ends` whether a last position satisfies
@@ -120,8 +118,7 @@ _NEVER: _Remains = ()
 _DONE: _Remains = ((),)
 
 
-@dataclass(frozen=True)
-class _Term:
+class _Term(Immutable):
     """One way to satisfy a formula: what must hold now, and what the rest of the run must satisfy."""
 
     now: tuple[Expression, ...]

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import TRUE
+from sequence_planner.immutable import replace
 from sequence_planner.planning.plan import Goal
 
 if TYPE_CHECKING:

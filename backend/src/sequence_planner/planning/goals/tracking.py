@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from sequence_planner.expressions.syntax import TRUE
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.goals.monitor import Choice, Decision, Monitor, leaves, monitor_of
 from sequence_planner.planning.plan import Goal
 from sequence_planner.planning.sat.circuit import Circuit
@@ -13,8 +13,7 @@ from sequence_planner.planning.sat.encoding import SymbolicTick
 from sequence_planner.planning.sat.symbolic import Reading, SymbolicState
 
 
-@dataclass(frozen=True)
-class Progress:
+class Progress(Immutable):
     """A literal that says the goal has been reached, and one for each state its formula's automaton may be in.
 
     None of these is true once the goal's predicate has held; a goal without a formula has none.

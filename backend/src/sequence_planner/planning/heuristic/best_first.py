@@ -7,13 +7,13 @@ Moves wait in two queues, those of relaxed plans in one of their own, and positi
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import count
 
 from sequence_planner.automaton.compiled import CompiledTick
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.heuristic.elimination import Elimination
@@ -31,8 +31,7 @@ _SHARE = 0.2  # of the time that is left, to make a plan short once there is one
 _BOOST = 1000  # turns that moves of relaxed plans get ahead of the others when there is progress
 
 
-@dataclass(frozen=True)
-class _Node:
+class _Node(Immutable):
     position: Position
     parent: _Node | None
     moves: tuple[Move, ...]  # from the parent

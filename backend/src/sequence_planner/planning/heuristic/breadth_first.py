@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 from sequence_planner.automaton.compiled import CompiledTick
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import Writes
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.heuristic.space import Position, Space
@@ -22,8 +22,7 @@ class TooManyError(Exception):
     """There are too many positions for this engine."""
 
 
-@dataclass(frozen=True)
-class _Node:
+class _Node(Immutable):
     """The end of a tick; `starts` are all so far, `tick` is the last one."""
 
     position: Position

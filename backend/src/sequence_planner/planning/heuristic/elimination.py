@@ -7,7 +7,6 @@ them was needed. Only what reads a variable that differs is looked at again, so 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from sequence_planner.automaton.compiled.closures import closure
 from sequence_planner.automaton.compiled.functions import Function
@@ -17,14 +16,14 @@ from sequence_planner.automaton.tick import writes
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import TRUE, Assignment, conjunction, variables
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 
 Values = dict[str, Value | None]
 
 
-@dataclass(frozen=True)
-class _Start:
+class _Start(Immutable):
     """What a start of a plan needs, reads and does; `written` is what it wrote in the plan."""
 
     name: str

@@ -7,10 +7,10 @@ Each fact's cost is the sum of those it takes (Bonet and Geffner 2001), and its 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.heuristic.graph import Graph, Operator
 
 _NEVER = 1 << 60
@@ -18,8 +18,7 @@ _SHIFT = 24  # of a cost before its node in one number, so that a queue of numbe
 _NODE = (1 << _SHIFT) - 1
 
 
-@dataclass(frozen=True)
-class Step:
+class Step(Immutable):
     """An operator of a relaxed plan, with the facts it needs and those it is taken for and others it brings."""
 
     operator: Operator
@@ -27,8 +26,7 @@ class Step:
     brings: tuple[tuple[str, Value | None], ...]
 
 
-@dataclass(frozen=True)
-class Estimate:
+class Estimate(Immutable):
     """A relaxed plan, cheaper steps first, and every operator that could be taken at once."""
 
     steps: tuple[Step, ...]

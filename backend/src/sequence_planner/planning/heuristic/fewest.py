@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from heapq import heappop, heappush
 from itertools import count
 
 from sequence_planner.automaton.compiled import CompiledTick
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.heuristic.estimate import Estimator
@@ -19,8 +19,7 @@ from sequence_planner.planning.heuristic.space import Position, Space
 _MOST_VALUES = 2_000_000  # kept in memory, over all positions: beyond, the search gives up
 
 
-@dataclass(frozen=True)
-class Fewest:
+class Fewest(Immutable):
     """A shortest order of starts, if one was found; no plan has fewer than `least`. With `exhausted` there is none."""
 
     order: tuple[str, ...] | None
@@ -28,8 +27,7 @@ class Fewest:
     exhausted: bool = False
 
 
-@dataclass(frozen=True)
-class _Node:
+class _Node(Immutable):
     position: Position
     parent: _Node | None
     start: str

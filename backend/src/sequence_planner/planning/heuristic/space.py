@@ -6,7 +6,6 @@ Steps are those of `automaton.tick`, taken on compiled runs, with goals and circ
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
@@ -16,6 +15,7 @@ from sequence_planner.automaton.tick import Writes
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.goals.pursuit import Goals, moved, settled
 from sequence_planner.planning.plan import PlanTick
@@ -24,8 +24,7 @@ from sequence_planner.planning.plan import PlanTick
 Move = tuple[str, ...] | str
 
 
-@dataclass(frozen=True)
-class Position:
+class Position(Immutable):
     """A moment after step 3 or a start, or, with nothing `begun`, before the first tick.
 
     `published` has the outputs as last published, `started` the abilities that have started in this tick, and `goals`

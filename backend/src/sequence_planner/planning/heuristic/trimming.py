@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.heuristic.elimination import Elimination
 from sequence_planner.planning.heuristic.interference import Interference
@@ -16,8 +16,7 @@ Ticks = tuple[PlanTick, ...]
 _MOST_LOST = 12  # starts that become impossible in a trial: with more it is likely to fail, late
 
 
-@dataclass(frozen=True)
-class _Moment:
+class _Moment(Immutable):
     """The position before a tick, and what happened in it."""
 
     before: Position

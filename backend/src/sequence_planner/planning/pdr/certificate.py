@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
@@ -11,6 +10,7 @@ from sequence_planner.automaton.structure import Ability, Automaton
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.syntax import TRUE, Variable
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.goals.monitor import monitor_of

@@ -7,8 +7,6 @@ variables is one for the whole automaton. Invariants of pairs come first, as the
 
 from __future__ import annotations
 
-from contextlib import suppress
-
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import synchronise
@@ -95,34 +93,3 @@ class Reachability:
         unknown = frozenset(name for name, value in task.state.items() if value is None)
         followed = synchronise(self._automaton, task.state) == dict(task.state)
         return task.goals, task.circumstances, unknown, followed
-
-
-# Variables beyond which something else is tried first, and seconds for a look.
-_FEW = 100
-_GLANCE = 0.1
-
-
-class FirstSight:
-    """Looks whether pairs of the variables that are seen first exclude the goals, and takes little time for it."""
-
-    name = "first sight"
-
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
-        self._few = len(automaton.variables) <= _FEW
-        self._reachability = Reachability(automaton, supervisor)
-        self._in_vain: set[tuple[Goals, Circumstances]] = set()
-
-    def solve(self, task: Task, budget: Budget) -> Finding:
-        """A proof, which has been checked, or nothing; where there was none before, it does not look again."""
-        asked = task.goals, task.circumstances
-        if not self._few or asked in self._in_vain or budget.spent:
-            return Finding()
-        glance = budget.part(_GLANCE / max(budget.remaining, _GLANCE))
-        with suppress(SpentError):
-            finding = self._reachability.at_first_sight(task, glance)
-            if finding.decided:
-                return finding
-        if len(self._in_vain) == _MOST_KEPT:
-            self._in_vain.clear()
-        self._in_vain.add(asked)
-        return Finding()

@@ -7,7 +7,6 @@ variable for each place where it is read. So goals that cannot be reached in wha
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
 from itertools import combinations
 
 from sequence_planner.automaton.cone import read_variables
@@ -37,13 +36,14 @@ from sequence_planner.expressions.syntax import (
     variables,
 )
 from sequence_planner.expressions.types import BOOLEAN, Type
+from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.goals.pursuit import Goals
+from sequence_planner.planning.sat.following import Following
 
 _ALL = StateSet((), ())
 
 
-@dataclass(frozen=True)
-class Localised:
+class Localised(Immutable):
     """What is seen, and for each oracle the variables it speaks for. States outside the safe set are not told apart."""
 
     automaton: Automaton
@@ -79,9 +79,8 @@ class _Localiser:
         self._automaton = automaton
         self._supervisor = supervisor
         self._kept = kept
-        self._flags = frozenset(
-            flag.name for flag in automaton.flags if read_variables(automaton, (flag.predicate,)) <= kept
-        )
+        hidden = {flag.name for flag in Following(automaton).flags(automaton.variables.keys() - kept)}
+        self._flags = frozenset(flag.name for flag in automaton.flags if flag.name not in hidden)
         self._seen = kept | self._flags
         self._declared: dict[str, VariableDeclaration] = {}
         self._oracles: dict[str, frozenset[str]] = {}

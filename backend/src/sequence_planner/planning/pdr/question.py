@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import inf
 
 from sequence_planner.automaton.cone import read_variables
@@ -10,6 +9,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.syntax import Expression
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.frames import DepthError, Frames
@@ -32,8 +32,7 @@ DEEP = 10
 _MOST_ROUNDS = 40
 
 
-@dataclass(frozen=True)
-class Decision:
+class Decision(Immutable):
     """A plan from `state`, or a proof that there is none from any of the states in question.
 
     Where values are unknown and others free, a plan that begins with flags as they never are is not `certain`.
@@ -45,8 +44,7 @@ class Decision:
     certain: bool = True
 
 
-@dataclass(frozen=True)
-class Question:
+class Question(Immutable):
     """Whether the goals of `task` can be reached from `state`, or one like it with any values of `free`."""
 
     automaton: Automaton

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
@@ -11,6 +10,7 @@ from sequence_planner.automaton.structure import Ability, Automaton, State, targ
 from sequence_planner.automaton.tick import apply_effects, effect_writes, finish, supervised_start, synchronise
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.syntax import Expression, conjunction, conjuncts
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.goals.pursuit import settled
 from sequence_planner.planning.pdr.relation import Relation
@@ -28,8 +28,7 @@ class _Failed(Exception):
         self.names = frozenset(names)
 
 
-@dataclass(frozen=True)
-class Rehearsal:
+class Rehearsal(Immutable):
     """Tries what is planned for `task` with sight of the variables `kept` alone; `oracles` spoke for the others."""
 
     automaton: Automaton

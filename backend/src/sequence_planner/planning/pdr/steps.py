@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.pdr.relation import Cube
 
 
-@dataclass(frozen=True)
-class Step:
+class Step(Immutable):
     """From each state of `cube` a tick with these choices leads into the cube that follows, or reaches the goals.
 
     `oracles` are the inputs that it takes.

@@ -14,11 +14,11 @@ import signal
 import threading
 import traceback
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from typing import Any, Generic, TypeVar
 
+from sequence_planner.immutable import Immutable
 from sequence_planner.lifeline import end_without_parent
 from sequence_planner.planning.budget import Budget
 
@@ -27,8 +27,7 @@ Content = TypeVar("Content")
 Answer = TypeVar("Answer")
 
 
-@dataclass(frozen=True)
-class Question(Generic[Content]):
+class Question(Immutable, Generic[Content]):
     """Something to be worked on for at most so many seconds. Later questions have higher numbers."""
 
     number: int
@@ -36,36 +35,31 @@ class Question(Generic[Content]):
     content: Content
 
 
-@dataclass(frozen=True)
-class CallOff:
+class CallOff(Immutable):
     """Nobody waits any more for an answer to the question of this number, nor to earlier ones."""
 
     number: int
 
 
-@dataclass(frozen=True)
-class Ready:
+class Ready(Immutable):
     """From now on the process answers."""
 
 
-@dataclass(frozen=True)
-class Answered(Generic[Answer]):
+class Answered(Immutable, Generic[Answer]):
     """An answer to the question of this number; there can be several."""
 
     number: int
     content: Answer
 
 
-@dataclass(frozen=True)
-class Finished:
+class Finished(Immutable):
     """Work on the question of this number has ended; `trouble` says what it failed at, and the process ends then."""
 
     number: int
     trouble: str = ""
 
 
-@dataclass(frozen=True)
-class Ended:
+class Ended(Immutable):
     """The process has ended, or what came from it was no word; it is of no more use."""
 
 

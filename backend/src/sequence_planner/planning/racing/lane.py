@@ -6,19 +6,18 @@ import contextlib
 import os
 import resource
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from multiprocessing.connection import Connection
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import Engines, Factory, Lane, Report
 from sequence_planner.planning.racing.companion import stand_by
 
 
-@dataclass(frozen=True)
-class LaneModel:
+class LaneModel(Immutable):
     """What the process of a lane works with: `memory` is the most it may use for data, in bytes."""
 
     automaton: Automaton

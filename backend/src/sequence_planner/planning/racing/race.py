@@ -11,12 +11,12 @@ import contextlib
 import logging
 import threading
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from queue import Empty, SimpleQueue
 from types import TracebackType
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.attempt import Attempt
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
@@ -33,8 +33,7 @@ LONGEST_PAUSE = 30.0  # seconds before a lane that has ended again and again is 
 MEMORY = 2 * 2**30  # bytes of data a lane may have
 
 
-@dataclass(frozen=True)
-class _Heard:
+class _Heard(Immutable):
     """A report on the task of this number from a lane, or, without one, that nothing more comes from it."""
 
     lane: str

@@ -3,34 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
 from itertools import combinations, product
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.pdr.invariants import asserted, satisfies
 from sequence_planner.planning.plan import Contract, Plan, Proof
-from sequence_planner.planning.replaying.replay import Replay, missing
+from sequence_planner.planning.replaying.acceptance import Acceptance
+from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.replaying.tightening import tightened
 
 MOST_CHANGES = 2
 MOST_FOUND = 5
 
 
-@dataclass(frozen=True)
-class Change:
+class Change(Immutable):
     """An estimated variable has another `value`; or, with None, an offline resource is back online."""
 
     name: str
     value: Value | None
 
 
-@dataclass(frozen=True)
-class Correction:
+class Correction(Immutable):
     """With these changes there is a plan from a safe state, such as `plan`, which need not be the shortest.
 
     It has no ticks where the changes alone are what the goals ask for.
@@ -66,6 +66,7 @@ class _Corrections:
         self._budget = budget
         self._most_changes = most_changes
         self._engine = Reachability(automaton, supervisor)
+        self._acceptance = Acceptance(automaton, supervisor)
         self._refuted: list[tuple[Task, Proof]] = []
 
     def found(self, most: int) -> Iterator[Correction]:
@@ -129,8 +130,8 @@ class _Corrections:
                 raise SpentError
             self._refuted.append((task, finding.proof))
             return None
-        replay = Replay(self._automaton, self._supervisor, task.circumstances)
-        return replay.tightened(task.state, task.goals, finding.plan)
+        early = tightened(self._acceptance, task, finding.plan, self._budget)
+        return finding.plan if early is None else early.plan
 
     def _changed(self, changes: tuple[Change, ...]) -> Task:
         values = {change.name: change.value for change in changes if change.value is not None}

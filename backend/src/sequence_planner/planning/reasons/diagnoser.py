@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from multiprocessing.connection import Connection
 from queue import Empty, SimpleQueue
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.racing.companion import Answered, Companion, Ended, Finished, Question, Word, stand_by
@@ -19,8 +19,7 @@ from sequence_planner.planning.reasons.why import SupervisorFor
 _SHARE = 0.9  # of the time, for the process: it says what it has found before nobody listens any more
 
 
-@dataclass(frozen=True)
-class Model:
+class Model(Immutable):
     """What is planned for; `supervisor_for` is asked which specifications matter."""
 
     automaton: Automaton

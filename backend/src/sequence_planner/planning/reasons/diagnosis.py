@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.printing import print_value
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.goals.pursuit import Goals
@@ -18,8 +17,7 @@ from sequence_planner.planning.replaying.replay import missing
 _SHARE = 0.6  # of the time, for the reason; corrections have the rest
 
 
-@dataclass(frozen=True)
-class DiagnosisRequest:
+class DiagnosisRequest(Immutable):
     """A question why no run reaches all of `goals` from `state`, until `deadline` seconds have passed."""
 
     state: State
@@ -33,8 +31,7 @@ class DiagnosisRequest:
         return Task(self.state, missing(self.goals, self.state), self.circumstances)
 
 
-@dataclass(frozen=True)
-class Diagnosis:
+class Diagnosis(Immutable):
     """A `reason`, if one was found in time, and corrections of the fewest changes."""
 
     reason: Reason | None

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from dataclasses import dataclass, replace
 from enum import StrEnum
 
 from sequence_planner.automaton.cone import read_variables
@@ -19,6 +18,7 @@ from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.engine import Reachability
@@ -40,8 +40,7 @@ class Part(StrEnum):
     GOAL = "goal"
 
 
-@dataclass(frozen=True)
-class Member:
+class Member(Immutable):
     """One of the circumstances that exclude every plan together; a `value` of None is awaited."""
 
     part: Part
@@ -49,8 +48,7 @@ class Member:
     value: Value | None = None
 
 
-@dataclass(frozen=True)
-class Reason:
+class Reason(Immutable):
     """There is no plan as long as all `members` are as they are, whatever else is different: `proof` shows it.
 
     If it is `minimal`, there is a plan without any one of them: were the goal not asked for, its formula not demanded,
@@ -71,8 +69,7 @@ def explain(automaton: Automaton, supervisor_for: SupervisorFor, task: Task, bud
     return _Explanation(automaton, supervisor_for, budget).of(task)
 
 
-@dataclass(frozen=True)
-class _Situation:
+class _Situation(Immutable):
     """What is still as it was: a task, the specifications, and the variables with their values."""
 
     task: Task

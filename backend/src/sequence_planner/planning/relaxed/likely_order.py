@@ -7,22 +7,13 @@ are broken somewhere, at the price that some starts wait for the next tick.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from sequence_planner.automaton.structure import Ability, Automaton, target
 from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import (
-    Comparison,
-    Constant,
-    Expression,
-    Not,
-    Variable,
-    conjunction,
-    conjuncts,
-    variables,
-)
+from sequence_planner.expressions.syntax import Constant, Expression, conjunction, variables
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.relaxed.usefulness import Only
+from sequence_planner.planning.known import Known, equalities
 
 
 def likely_order(part: Automaton) -> tuple[Ability, ...]:
@@ -59,25 +50,11 @@ def _before(abilities: Mapping[str, Ability]) -> dict[str, dict[str, None]]:
                     continue
                 if isinstance(action.value, Constant) and _excludes(guards[reader], variable, action.value.value):
                     before[name][reader] = None
-                elif not any(
-                    n not in written and _excludes(guards[name], n, v) for n, v in _equalities(guards[reader])
-                ):
+                elif not any(n not in written and _excludes(guards[name], n, v) for n, v in equalities(guards[reader])):
                     before[reader][name] = None
     return before
 
 
 def _excludes(guard: Expression, variable: str, value: Value) -> bool:
     """Whether `guard` cannot hold while the variable has that value."""
-    return evaluate(guard, Only(variable, value)) is False
-
-
-def _equalities(guard: Expression) -> Iterator[tuple[str, Value]]:
-    """Values that variables have wherever `guard` holds."""
-    for part in conjuncts(guard):
-        match part:
-            case Comparison("==", Variable(name), Constant(value)):
-                yield name, value
-            case Variable(name):
-                yield name, True
-            case Not(Variable(name)):
-                yield name, False
+    return evaluate(guard, Known({variable: value})) is False

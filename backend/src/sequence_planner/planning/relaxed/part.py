@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Set
-from dataclasses import replace
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State, VariableDeclaration, reads, target
 from sequence_planner.automaton.transitions import Phase
 from sequence_planner.expressions.syntax import TRUE, Assignment, Constant, Expression, variables
 from sequence_planner.expressions.types import EnumerationType
+from sequence_planner.immutable import replace
 from sequence_planner.planning.relaxed.relevance import Relevance
 from sequence_planner.planning.relaxed.usefulness import useful, written_by
 

@@ -7,7 +7,6 @@ it does not, or there is none, more variables are let loose, and in the end othe
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence, Set
-from dataclasses import dataclass
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
@@ -32,14 +31,14 @@ _LONGER, _MORE = 2, 4
 _MOST, _FEW = 0.7, 50
 
 
-@dataclass
 class _Work:
     """What has been begun on a task: the parts of the automaton still to be tried, and the one that is being tried."""
 
-    task: Task
-    longest: int
-    parts: Iterator[Automaton]
-    shortest: Shortest | None = None
+    def __init__(self, task: Task, longest: int, parts: Iterator[Automaton]) -> None:
+        self.task = task
+        self.longest = longest
+        self.parts = parts
+        self.shortest: Shortest | None = None
 
 
 class Projection:

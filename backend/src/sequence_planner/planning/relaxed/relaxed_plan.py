@@ -127,32 +127,48 @@ class RelaxedPlan:
 
     def _support(self, predicate: Expression, truth: bool) -> _Support | None:
         """The cheapest values that give `predicate` the value `truth`; None when none of those gathered do."""
+        # What is most frequent comes first, and without patterns, as in `expressions.evaluation.evaluate`.
+        if isinstance(predicate, Comparison):
+            return self._compared(predicate, truth)
+        if isinstance(predicate, And):
+            return self._every(predicate.operands, True) if truth else self._cheapest(predicate.operands, False)
+        if isinstance(predicate, Or):
+            return self._cheapest(predicate.operands, True) if truth else self._every(predicate.operands, False)
+        if isinstance(predicate, Variable):
+            name = predicate.name
+            if name in self._automaton.flag_predicates:
+                return self._support(self._automaton.flag_predicates[name], truth)
+            cost = self._costs[name].get(truth)
+            return None if cost is None else (cost, ((name, truth),))
+        if isinstance(predicate, Not):
+            return self._support(predicate.operand, not truth)
         match predicate:
             case Constant(value):
                 return (0, ()) if value is truth else None
-            case Variable(name) if name in self._automaton.flag_predicates:
-                return self._support(self._automaton.flag_predicates[name], truth)
-            case Variable(name):
-                cost = self._costs[name].get(truth)
-                return None if cost is None else (cost, ((name, truth),))
-            case Not(operand):
-                return self._support(operand, not truth)
-            case And(operands):
-                return self._every(operands, True) if truth else self._cheapest(operands, False)
-            case Or(operands):
-                return self._cheapest(operands, True) if truth else self._every(operands, False)
             case Implies(left, right):
                 return self._support(Or((Not(left), right)), truth)
-            case Comparison("==" | "!=" as relation, Variable(name), Constant(value)) if name in self._costs:
-                equal = truth is (relation == "==")
-                costs = self._costs[name]
-                options = [(cost, ((name, v),)) for v, cost in costs.items() if (v == value) is equal]
-                return min(options, default=None, key=_cost)
-            case Comparison() | Membership():
-                values = self._values(predicate)
-                return min((support for value, support in values if value is truth), default=None, key=_cost)
+            case Membership():
+                return self._among(predicate, truth)
             case _:
                 return None
+
+    def _compared(self, predicate: Comparison, truth: bool) -> _Support | None:
+        left, right = predicate.left, predicate.right
+        if not (isinstance(left, Variable) and isinstance(right, Constant) and predicate.operator in ("==", "!=")):
+            return self._among(predicate, truth)
+        costs = self._costs.get(left.name)
+        if costs is None:
+            return self._among(predicate, truth)
+        equal = truth is (predicate.operator == "==")
+        if equal:
+            cost = costs.get(right.value)
+            return None if cost is None else (cost, ((left.name, right.value),))
+        options = [(cost, ((left.name, value),)) for value, cost in costs.items() if value != right.value]
+        return min(options, default=None, key=_cost)
+
+    def _among(self, predicate: Expression, truth: bool) -> _Support | None:
+        values = self._values(predicate)
+        return min((support for value, support in values if value is truth), default=None, key=_cost)
 
     def _every(self, parts: Iterable[Expression], truth: bool) -> _Support | None:
         cost, facts = 0, list[Fact]()

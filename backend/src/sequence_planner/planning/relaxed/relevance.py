@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections import defaultdict, deque
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Automaton, State, target
@@ -29,6 +28,7 @@ from sequence_planner.expressions.syntax import (
     variables,
 )
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import replace
 from sequence_planner.planning.plan import Circumstances
 
 Fact = tuple[str, Value | None]  # a value that a variable does not have; with None, whichever
@@ -40,22 +40,22 @@ class Relevance:
 
     def __init__(self, automaton: Automaton) -> None:
         self._automaton = automaton
-        self._transitions = transitions(automaton)
+        self.transitions = transitions(automaton)  # all of them
         self._resources = {effect.name: effect.resource for effect in automaton.effects}
-        self._numbers = {move.name: number for number, move in enumerate(self._transitions)}
+        self._numbers = {move.name: number for number, move in enumerate(self.transitions)}
         self._writes: dict[str, list[_Write]] = defaultdict(list)
-        for number, move in enumerate(self._transitions):
+        for number, move in enumerate(self.transitions):
             for action in move.actions:
                 self._writes[target(action)].append((number, action))
 
     def writing(self, names: Iterable[str]) -> list[Transition]:
         """All transitions that write one of these variables, in order."""
         numbers = {number for name in names for number, _ in self._writes[name]}
-        return [self._transitions[number] for number in sorted(numbers)]
+        return [self.transitions[number] for number in sorted(numbers)]
 
     def counted_on(self, state: State, circumstances: Circumstances) -> list[Transition]:
         """All that a plan from `state` may be made of, in order."""
-        moves = (self._counted_on(move, state, circumstances) for move in self._transitions)
+        moves = (self._counted_on(move, state, circumstances) for move in self.transitions)
         return [move for move in moves if move is not None]
 
     def towards(self, goals: Iterable[Expression], state: State, circumstances: Circumstances) -> list[Transition]:
@@ -71,7 +71,7 @@ class Relevance:
             seen.add(fact)
             for number, action in self._bringing(fact):
                 if number not in moves:
-                    moves[number] = self._counted_on(self._transitions[number], state, circumstances)
+                    moves[number] = self._counted_on(self.transitions[number], state, circumstances)
                 move = moves[number]
                 if move is None:
                     continue
@@ -79,8 +79,8 @@ class Relevance:
                 if move.phase is Phase.FINISH:
                     # It comes after its own start, and looks for nobody else to bring what that brings.
                     start = self._numbers[f"{move.name.rpartition('.')[0]}.start"]
-                    moves[start] = self._counted_on(self._transitions[start], state, circumstances)
-                    seen.update(_brought(self._transitions[start].actions))
+                    moves[start] = self._counted_on(self.transitions[start], state, circumstances)
+                    seen.update(_brought(self.transitions[start].actions))
         return [move for _, move in sorted(moves.items()) if move is not None]
 
     def _bringing(self, fact: Fact) -> Iterator[_Write]:

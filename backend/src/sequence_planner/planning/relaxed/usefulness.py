@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator
-from dataclasses import replace
 from itertools import chain
 
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, target
@@ -23,6 +22,8 @@ from sequence_planner.expressions.syntax import (
     Variable,
 )
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import replace
+from sequence_planner.planning.known import Known
 
 Fact = tuple[str, Value]
 
@@ -107,15 +108,5 @@ def _asked(automaton: Automaton, predicate: Expression, truth: bool) -> Iterator
                 yield name, value
         case Comparison(_, Variable(name) as variable, Constant()) | Membership(Variable(name) as variable, _):
             for value in variable.type.domain:
-                if evaluate(predicate, Only(name, value)) is truth:
+                if evaluate(predicate, Known({name: value})) is truth:
                     yield name, value
-
-
-class Only(dict[str, Value | None]):
-    """One variable has a value, and all others are unknown."""
-
-    def __init__(self, name: str, value: Value) -> None:
-        super().__init__({name: value})
-
-    def __missing__(self, name: str) -> None:
-        return None

@@ -1,38 +1,41 @@
 """Whether a plan is one: step by step on the reference tick, and by everything that a task demands.
 
-Whoever made the plan, nothing of it is taken on trust. The functions of the tick are given no more of the automaton
-than what a step can affect: flags and finishes whose variables have not changed stay what they are.
+Whoever made the plan, nothing of it is taken on trust.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Set
-from dataclasses import dataclass, replace
+from functools import cached_property
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State, target
-from sequence_planner.automaton.tick import apply_effects, finish, supervised_start, synchronise
-from sequence_planner.expressions.evaluation import evaluate
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.goals.pursuit import Goals, moved, settled
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Plan, PlanTick
-from sequence_planner.planning.sat.following import Following
-
-_KEPT = 1000  # parts of the automaton for steps that come again
+from sequence_planner.planning.replaying.reference_run import ReferenceRun, ReferenceTick
 
 
-@dataclass(frozen=True)
-class _Position:
-    """A state after step 3 or a start, and the goals that are missing there.
+class Waypoint(Immutable):
+    """Where a plan leads through: after step 3 of a tick, by its number, and so many of its starts."""
 
-    `sensed` is the state in which abilities last finished, and `finished` are those whose finish actions were due.
-    """
+    tick: int
+    starts: int
+    run: ReferenceRun  # as it is there; only forks of it go on
 
-    state: State
-    goals: Goals
-    sensed: State | None = None
-    finished: frozenset[str] = frozenset()
+
+class Course(Immutable):
+    """An accepted plan and all that it leads through, in order."""
+
+    plan: Plan
+    way: tuple[Waypoint, ...]
+
+    @cached_property
+    def ends(self) -> tuple[tuple[State, Goals], ...]:
+        """The states at the ends of the plan's ticks, each with the goals missing there."""
+        starts = [len(tick.starts) for tick in self.plan.ticks]
+        return tuple((point.run.values, point.run.goals) for point in self.way if point.starts == starts[point.tick])
 
 
 class Acceptance:
@@ -40,32 +43,41 @@ class Acceptance:
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self._automaton = automaton
-        self._supervisor = supervisor
-        self._effects = {effect.name: effect for effect in automaton.effects}
-        self._following = Following(automaton)
-        self._narrow: dict[frozenset[str], Automaton] = {}  # by the variables that have changed
+        self._tick = ReferenceTick(automaton, supervisor)
 
     def accepts(self, task: Task, plan: Plan) -> bool:
         """Whether the ticks of `plan`, exactly as they are written, are a run that the task asks for."""
-        return self.ends(task, plan) is not None
+        if not self._may_be(task, plan):
+            return False
+        run = self.begin(task)
+        return all(run.take(tick.effects, tick.starts) for tick in plan.ticks) and not run.goals
 
-    def ends(self, task: Task, plan: Plan) -> tuple[tuple[State, Goals], ...] | None:
-        """The states at the ends of the plan's ticks, each with the goals missing there; None if it is not accepted."""
-        if len(plan.ticks) > task.longest or not all(self._counted_on(task, tick) for tick in plan.ticks):
+    def course(self, task: Task, plan: Plan) -> Course | None:
+        """All that `plan` leads through; None if it is not accepted."""
+        if not self._may_be(task, plan):
             return None
-        position = _Position(task.state, task.goals)
-        ends: list[tuple[State, Goals]] = []
-        for tick in plan.ticks:
-            after = self._after(task, position, tick)
-            if after is None:
+        run = self.begin(task)
+        way: list[Waypoint] = []
+        for number, tick in enumerate(plan.ticks):
+            if not run.settle(tick.effects):
                 return None
-            position = after
-            ends.append((after.state, after.goals))
-        return None if position.goals else tuple(ends)
+            way.append(Waypoint(number, 0, run.fork()))
+            for starts, name in enumerate(tick.starts, start=1):
+                if not run.start(name):
+                    return None
+                way.append(Waypoint(number, starts, run.fork()))
+        return None if run.goals else Course(plan, tuple(way))
+
+    def begin(self, task: Task) -> ReferenceRun:
+        """A run from the state of the task, before its first tick."""
+        return ReferenceRun(self._tick, task)
+
+    def _may_be(self, task: Task, plan: Plan) -> bool:
+        return len(plan.ticks) <= task.longest and all(self._counted_on(task, tick) for tick in plan.ticks)
 
     def _counted_on(self, task: Task, tick: PlanTick) -> bool:
         """Whether the circumstances allow that this happens and that this starts, each of it once."""
-        effects = [self._effects.get(name) for name in tick.effects]
+        effects = [self._tick.effects.get(name) for name in tick.effects]
         abilities = [self._automaton.abilities.get(name) for name in tick.starts]
         offline, restart = task.circumstances.offline, task.circumstances.restart
         return (
@@ -73,53 +85,3 @@ class Acceptance:
             and all(a and a.resource not in offline and (restart or not a.restart) for a in abilities)
             and max(Counter((*tick.effects, *tick.starts)).values(), default=1) == 1
         )
-
-    def _after(self, task: Task, position: _Position, tick: PlanTick) -> _Position | None:
-        before = position.state
-        sensed = apply_effects(before, [self._effects[name] for name in tick.effects])
-        if sensed is None:
-            return None
-        finishing = finish(self._finishers(position, sensed), sensed)
-        due = frozenset(
-            (*finishing.finished, *(name for one, other, _ in finishing.conflicts for name in (one, other)))
-        )
-        begins = position.sensed is None  # the flags of the state to plan from may still be those of an earlier tick
-        changed = _changed(before, finishing.state)
-        state = synchronise(self._automaton if begins else self._affected(changed), finishing.state)
-        left = settled(position.goals, state)
-        for name in tick.starts:
-            ability = self._automaton.abilities[name]
-            affected = self._affected(frozenset(map(target, ability.start_actions)))
-            after = supervised_start(affected, self._supervisor, before, state, ability)
-            if after is None or left is None or self._to_avoid(task, state):
-                return None
-            state, left = after, moved(left, after)
-        if left is None or self._to_avoid(task, state):
-            return None
-        return _Position(state, left, sensed, due)
-
-    def _finishers(self, position: _Position, sensed: State) -> Automaton:
-        """The automaton with no other abilities than those that can finish now."""
-        if position.sensed is None:
-            return self._automaton
-        names = set(position.finished)
-        for name in _changed(position.sensed, sensed):
-            names.update(self._automaton.finish_readers.get(name, ()))
-        abilities = self._automaton.abilities
-        return replace(self._automaton, abilities={name: abilities[name] for name in abilities if name in names})
-
-    def _affected(self, changed: Iterable[str]) -> Automaton:
-        """The automaton with no other flags than those that can follow what has changed."""
-        key = frozenset(changed)
-        if key not in self._narrow:
-            if len(self._narrow) == _KEPT:
-                self._narrow.clear()
-            self._narrow[key] = replace(self._automaton, flags=tuple(self._following.flags(key)))
-        return self._narrow[key]
-
-    def _to_avoid(self, task: Task, state: State) -> bool:
-        return any(evaluate(condition, state) is not False for condition in task.circumstances.avoid)
-
-
-def _changed(before: State, after: State) -> Set[str]:
-    return {name for name, value in after.items() if value != before[name]}

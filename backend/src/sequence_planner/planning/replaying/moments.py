@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
 from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.compiled.functions import Compiler
@@ -11,14 +10,14 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import Writes
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.goals.compiled_goals import CompiledGoals, Progress
 from sequence_planner.planning.plan import Circumstances, Goal
 
 Values = tuple[Value | None, ...]
 
 
-@dataclass(frozen=True)
-class Moment:
+class Moment(Immutable):
     """A moment after step 3 or a start of its tick.
 
     `published` are the outputs as last published, `begun` the starts of the tick that are not to be taken again.

@@ -8,7 +8,6 @@ with devices that carry on without asking; a start that reaches its goals only i
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field, replace
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Effect, State
@@ -22,31 +21,30 @@ from sequence_planner.automaton.tick import (
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.goals.pursuit import Goals, moved, settled
-from sequence_planner.planning.plan import Circumstances, Goal, Plan, PlanTick
+from sequence_planner.planning.plan import ORDINARY, Circumstances, Goal, PlanTick
 
 # Nodes an eager search may visit: what is followed is looked at in every tick, and a tick must not be held up.
 LOOKAHEAD = 400
 
 
-@dataclass(frozen=True)
-class _Node:
-    """A moment after step 3 or a start. `ticks` is the schedule so far; starts go into its last one."""
+class _Node(Immutable):
+    """A moment after step 3 or a start, what is left of an order, and what has been started in this tick."""
 
     state: State
     published: State
     goals: Goals
     order: tuple[str, ...]
-    ticks: tuple[PlanTick, ...]
+    begun: frozenset[str]
 
 
-@dataclass(frozen=True)
-class Replay:
+class Replay(Immutable):
     """Replays plans of one automaton under one supervisor. `lookahead` does the same for what runs, and is fast."""
 
     automaton: Automaton
     supervisor: Supervisor
-    circumstances: Circumstances = field(default_factory=Circumstances)
+    circumstances: Circumstances = ORDINARY
 
     def exactly(
         self, state: State, published: State, goals: Iterable[Goal], now: Sequence[str], ticks: Sequence[PlanTick]
@@ -73,8 +71,7 @@ class Replay:
 
         `state` is one after step 3 or a start; `published` has the outputs as last published.
         """
-        root = _Node(state, published, missing(goals, state), tuple(order), (PlanTick((), ()),))
-        return self._search(root, in_order=True, longest=None) is not None
+        return self._reaches(_Node(state, published, missing(goals, state), tuple(order), frozenset()))
 
     def still_reaches(
         self, state: State, published: State, goals: Iterable[Goal], order: Sequence[str], ticks: Sequence[PlanTick]
@@ -104,58 +101,36 @@ class Replay:
             return True
         return not self._everything(before) and self.exactly(after, published, goals, starts_now(order, ticks), ticks)
 
-    def tightened(self, state: State, goals: Iterable[Goal], plan: Plan) -> Plan:
-        """`plan` with every start as early as it can be in an eager environment, or as it is if that takes longer."""
-        order = tuple(name for _, name in plan.starts)
-        root = _Node(state, state, missing(goals, state), order, ())
-        ticks = self._search(root, in_order=False, longest=len(plan.ticks))
-        return plan if ticks is None else replace(plan, ticks=ticks)
-
-    def _search(self, root: _Node, in_order: bool, longest: int | None) -> tuple[PlanTick, ...] | None:
-        """Depth-first over starting now, the earliest of the order first, or waiting a tick."""
-        reached: dict[object, int] = {}
+    def _reaches(self, root: _Node) -> bool:
+        """Depth-first over starting the first of the order now, or waiting a tick."""
+        reached: set[object] = set()
         pending = [root]
         outputs = sorted(self.automaton.outputs)
         for _ in range(LOOKAHEAD):
             if not pending:
-                return None
+                return False
             node = pending.pop()
-            if not node.goals and (in_order or not node.order):
-                return node.ticks  # in order, what is left of it has become needless
+            if not node.goals:
+                return True  # what is left of the order has become needless
             published = tuple(node.published[name] for name in outputs)
-            repeated = frozenset(node.order).intersection(node.ticks[-1].starts if node.ticks else ())
-            key = (bool(node.ticks), tuple(node.state.values()), published, node.order, node.goals, repeated)
-            if reached.get(key, len(node.ticks) + 1) <= len(node.ticks):
-                continue
-            reached[key] = len(node.ticks)
-            if longest is None or len(node.ticks) < longest:
-                later = self._waited(node)
-                if later is not None:
-                    pending.append(later)
-            if node.ticks:
-                pending.extend(reversed(self._starts(node, in_order)))
-        return None
+            repeated = node.begun.intersection(node.order)
+            key = (tuple(node.state.values()), published, node.order, node.goals, repeated)
+            if key not in reached:
+                reached.add(key)
+                pending += [each for each in (self._waited(node), self._after_start(node)) if each is not None]
+        return False
 
     def _waited(self, node: _Node) -> _Node | None:
-        effects = self._everything(node.state)
-        later = self._settled(apply_effects(node.state, effects) or node.state)
+        later = self._settled(apply_effects(node.state, self._everything(node.state)) or node.state)
         goals = settled(node.goals, later) if self._allowed(later) else None
-        tick = PlanTick(tuple(effect.name for effect in effects), ())
-        return None if goals is None else _Node(later, node.state, goals, node.order, (*node.ticks, tick))
+        return None if goals is None else _Node(later, node.state, goals, node.order, frozenset())
 
-    def _starts(self, node: _Node, in_order: bool) -> list[_Node]:
-        nodes: list[_Node] = []
-        for name in node.order[:1] if in_order else dict.fromkeys(node.order):
-            if name in node.ticks[-1].starts:
-                continue  # an ability starts once in a tick
-            after = self._started(node.published, node.state, node.goals, (name,))
-            if after is not None:
-                index = node.order.index(name)
-                last = node.ticks[-1]
-                ticks = (*node.ticks[:-1], PlanTick(last.effects, (*last.starts, name)))
-                order = node.order[:index] + node.order[index + 1 :]
-                nodes.append(_Node(after[0], node.published, after[1], order, ticks))
-        return nodes
+    def _after_start(self, node: _Node) -> _Node | None:
+        if not node.order or node.order[0] in node.begun:
+            return None  # an ability starts once in a tick
+        name, *rest = node.order
+        after = self._started(node.published, node.state, node.goals, (name,))
+        return None if after is None else _Node(after[0], node.published, after[1], tuple(rest), node.begun | {name})
 
     def _started(
         self, published: State, state: State, goals: Goals, names: Sequence[str]

@@ -6,72 +6,86 @@ carried out is closer to the plan, and seldom breaks it, if nothing in it waits 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterable
 
-from sequence_planner.automaton.compiled import CompiledTick
-from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.heuristic.space import Position, Space
 from sequence_planner.planning.plan import Plan, PlanTick
+from sequence_planner.planning.replaying.acceptance import Acceptance, Course, Waypoint
+from sequence_planner.planning.replaying.reference_run import ReferenceRun
 
 _MOST_NODES = 400  # then the plan stays as it is
 
 
-@dataclass(frozen=True)
-class _Node:
-    """A position, the starts that are still to come, and the ticks so far."""
+class _Node(Immutable):
+    """A run, the starts that are still to come, and the ticks so far."""
 
-    position: Position
+    run: ReferenceRun
     order: tuple[str, ...]
     ticks: tuple[PlanTick, ...]
+    before: _Node | None = None
 
 
-class Tightening:
-    """Tightens plans of one automaton under one supervisor."""
-
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
-        self._compiled = CompiledTick(automaton, hot=False)
-        self._supervisor = supervisor
-
-    def tightened(self, task: Task, plan: Plan, budget: Budget) -> Plan:
-        """`plan` with its starts as early as can be; as it is if that takes more ticks, or longer than the budget."""
-        space = Space(self._compiled, self._supervisor, task, at_once=False)
-        helpful = tuple(dict.fromkeys(effect for tick in plan.ticks for effect in tick.effects))
-        order = tuple(name for _, name in plan.starts)
-        reached: dict[object, int] = {}
-        pending = [_Node(space.begin(), order, ())]
-        for _ in range(_MOST_NODES):
-            if not pending or budget.spent:
-                break
-            node = pending.pop()
-            if not node.position.goals and not node.order:
-                return replace(plan, ticks=node.ticks)
-            key = (node.position.key, node.order)
-            if reached.get(key, len(node.ticks) + 1) <= len(node.ticks):
-                continue
-            reached[key] = len(node.ticks)
-            if len(node.ticks) < len(plan.ticks):
-                pending += _waited(space, node, helpful)
-            pending += reversed(_started(space, node))
-        return plan
+_Move = tuple[_Node, str | None]  # one of the starts that are still to come, or a wait
 
 
-def _waited(space: Space, node: _Node, helpful: tuple[str, ...]) -> list[_Node]:
-    effects = space.everything(node.position, helpful)
-    later = space.wait(node.position, effects)
-    return [] if later is None else [_Node(later, node.order, (*node.ticks, PlanTick(effects, ())))]
+def tightened(acceptance: Acceptance, task: Task, plan: Plan, budget: Budget) -> Course | None:
+    """`plan`, which is accepted, with its starts as early as can be, taken step by step on the reference tick.
+
+    None if that takes more ticks, or longer than the budget.
+    """
+    helpful = tuple(dict.fromkeys(effect for tick in plan.ticks for effect in tick.effects))
+    reached: dict[object, int] = {}
+    pending: list[_Move] = [(_Node(acceptance.begin(task), tuple(name for _, name in plan.starts), ()), None)]
+    for _ in range(_MOST_NODES):
+        node = _next(pending, helpful)
+        if node is None or budget.spent:
+            return None
+        if not node.run.goals and not node.order:
+            return _course(replace(plan, ticks=node.ticks), node)
+        key = (node.run.key, node.order, node.ticks[-1].starts)
+        if reached.get(key, len(node.ticks) + 1) <= len(node.ticks):
+            continue
+        reached[key] = len(node.ticks)
+        if len(node.ticks) < len(plan.ticks):
+            pending.append((node, None))
+        pending += ((node, name) for name in reversed(dict.fromkeys(node.order)))  # the earliest is tried first
+    return None
 
 
-def _started(space: Space, node: _Node) -> list[_Node]:
-    """The start of each that can start now, the earliest of the order first."""
-    nodes: list[_Node] = []
-    for name in dict.fromkeys(node.order):
-        after = space.start(node.position, name)
+def _next(pending: list[_Move], helpful: Iterable[str]) -> _Node | None:
+    """Where the next move leads that can be taken."""
+    while pending:
+        node, name = pending.pop()
+        after = _waited(node, helpful) if name is None else _started(node, name)
         if after is not None:
-            place = node.order.index(name)
-            last = node.ticks[-1]
-            ticks = (*node.ticks[:-1], PlanTick(last.effects, (*last.starts, name)))
-            nodes.append(_Node(after, node.order[:place] + node.order[place + 1 :], ticks))
-    return nodes
+            return after
+    return None
+
+
+def _waited(node: _Node, helpful: Iterable[str]) -> _Node | None:
+    effects = node.run.everything(helpful)
+    run = node.run.fork()
+    return _Node(run, node.order, (*node.ticks, PlanTick(effects, ())), node) if run.settle(effects) else None
+
+
+def _started(node: _Node, name: str) -> _Node | None:
+    last = node.ticks[-1]
+    if name in last.starts or not node.run.may_start(name):
+        return None
+    run = node.run.fork()
+    if not run.start(name):
+        return None
+    place = node.order.index(name)
+    order = node.order[:place] + node.order[place + 1 :]
+    return _Node(run, order, (*node.ticks[:-1], PlanTick(last.effects, (*last.starts, name))), node)
+
+
+def _course(plan: Plan, last: _Node) -> Course:
+    way: list[Waypoint] = []
+    node: _Node | None = last
+    while node is not None and node.ticks:
+        way.append(Waypoint(len(node.ticks) - 1, len(node.ticks[-1].starts), node.run))
+        node = node.before
+    return Course(plan, tuple(reversed(way)))

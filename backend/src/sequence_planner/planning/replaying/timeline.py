@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import apply_effects, finish, start, synchronise
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.plan import PlanTick
 
 
-@dataclass(frozen=True)
-class Activity:
+class Activity(Immutable):
     """One run of an ability, in ticks counted from 1; `finished` is None when the plan ends before."""
 
     ability: str

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from dataclasses import replace
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.syntax import Expression, UnaryTemporal, children
+from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Contract
@@ -35,7 +35,8 @@ class BoundedModelChecking:
         self._supervisor = supervisor
         self._thorough = thorough
         self._sweep = Sweep(automaton, supervisor)
-        self._searches: OrderedDict[frozenset[str] | None, Searches] = OrderedDict()
+        self._sweep_of_known = Sweep(automaton, supervisor, known=True)  # states
+        self._searches: OrderedDict[tuple[bool, frozenset[str]] | None, Searches] = OrderedDict()
 
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A plan of the fewest ticks, or up to how many there is none.
@@ -71,9 +72,11 @@ class BoundedModelChecking:
         quickly = task.contract is Contract.FAST and not self._thorough
         if len(seen) > _MOST_SEEN:
             seen = frozenset()
-        key = None if quickly else seen
+        known = None not in task.state.values()
+        key = None if quickly else (known, seen)
         if key not in self._searches:
-            order = self._sweep.quick() if quickly else self._sweep.complete(budget, seen)
+            sweep = self._sweep_of_known if known else self._sweep
+            order = sweep.quick() if quickly else sweep.complete(budget, seen)
             self._searches[key] = Searches(self._automaton, self._supervisor, order)
             if len(self._searches) > _KEPT:
                 self._searches.popitem(last=False)[1].close()

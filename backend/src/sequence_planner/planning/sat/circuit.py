@@ -58,15 +58,17 @@ class Circuit:
             return parts.pop() if parts else 1
         if not parts.isdisjoint([-part for part in parts]):
             return -1
-        key = tuple(sorted(parts))
-        gate = self._gates.get(key)
-        if gate is None:
-            self._top = gate = self._top + 1
-            self._gates[key] = gate
-            for part in key:
-                self._add([-gate, part])
-            self._add([gate, *[-part for part in key]])
-        return gate
+        return self._gate(tuple(sorted(parts)))
+
+    def both(self, one: int, other: int) -> int:
+        """The conjunction of two."""
+        if other in (one, 1):
+            return one
+        if one == 1:
+            return other
+        if -1 in (one, other) or one == -other:
+            return -1
+        return self._gate((one, other) if one < other else (other, one))
 
     def disjunction(self, literals: Iterable[int]) -> int:
         """The literal that is true exactly when one of `literals` is."""
@@ -78,14 +80,25 @@ class Circuit:
             return then
         if condition == -1:
             return otherwise
-        return self.disjunction((self.conjunction((condition, then)), self.conjunction((-condition, otherwise))))
+        return -self.both(-self.both(condition, then), -self.both(-condition, otherwise))
+
+    def _gate(self, parts: tuple[int, ...]) -> int:
+        """The conjunction of at least two literals, in ascending order and none of them constant."""
+        gate = self._gates.get(parts)
+        if gate is None:
+            self._top = gate = self._top + 1
+            self._gates[parts] = gate
+            for part in parts:
+                self._add([-gate, part])
+            self._add([gate, *[-part for part in parts]])
+        return gate
 
     def at_most_one(self, literals: Sequence[int]) -> None:
         """Demand that no two of `literals` are true: each tells the next that one was (Sinz 2005)."""
         before = self.FALSE
         for literal in literals:
             self.require(-before, -literal)
-            before = self.disjunction((before, literal))
+            before = -self.both(-before, -literal)
 
     def counted(self, literals: Sequence[int], most: int) -> list[int]:
         """For each number from 1 to `most`, the literal that says that at least so many of `literals` are true.
@@ -94,11 +107,13 @@ class Circuit:
         """
         if len(literals) <= 1:
             return list(literals[:most])
+        if most == 1:
+            return [self.disjunction(literals)]
         middle = len(literals) // 2
         one, other = self.counted(literals[:middle], most), self.counted(literals[middle:], most)
         return [
             self.disjunction(
-                self.conjunction(((one[i - 1] if i else self.TRUE), (other[total - i - 1] if total > i else self.TRUE)))
+                self.both((one[i - 1] if i else self.TRUE), (other[total - i - 1] if total > i else self.TRUE))
                 for i in range(max(total - len(other), 0), min(total, len(one)) + 1)
             )
             for total in range(1, min(len(one) + len(other), most) + 1)

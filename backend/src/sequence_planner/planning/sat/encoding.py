@@ -7,9 +7,9 @@ before, so a state is never copied: unrolling builds one circuit from the initia
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
-from dataclasses import dataclass
 from itertools import combinations
 from types import MappingProxyType
+from typing import NamedTuple
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, Flag, State
@@ -21,14 +21,14 @@ from sequence_planner.planning.sat.symbolic import FollowingState, Reading, Symb
 from sequence_planner.planning.sat.writing import Write, Writes, Writing, sharing
 
 
-@dataclass(frozen=True)
-class SymbolicTick:
-    """One tick: the choices, the state after step 3, and after each place in the order of starts.
+class SymbolicTick(NamedTuple):
+    """One tick: the choices, the finishes applied, the state after step 3 and after each place in the order of starts.
 
     A position counts where its start is chosen; the last is the end of the tick, whatever is chosen.
     """
 
     effects: Mapping[str, int]
+    finishes: Mapping[str, int]
     starts: Sequence[tuple[str, int]]
     synchronised: SymbolicState
     positions: Sequence[tuple[int, SymbolicState]]
@@ -116,7 +116,8 @@ class Encoding:
         `pause` is called before each place, and may raise.
         """
         effects, sensed = self._sense(state)
-        synchronised = self._synchronise(self._finish(sensed), self.automaton.flags)
+        finishes, finished = self._finish(sensed)
+        synchronised = self._synchronise(finished, self.automaton.flags)
         safe = Circuit.TRUE if self._inside else self.safe(synchronised)
         end = synchronised
         positions: list[tuple[int, SymbolicState]] = []
@@ -135,7 +136,7 @@ class Encoding:
                 self._circuit.require(-choice, self._restart)
         for choices in places.values():
             self._circuit.at_most_one(choices)
-        return SymbolicTick(effects, starts, synchronised, positions)
+        return SymbolicTick(effects, finishes, starts, synchronised, positions)
 
     def safe(self, state: SymbolicState) -> int:
         """The literal that says the state is safe."""
@@ -147,7 +148,7 @@ class Encoding:
         """Whether `ability` may start in a safe `state`, and the state after it where `choice` is true."""
         writes, determined = self._writing.writes(ability.start_actions, state)
         after = self._writing.applied(
-            state, {n: Write(self._both(choice, w.where), w.value) for n, w in writes.items()}
+            state, {n: Write(self._circuit.both(choice, w.where), w.value) for n, w in writes.items()}
         )
         conditions = [
             determined,
@@ -173,12 +174,9 @@ class Encoding:
             self._circuit.require(-one, -other)
         return Symbol(literals)
 
-    def _both(self, one: int, other: int) -> int:
-        return self._circuit.conjunction((one, other))
-
     def _sense(self, state: SymbolicState) -> tuple[dict[str, int], SymbolicState]:
         choices: dict[str, int] = {}
-        taken: list[tuple[int, Writes]] = []
+        taken: dict[str, tuple[int, Writes]] = {}
         for effect in self._effects:
             choice = choices[effect.name] = self._circuit.fresh()
             self._circuit.require(-choice, self._online[effect.resource])
@@ -187,31 +185,33 @@ class Encoding:
             self._circuit.require(-choice, self.reading.truth(effect.guard, state).yes)
             # An unknown variable stays unknown, whatever the effect would make of it.
             known = {n: w for n, w in writes.items() if state[n].known != Circuit.FALSE}
-            taken.append((choice, known))
-        for i, j in sharing([writes for _, writes in taken]):
-            (one, first), (other, second) = taken[i], taken[j]
-            self._circuit.require(-one, -other, -self._writing.conflict(first, second))
-        return choices, self._writing.applied(state, self._writing.merged(taken))
+            taken[effect.name] = (choice, known)
+        for one, other in sharing({name: writes for name, (_, writes) in taken.items()}):
+            self._circuit.require(
+                -choices[one], -choices[other], -self._writing.conflict(taken[one][1], taken[other][1])
+            )
+        return choices, self._writing.applied(state, self._writing.merged(taken.values()))
 
-    def _finish(self, state: SymbolicState) -> SymbolicState:
-        candidates: list[tuple[int, Writes]] = []
-        for ability in self.automaton.abilities.values():
+    def _finish(self, state: SymbolicState) -> tuple[dict[str, int], SymbolicState]:
+        candidates: dict[str, tuple[int, Writes]] = {}
+        for name, ability in self.automaton.abilities.items():
             if ability.finish_guard is None or not ability.finish_actions:
                 continue
             writes, determined = self._writing.writes(ability.finish_actions, state)
             holds = self.reading.truth(ability.finish_guard, state).yes
-            candidates.append((self._both(holds, determined), writes))
-        disputes: list[list[int]] = [[] for _ in candidates]
-        for i, j in sharing([writes for _, writes in candidates]):
-            (one, first), (other, second) = candidates[i], candidates[j]
+            candidates[name] = (self._circuit.both(holds, determined), writes)
+        disputes: dict[str, list[int]] = {name: [] for name in candidates}
+        for one, other in sharing({name: writes for name, (_, writes) in candidates.items()}):
+            (holds, first), (other_holds, second) = candidates[one], candidates[other]
             conflict = self._writing.conflict(first, second)
-            disputes[i].append(self._both(other, conflict))
-            disputes[j].append(self._both(one, conflict))
-        applied = [
-            (self._circuit.conjunction((holds, *(-dispute for dispute in disputed))), writes)
-            for (holds, writes), disputed in zip(candidates, disputes, strict=True)
-        ]
-        return self._writing.applied(state, self._writing.merged(applied))
+            disputes[one].append(self._circuit.both(other_holds, conflict))
+            disputes[other].append(self._circuit.both(holds, conflict))
+        applied = {
+            name: (self._circuit.conjunction((holds, *(-dispute for dispute in disputes[name]))), writes)
+            for name, (holds, writes) in candidates.items()
+        }
+        finishes = {name: holds for name, (holds, _) in applied.items()}
+        return finishes, self._writing.applied(state, self._writing.merged(applied.values()))
 
     def _synchronise(self, state: SymbolicState, flags: Iterable[Flag]) -> SymbolicState:
         if self._lazily:
@@ -224,12 +224,12 @@ class Encoding:
                 after[flag.name] = Symbol({False: truth.no, True: truth.yes})
                 continue
             # What is undetermined keeps its value; a flag that had one never loses it.
-            undetermined = self._both(-truth.yes, -truth.no)
-            yes = self._circuit.disjunction((truth.yes, self._both(undetermined, old.literal(True))))
+            undetermined = self._circuit.both(-truth.yes, -truth.no)
+            yes = self._circuit.disjunction((truth.yes, self._circuit.both(undetermined, old.literal(True))))
             if old.known == Circuit.TRUE:
                 after[flag.name] = Symbol({False: -yes, True: yes})
                 continue
-            no = self._circuit.disjunction((truth.no, self._both(undetermined, old.literal(False))))
+            no = self._circuit.disjunction((truth.no, self._circuit.both(undetermined, old.literal(False))))
             after[flag.name] = Symbol({False: no, True: yes}, self._circuit.disjunction((yes, no)))
         return after
 
@@ -237,5 +237,9 @@ class Encoding:
         """The start would set the output back to what was published, and nobody would have seen its value now."""
         if name not in self.automaton.outputs:
             return Circuit.FALSE
-        changed = -self.reading.same(state[name], published[name])
-        return self._circuit.conjunction((changed, write.where, self.reading.same(write.value, published[name])))
+        circuit, now, then = self._circuit, state[name], published[name]
+        back = [
+            circuit.conjunction((literal, then.literal(value), -now.literal(value)))
+            for value, literal in write.value.literals.items()
+        ]
+        return circuit.conjunction((write.where, circuit.disjunction(back)))

@@ -2,97 +2,98 @@
 
 Sets of starts are collected of which every plan has one, until a plan has no more starts than these demand (Morgado et
 al. 2014, *Core-guided MaxSAT with soft cardinality constraints*). Where there is no time for that, the starts of one
-plan that it can do without are left out.
+plan that it can do without are left out. Starts of one ability are counted together, as it is seldom needed twice.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.plan import Contract, Plan, PlanTick
+from sequence_planner.planning.plan import Contract, Plan
 from sequence_planner.planning.sat.unrolling import Unrolling
 
-# Of the time that is left, what a fast plan may still cost once there is one.
+# Of the time that is left, what it may cost to look for fewer starts of a fast plan.
 _SHARE = 0.02
-_PROVING = 0.8  # of a minimal one, for the proof that no other has fewer starts
+_PROVING = 0.8  # and of a minimal one, first without needless starts and then with the fewest
 
 
-def fewest_starts(
-    unrolling: Unrolling, given: Sequence[int], length: int, starting: int, contract: Contract, budget: Budget
-) -> Plan:
-    """The plan of `length` ticks, of which the first `starting` have starts, under the assumptions `given`.
+class Fewest:
+    """Plans of `length` ticks, of which the first `starting` have starts, under the assumptions `given`.
 
-    The solver has just found one. Of a fast contract, it is only tried for a moment whether there are fewer.
+    The solver has just found one.
     """
-    model = unrolling.solver.model()
-    ticks, proven = unrolling.read(length, starting, model), False
-    if contract is Contract.MINIMAL:
-        ticks, proven = _proven_fewest(unrolling, given, ticks, starting, budget.part(_PROVING))
-    if not proven:
-        ticks = _without_needless(unrolling, given, ticks, model, starting, budget)
-    if contract is Contract.FAST:
-        ticks, proven = _proven_fewest(unrolling, given, ticks, starting, budget.part(_SHARE))
-    return Plan(ticks, minimal_ticks=True, minimal_starts=proven)
 
+    def __init__(self, unrolling: Unrolling, given: Sequence[int], length: int, starting: int) -> None:
+        self._unrolling = unrolling
+        self._given = given
+        self._length = length
+        self._starting = starting
+        self._model = unrolling.solver.model()
+        self._demanded = 0  # starts that every plan has
+        self._counters: dict[int, tuple[Sequence[int], int]] = {}  # by what is assumed: that no more of these are true
+        for choices in unrolling.starts_by_ability(starting):
+            self._assume(choices, 0)
 
-def _count(ticks: Sequence[PlanTick]) -> int:
-    return sum(len(tick.starts) for tick in ticks)
+    def plan(self, contract: Contract, promising: Callable[[Plan], bool], budget: Budget) -> Plan:
+        """The one with the fewest starts.
 
+        Of a fast contract, it is only tried for a moment whether there are fewer than are left when the needless ones
+        are left out. Nor is it of any other tried for longer, when what is left is not `promising`.
+        """
+        fast = contract is Contract.FAST
+        if not fast and self._lower(budget, soon=True):
+            return self._plan(proven=True)
+        self._leave_needless_out(budget if fast else budget.part(_PROVING))
+        if not fast and not promising(self._plan(proven=False)):
+            return self._plan(proven=False)
+        return self._plan(self._lower(budget.part(_SHARE if fast else _PROVING)))
 
-def _without_needless(
-    unrolling: Unrolling,
-    given: Sequence[int],
-    ticks: tuple[PlanTick, ...],
-    model: Sequence[int],
-    starting: int,
-    budget: Budget,
-) -> tuple[PlanTick, ...]:
-    """The plan of a model of the solver, less the starts without which the rest of it still is one."""
-    choices = set(unrolling.starts(starting))
-    taken = choices.intersection(model)
-    kept: list[int] = []
-    model = []
-    while taken.difference(kept):
-        choice = min(taken.difference(kept))
-        left_out = [-each for each in choices - taken]
-        answer = unrolling.solver.solve([*given, *left_out, -choice], budget)
-        if answer is None:
-            break
-        if answer:
-            model = unrolling.solver.model()
-            taken = choices.intersection(model)
-        else:
-            kept.append(choice)
-    return unrolling.read(len(ticks), starting, model) if model else ticks
+    def _plan(self, proven: bool) -> Plan:
+        ticks = self._unrolling.read(self._length, self._starting, self._model)
+        return Plan(ticks, minimal_ticks=True, minimal_starts=proven)
 
+    def _leave_needless_out(self, budget: Budget) -> None:
+        """Leave out starts without which the rest of the plan still is one."""
+        solver = self._unrolling.solver
+        choices = self._unrolling.starts(self._starting)
+        taken = set(choices).intersection(self._model)
+        without = self._unrolling.circuit.fresh()  # assumed: none of those that have been left out
+        given = [*self._given, without]
+        solver.add_clauses((-without, -choice) for choice in choices if choice not in taken)
+        for choice in choices:
+            if choice in taken:
+                answer = solver.solve([*given, -choice], budget)
+                if answer is None:
+                    break
+                if answer:
+                    self._model = solver.model()
+                    needless = taken.difference(self._model)
+                    taken -= needless
+                    solver.add_clauses((-without, -each) for each in needless)
+        solver.add_clause((-without,))
 
-def _proven_fewest(
-    unrolling: Unrolling, given: Sequence[int], ticks: tuple[PlanTick, ...], starting: int, budget: Budget
-) -> tuple[tuple[PlanTick, ...], bool]:
-    """The plan with the fewest starts, which are at most those of `ticks`, and whether it is proven."""
-    circuit, solver = unrolling.circuit, unrolling.solver
-    most, demanded = _count(ticks), 0
-    assumed = dict.fromkeys(-choice for choice in unrolling.starts(starting))
-    counters: dict[int, tuple[list[int], int]] = {}  # an assumption that not so many are true, with those for more
-    while demanded < most:
-        answer = solver.solve([*given, *assumed], budget)
-        if answer is None:
-            return ticks, False
-        if answer:
-            return unrolling.read(len(ticks), starting, solver.model()), True
-        core = [literal for literal in solver.core() if literal in assumed]
-        demanded += 1
-        further: list[tuple[list[int], int]] = []
-        for literal in core:
-            del assumed[literal]
-            if literal in counters:
-                further.append(counters.pop(literal))
-        if len(core) > 1:
-            further.append((circuit.counted([-literal for literal in core], most - demanded + 1), 0))
-        for numbers, several in further:
-            if several + 1 < len(numbers):
-                following = -numbers[several + 1]
-                assumed[following] = None
-                counters[following] = (numbers, several + 1)
-    return ticks, True
+    def _lower(self, budget: Budget, soon: bool = False) -> bool:
+        """Find the fewest, at most as many as now; whether it is proven that they are. With `soon`, not for long."""
+        solver = self._unrolling.solver
+        most = len(set(self._unrolling.starts(self._starting)).intersection(self._model))
+        while self._demanded < most:
+            answer = solver.solve([*self._given, *self._counters], budget, soon)
+            if answer is None:
+                return False
+            if answer:
+                self._model = solver.model()
+                return True
+            core = [literal for literal in solver.core() if literal in self._counters]
+            self._demanded += 1
+            for literal in core:
+                choices, number = self._counters.pop(literal)
+                self._assume(choices, number + 1)
+            self._assume([-literal for literal in core], 1)
+        return True
+
+    def _assume(self, choices: Sequence[int], number: int) -> None:
+        """Assume from now on that no more of `choices` are true."""
+        if number < len(choices):
+            more = self._unrolling.circuit.counted(choices, number + 1)[number]
+            self._counters[-more] = choices, number

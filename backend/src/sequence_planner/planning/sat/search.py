@@ -13,7 +13,7 @@ from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.plan import Circumstances, Contract, Goal, Plan
-from sequence_planner.planning.sat.fewest import fewest_starts
+from sequence_planner.planning.sat.fewest import Fewest
 from sequence_planner.planning.sat.unrolling import Unrolling
 
 # A solver for each set of unknown variables; topics come and go in few combinations.
@@ -64,9 +64,10 @@ class Search:
         longest: int,
         budget: Budget,
         contract: Contract = Contract.MINIMAL,
+        promising: Callable[[Plan], bool] = lambda _: True,
     ) -> Plan | None:
         """A plan with the fewest ticks, then the fewest starts, or nearly so by a fast contract; None if there is none
-        of at most `longest` ticks.
+        of at most `longest` ticks. If one of so many ticks is not `promising`, none with fewer starts is looked for.
 
         Raises `SearchTimeoutError` when the budget is spent before any plan is found; a plan found in time whose starts
         could not be proven fewest says so.
@@ -75,7 +76,12 @@ class Search:
         def reached(unrolling: Unrolling, length: int) -> list[int]:
             return [unrolling.reached(goal, length) for goal in goals]
 
-        return self._shortest(state, circumstances, reached, longest, budget, contract, last_starts=False)
+        return self._shortest(state, circumstances, reached, longest, budget, contract, promising, last_starts=False)
+
+    def finishing(self, plan: Plan) -> frozenset[str]:
+        """The abilities that finish in `plan`, which has just been found."""
+        assert self._unrolling is not None
+        return self._unrolling.finishing(len(plan.ticks), self._unrolling.solver.model())
 
     def plan_into(
         self, states: StateSet, state: State, circumstances: Circumstances, longest: int, budget: Budget
@@ -88,7 +94,9 @@ class Search:
         def inside(unrolling: Unrolling, length: int) -> list[int]:
             return [unrolling.inside(states, length)]
 
-        return self._shortest(state, circumstances, inside, longest, budget, Contract.MINIMAL, last_starts=True)
+        return self._shortest(
+            state, circumstances, inside, longest, budget, Contract.MINIMAL, lambda _: True, last_starts=True
+        )
 
     def _shortest(
         self,
@@ -98,6 +106,7 @@ class Search:
         longest: int,
         budget: Budget,
         contract: Contract,
+        promising: Callable[[Plan], bool],
         last_starts: bool,
     ) -> Plan | None:
         """`wanted` has the literals that say so many ticks are enough; without `last_starts` the last has none."""
@@ -119,7 +128,8 @@ class Search:
                     raise SearchTimeoutError(length - 1)
                 if answer:
                     starting = length if last_starts else length - 1
-                    return fewest_starts(unrolling, assumptions, length, starting, contract, budget)
+                    fewest = Fewest(unrolling, assumptions, length, starting)
+                    return fewest.plan(contract, promising, budget)
         except SpentError:
             raise SearchTimeoutError(length - 1) from None
         return None

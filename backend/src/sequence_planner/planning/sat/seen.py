@@ -8,19 +8,21 @@ starts. One of these that replays on the whole is therefore one of the best; as 
 from __future__ import annotations
 
 from collections import OrderedDict, defaultdict
-from collections.abc import Collection, Iterable
+from collections.abc import Callable, Collection, Iterable
+from functools import partial
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.automaton.transitions import Transition, transitions
+from sequence_planner.automaton.transitions import Phase, Transition
+from sequence_planner.collection import collection_put_off
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.pdr.localisation import localisable, localised
 from sequence_planner.planning.plan import Circumstances, Contract, Plan
-from sequence_planner.planning.relaxed.relaxation import counted_on
 from sequence_planner.planning.relaxed.relaxed_plan import RelaxedPlan
+from sequence_planner.planning.relaxed.relevance import Relevance
 from sequence_planner.planning.replaying.acceptance import Acceptance
 from sequence_planner.planning.sat.search import Search, SearchTimeoutError
 from sequence_planner.planning.sat.sweep import Sweep
@@ -34,17 +36,30 @@ class _Part:
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor, kept: frozenset[str]) -> None:
         self._seen = localised(automaton, supervisor, kept)
-        self._sweep = Sweep(self._seen.automaton, self._seen.supervisor)
+        self._sweep = Sweep(self._seen.automaton, self._seen.supervisor, known=True)
         self._search: Search | None = None
 
-    def plan(self, task: Task, budget: Budget) -> Plan | None:
+    @property
+    def finishing(self) -> frozenset[str]:
+        """The abilities that write what is seen when they finish, and may do so over what is not."""
+        return frozenset(name for name, each in self._seen.automaton.abilities.items() if each.finish_guard is not None)
+
+    def plan(self, task: Task, promising: Callable[[Plan], bool], budget: Budget) -> Plan | None:
         """As `Search.plan`. Raises `SpentError` too."""
         seen = self._seen
         if self._search is None:
             order = seen.order(self._sweep.complete(budget))
             oracles = frozenset(seen.oracles)
             self._search = Search(seen.automaton, seen.supervisor, order, frozenset(), inside=True, oracles=oracles)
-        return self._search.plan(seen.state(task.state), task.goals, task.circumstances, task.longest, budget)
+        return self._search.plan(
+            seen.state(task.state), task.goals, task.circumstances, task.longest, budget, promising=promising
+        )
+
+    def made_of(self, plan: Plan) -> frozenset[str]:
+        """The effects and abilities of `plan`, which has just been found, what finishes without a start included."""
+        assert self._search is not None
+        taken = (name for tick in plan.ticks for name in (*tick.effects, *tick.starts))
+        return self._search.finishing(plan).union(taken)
 
     def close(self) -> None:
         """Give the memory of its solver back."""
@@ -66,13 +81,15 @@ class PartialSight:
         self._automaton = automaton
         self._supervisor = supervisor
         self._acceptance = Acceptance(automaton, supervisor)
+        self._relevance = Relevance(automaton)
         self._effects = frozenset(effect.name for effect in automaton.effects)
         self._moves: dict[str, list[Transition]] = defaultdict(list)  # by ability or effect
-        for move in transitions(automaton):
+        for move in self._relevance.transitions:
             self._moves[self._owner(move.name)].append(move)
         self._parts: OrderedDict[frozenset[str], _Part] = OrderedDict()
         self._kept: dict[tuple[Goals, Circumstances], frozenset[str]] = {}
 
+    @collection_put_off()
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A plan with the fewest ticks and then the fewest starts, or up to how many there is none.
 
@@ -89,13 +106,16 @@ class PartialSight:
                 self._kept.clear()
             kept = self._kept[question] = self._kept.get(question) or self._first(task)
             while len(kept) <= self._most:
-                plan = self._part(kept).plan(task, budget)
+                part = self._part(kept)
+                plan = part.plan(task, partial(self._acceptance.accepts, task), budget)
                 if plan is None:
                     return Finding(searched=task.longest)
                 if self._acceptance.accepts(task, plan):
                     return Finding(plan, searched=len(plan.ticks))
                 searched = max(searched, len(plan.ticks) - 1)
-                wider = kept | self._touched(_made_of(plan))
+                wider = kept | self._touched(part.made_of(plan))
+                if wider == kept:
+                    wider |= self._touched(part.finishing)
                 if wider == kept:
                     break
                 kept = self._kept[question] = wider
@@ -106,11 +126,18 @@ class PartialSight:
         return Finding(searched=searched)
 
     def _first(self, task: Task) -> frozenset[str]:
-        """The variables to begin with: what a relaxed plan touches."""
+        """The variables to begin with: what a relaxed plan touches, and abilities that may finish to the same effect.
+
+        These would be seen to finish whenever that is needed, whether they have been started or not.
+        """
         asked = [goal.predicate for goal in task.goals]
-        moves = counted_on(self._automaton, task.circumstances)
-        relaxed = RelaxedPlan(self._automaton, task.state, moves).towards(asked) or ()
-        return read_variables(self._automaton, asked) | self._touched({self._owner(move.name) for move in relaxed})
+        mattering = self._relevance.towards(asked, task.state, task.circumstances)
+        relaxed = RelaxedPlan(self._automaton, task.state, mattering).towards(asked)
+        if relaxed is None:
+            moves = self._relevance.counted_on(task.state, task.circumstances)
+            relaxed = RelaxedPlan(self._automaton, task.state, moves).towards(asked) or ()
+        touching = (*relaxed, *(move for move in mattering if move.phase is Phase.FINISH))
+        return read_variables(self._automaton, asked) | self._touched({self._owner(move.name) for move in touching})
 
     def _part(self, kept: frozenset[str]) -> _Part:
         if kept not in self._parts:
@@ -135,8 +162,3 @@ class PartialSight:
         values = (action.value for action in move.actions)
         conditions = (action.condition for action in move.actions if action.condition is not None)
         return move.writes | read_variables(self._automaton, (move.guard, *values, *conditions))
-
-
-def _made_of(plan: Plan) -> Collection[str]:
-    """The effects and abilities of a plan."""
-    return {name for tick in plan.ticks for name in (*tick.effects, *tick.starts)}

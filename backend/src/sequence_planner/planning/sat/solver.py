@@ -13,6 +13,7 @@ from sequence_planner.planning.budget import Budget
 
 # Conflicts within which most questions are answered; only longer ones are worth an alarm clock, which is a thread.
 _AT_ONCE = 200
+_SOON = 500  # within which it is worth while to wait for an answer without which there is another way
 
 
 class Solver:
@@ -44,13 +45,16 @@ class Solver:
         """Try these literals true first, where nothing decides them."""
         pysolvers.glucose41_setphases(self._handle, literals)
 
-    def solve(self, assumptions: Sequence[int], budget: Budget) -> bool | None:
-        """Whether the clauses can be satisfied under `assumptions`; None when the budget is spent before."""
+    def solve(self, assumptions: Sequence[int], budget: Budget, soon: bool = False) -> bool | None:
+        """Whether the clauses can be satisfied under `assumptions`; None when the budget is spent before.
+
+        Or, with `soon`, when it takes much longer than most questions do.
+        """
         if budget.spent:
             return None
-        pysolvers.glucose41_cbudget(self._handle, _AT_ONCE)
+        pysolvers.glucose41_cbudget(self._handle, _SOON if soon else _AT_ONCE)
         answer = pysolvers.glucose41_solve_lim(self._handle, assumptions, 0, 0)
-        if answer is not None or budget.spent:
+        if answer is not None or soon or budget.spent:
             return answer
         pysolvers.glucose41_cbudget(self._handle, -1)
         with budget.interrupting(self._interrupt):

@@ -1,27 +1,24 @@
 """The order in which a planned tick tries its starts.
 
 Several abilities can start in one tick, in any order. One fixed order suffices as long as each pair whose order matters
-stands in it the right way round: adjacent starts that commute can be exchanged until the fixed order is reached. Which
-pairs do not commute is asked of the solver, over all safe states. Where they demand a circle, its members are repeated.
+stands in it the right way round: adjacent starts that commute can be exchanged until the fixed order is reached. Pairs
+are told apart by what they write and ask for; where these demand a circle, the solver is asked of each pair in it, over
+all safe states, whether its order matters indeed. The members of a circle that is left are repeated.
 """
 
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Set
+from collections.abc import Mapping, Set
 from functools import cached_property
-from graphlib import TopologicalSorter
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, State, target
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import Constant
+from sequence_planner.automaton.structure import Ability, Automaton, target
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.sat.circuit import Circuit
-from sequence_planner.planning.sat.encoding import Encoding
-from sequence_planner.planning.sat.solver import Solver
-from sequence_planner.planning.sat.symbolic import SymbolicState
+from sequence_planner.planning.sat.circles import Before, circles, linear
+from sequence_planner.planning.sat.demands import Demands
+from sequence_planner.planning.sat.pairs import Pairs
 
 _AS_LONG_AS_IT_TAKES = 1e7  # seconds
 
@@ -36,13 +33,13 @@ def sweep_order(automaton: Automaton, supervisor: Supervisor) -> Order:
 class Sweep:
     """Orders of the abilities of one automaton under one supervisor; what is found out about pairs is kept."""
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+    def __init__(self, automaton: Automaton, supervisor: Supervisor, known: bool = False) -> None:
+        """With `known`, only for states in which every variable has a value, and for ticks with no needless starts."""
         self._automaton = automaton
         self._supervisor = supervisor
-        self._before: dict[str, set[str]] = {name: set() for name in automaton.abilities}
+        self._known = known
         self._written = {a.name: frozenset(map(target, a.start_actions)) for a in automaton.abilities.values()}
-        self._left: dict[str, State] = {}  # by what has started, values that are known then
-        self._undecided: list[tuple[str, str]] | None = None
+        self._matters: dict[tuple[str, str], bool] = {}  # of pairs in circles
 
     def complete(self, budget: Budget, seen: Set[str] = frozenset()) -> Order:
         """An order, with repetitions if need be, of which every possible order of starts is a part.
@@ -50,16 +47,29 @@ class Sweep:
         Of the abilities `seen` every state between two starts matters, so that none of them commute. Raises
         `SpentError` when the budget is spent before it is known; what is known by then is not asked again.
         """
-        if self._undecided is None:
-            self._undecided = self._interfering()
-        while self._undecided:
-            budget.require()
-            one, other = self._undecided[-1]
-            if not self._excludes(one, other) and self._pairs.order_matters(one, other):
-                self._before[other].add(one)
-            self._undecided.pop()
-        before = {name: earlier | seen - {name} if name in seen else earlier for name, earlier in self._before.items()}
-        return tuple(self._automaton.abilities[name] for name in _linear(before))
+        before: dict[str, dict[str, None]] = {name: {} for name in self._automaton.abilities}
+        for one, other in self._candidates:
+            if self._matters.get((one, other), True):
+                before[other][one] = None
+        together = [name for name in before if name in seen]
+        for name in together:
+            before[name] |= {other: None for other in together if other != name}
+        for circle in circles(before):
+            self._open(before, circle, seen, budget)
+        return tuple(self._automaton.abilities[name] for name in linear(before))
+
+    def _open(self, before: Before, circle: tuple[str, ...], seen: Set[str], budget: Budget) -> None:
+        """Take out of `before` the pairs in a circle whose order does not matter."""
+        members = frozenset(circle)
+        for other in circle if len(circle) > 1 else ():
+            for one in [name for name in before[other] if name in members]:
+                if one in seen and other in seen:
+                    continue
+                if (one, other) not in self._matters:
+                    budget.require()
+                    self._matters[one, other] = self._pairs.order_matters(one, other)
+                if not self._matters[one, other]:
+                    del before[other][one]
 
     def writers(self, names: Set[str]) -> frozenset[str]:
         """The abilities whose starts write one of the variables."""
@@ -90,21 +100,11 @@ class Sweep:
             visit(name)
         return tuple(self._automaton.abilities[name] for name in ordered)
 
-    def _excludes(self, one: str, other: str) -> bool:
-        """Whether what `one` writes alone shows that `other` cannot start after it."""
-        if one not in self._left:
-            actions = self._automaton.abilities[one].start_actions
-            constants = {
-                target(each): each.value.value
-                for each in actions
-                if each.condition is None and isinstance(each.value, Constant)
-            }
-            self._left[one] = {**dict.fromkeys(self._automaton.types), **constants}
-        ability = self._automaton.abilities[other]
-        return any(evaluate(each, self._left[one]) is False for each in (ability.enabled, ability.start_guard))
-
-    def _interfering(self) -> list[tuple[str, str]]:
-        """The pairs, either way round, of which one writes what the other reads, writes or is kept by."""
+    @cached_property
+    def _candidates(self) -> list[tuple[str, str]]:
+        """The pairs, either way round, of which one writes what the other reads, writes or is kept by, and the second
+        may be able to start after the first.
+        """
         users: dict[str, list[str]] = defaultdict(list)
         for name, ability in self._automaton.abilities.items():
             used = _read(self._automaton, ability) | self._written[name]
@@ -118,79 +118,20 @@ class Sweep:
                 for other in users[variable]:
                     if other != name:
                         found |= {(name, other): None, (other, name): None}
-        return list(found)
+        demands = {ability.name: Demands(self._automaton, ability) for ability in self._automaton.abilities.values()}
+        return [pair for pair in found if not self._shown(pair, demands)]
+
+    def _shown(self, pair: tuple[str, str], demands: Mapping[str, Demands]) -> bool:
+        """Whether the texts alone show that there is no need to take the second after the first rather than before."""
+        one, other = (demands[name] for name in pair)
+        if one.excludes(other) or (self._known and one.undone_by(other)):
+            return True
+        free = not any(name in self._supervisor.guards or self._automaton.abilities[name].restart for name in pair)
+        return free and one.commutes_with(other)
 
     @cached_property
-    def _pairs(self) -> _Pairs:
-        return _Pairs(self._automaton, self._supervisor)
-
-
-class _Pairs:
-    """All safe states in one solver, with the starts of pairs of abilities from them."""
-
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
-        self._abilities = automaton.abilities
-        self._solver = Solver()
-        self._circuit = Circuit(self._solver)
-        self._encoding = Encoding(automaton, supervisor, self._circuit, frozenset(), lazily=True)
-        self._state = self._encoding.initial(frozenset(), synchronised=True)
-        self._published = self._encoding.initial(frozenset(), determined=automaton.flag_predicates.keys())
-        self._circuit.require(self._encoding.safe(self._state))
-        self._first: dict[str, tuple[int, SymbolicState]] = {}
-
-    def order_matters(self, one: str, other: str) -> bool:
-        """Whether in some safe state `one` then `other` can start, and the other way round not, or differently."""
-        first_now, between = self._started(one)
-        second_then, end = self._start(other, between)
-        if Circuit.FALSE in (first_now, second_then):
-            return False
-        second_now, between_other = self._started(other)
-        first_then, end_other = self._start(one, between_other)
-        names = {target(action) for name in (one, other) for action in self._abilities[name].start_actions}
-        same = [self._encoding.reading.same(end[name], end_other[name]) for name in sorted(names)]
-        exchangeable = self._circuit.conjunction((second_now, first_then, *same))
-        if exchangeable == Circuit.TRUE or -first_now in (second_then, exchangeable):
-            return False
-        budget = Budget.seconds(_AS_LONG_AS_IT_TAKES)
-        return bool(self._solver.solve([first_now, second_then, -exchangeable], budget))
-
-    def _started(self, name: str) -> tuple[int, SymbolicState]:
-        if name not in self._first:
-            self._first[name] = self._start(name, self._state)
-        return self._first[name]
-
-    def _start(self, name: str, state: SymbolicState) -> tuple[int, SymbolicState]:
-        return self._encoding.start(self._abilities[name], state, self._published, Circuit.TRUE)
-
-
-def _linear(before: Mapping[str, Set[str]]) -> Iterator[str]:
-    """Every name after those that must stand before it; the n members of a circle are repeated.
-
-    Any order of n different starts is a part of n - 1 repetitions of them all and another of the first: only the
-    reverse order takes n, and ends with the first.
-    """
-    above = {name: _above(name, before) for name in before}
-    circles = {
-        name: tuple(other for other in before if other == name or (other in above[name] and name in above[other]))
-        for name in before
-    }
-    order = TopologicalSorter[tuple[str, ...]]()
-    for name in before:
-        earlier = (circles[other] for other in before if other in above[name] and name not in above[other])
-        order.add(circles[name], *earlier)
-    for circle in order.static_order():
-        yield from (*circle * (len(circle) - 1), circle[0])
-
-
-def _above(name: str, before: Mapping[str, Set[str]]) -> Set[str]:
-    """All that must stand before `name`, directly or not."""
-    found: set[str] = set()
-    pending = [name]
-    while pending:
-        new = before[pending.pop()] - found
-        found |= new
-        pending.extend(new)
-    return found
+    def _pairs(self) -> Pairs:
+        return Pairs(self._automaton, self._supervisor, self._known)
 
 
 def _read(automaton: Automaton, ability: Ability) -> frozenset[str]:

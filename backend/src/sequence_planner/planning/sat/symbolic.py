@@ -8,8 +8,8 @@ and the circuit makes them one gate.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
-from dataclasses import dataclass
 from itertools import product
+from typing import NamedTuple
 
 from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.automaton.structure import Flag
@@ -30,8 +30,7 @@ from sequence_planner.expressions.types import Value
 from sequence_planner.planning.sat.circuit import Circuit
 
 
-@dataclass(frozen=True)
-class Symbol:
+class Symbol(NamedTuple):
     """A value that a solver decides: a literal for each possible value, and one that says it is known."""
 
     literals: Mapping[Value, int]
@@ -48,8 +47,7 @@ class Symbol:
         return Symbol({value: literal for value, literal in self.literals.items() if value in domain}, self.known)
 
 
-@dataclass(frozen=True)
-class Truth:
+class Truth(NamedTuple):
     """Literals for *true for certain* and *false for certain*."""
 
     yes: int
@@ -83,6 +81,11 @@ class Reading:
             case Implies(left, right):
                 premise = self.truth(left, state)
                 return self._any([Truth(premise.no, premise.yes), self.truth(right, state)])
+            case Comparison("==" | "!=" as relation, Variable(name), Constant(value)):
+                symbol = state[name]
+                equal = symbol.literals.get(value, circuit.FALSE)
+                differs = circuit.both(symbol.known, -equal)
+                return Truth(equal, differs) if relation == "==" else Truth(differs, equal)
             case Comparison(relation, left, right):
                 return self._comparison(relation, self.symbol(left, state), self.symbol(right, state))
             case Membership(left, options):
@@ -130,7 +133,7 @@ class Reading:
             pairs = zip(states.domains[axis], children, strict=True)
             literals.append(
                 self._circuit.disjunction(
-                    self._circuit.conjunction((symbol.literal(value), literals[child])) for value, child in pairs
+                    self._circuit.both(symbol.literal(value), literals[child]) for value, child in pairs
                 )
             )
         return literals[states.root]
@@ -149,7 +152,7 @@ class Reading:
             return Truth(equal.no, equal.yes)
         holds = RELATIONS[relation]
         yes = self._circuit.disjunction(
-            self._circuit.conjunction((a, b))
+            self._circuit.both(a, b)
             for (value, a), (other, b) in product(left.literals.items(), right.literals.items())
             if holds(value, other)
         )
@@ -159,7 +162,7 @@ class Reading:
         sums: dict[Value, list[int]] = {}
         for (value, a), (other, b) in product(left.literals.items(), right.literals.items()):
             total = int(value) + int(other) if sign == "+" else int(value) - int(other)
-            sums.setdefault(total, []).append(self._circuit.conjunction((a, b)))
+            sums.setdefault(total, []).append(self._circuit.both(a, b))
         known = self._circuit.conjunction((left.known, right.known))
         return Symbol({total: self._circuit.disjunction(parts) for total, parts in sums.items()}, known)
 

@@ -6,8 +6,9 @@ with other literals: those of the state before it are those at the end of the ti
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from itertools import combinations, count
+from itertools import combinations, count, repeat
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
@@ -25,11 +26,19 @@ _ANEW = 0  # instead of a literal: a new one in each tick
 
 
 class _Recorder:
-    """Keeps clauses."""
+    """Keeps clauses: all literals of those of a length one after the other."""
 
     def __init__(self) -> None:
-        self.clauses: list[list[int]] = []
-        self.add_clause = self.clauses.append
+        self.literals: dict[int, list[int]] = defaultdict(list)
+
+    def add_clause(self, clause: Sequence[int], /) -> None:
+        """Add one clause."""
+        self.literals[len(clause)] += clause
+
+    def add_clauses(self, clauses: Iterable[Sequence[int]]) -> None:
+        """Add several."""
+        for clause in clauses:
+            self.add_clause(clause)
 
 
 class Template:
@@ -60,17 +69,17 @@ class Template:
         kept = free.keys() if unknown else automaton.variables.keys() | _read_before_synchronising(automaton)
         self.start = {name: symbol for name, symbol in free.items() if name in kept and name not in oracles}
         self._inputs = circuit.top
-        recorder.clauses.clear()  # what must hold of a state holds at the end of each tick
+        recorder.literals.clear()  # what must hold of a state holds at the end of each tick
         recorder.add_clause([Circuit.TRUE])
         for name in unknown - blind:
             # An undetermined flag is known where one of its values is; this gate is part of the tick.
-            recorder.clauses.extend(_known(self.start[name]))
+            recorder.add_clauses(_known(self.start[name]))
         anew = {name: free[name] for name in sorted(oracles)}
         for symbol in anew.values():
-            recorder.clauses.extend(_one_value(symbol))
+            recorder.add_clauses(_one_value(symbol))
         self._tick = self._encoding.tick(self.start | anew, order, pause)
         self._carried = self._carry(anew.values())
-        self.clauses: Sequence[Sequence[int]] = recorder.clauses
+        self._clauses = recorder.literals
         self.top = circuit.top
 
     def assumptions(self, circumstances: Circumstances) -> list[int]:
@@ -89,9 +98,10 @@ class Template:
         literals += range(first, first + self.top - self._inputs)
         return _both_signs(literals)
 
-    def renamed(self, renaming: Renaming) -> list[list[int]]:
+    def renamed(self, renaming: Renaming) -> Iterator[tuple[int, ...]]:
         """The clauses of the tick so renamed."""
-        return [[renaming[literal] for literal in clause] for clause in self.clauses]
+        for length, literals in self._clauses.items():
+            yield from zip(*repeat(map(renaming.__getitem__, literals), length), strict=True)
 
     def tick(self, renaming: Renaming, reading: Reading) -> SymbolicTick:
         """The tick so renamed; `reading` is asked for flags that the tick itself does not need."""
@@ -102,6 +112,7 @@ class Template:
 
         return SymbolicTick(
             {name: renaming[choice] for name, choice in tick.effects.items()},
+            {name: renaming[applied] for name, applied in tick.finishes.items()},
             [(name, renaming[choice]) for name, choice in tick.starts],
             renamed(tick.synchronised),
             [(renaming[choice], renamed(state)) for choice, state in tick.positions],
@@ -121,6 +132,8 @@ class Template:
 
 class RenamedState(Mapping[str, Symbol]):
     """A state with other literals, read as it is asked for."""
+
+    __slots__ = ("_known", "_predicates", "_reading", "_renaming", "_state")
 
     def __init__(
         self, state: SymbolicState, renaming: Renaming, predicates: Mapping[str, Expression], reading: Reading

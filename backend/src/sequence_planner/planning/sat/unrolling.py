@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
+from sequence_planner.collection import collection_put_off
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.goals.tracking import Progress, Tracker, beginning
@@ -14,7 +16,7 @@ from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.encoding import SymbolicTick
 from sequence_planner.planning.sat.solver import Solver
 from sequence_planner.planning.sat.symbolic import Reading
-from sequence_planner.planning.sat.template import Renaming, Template
+from sequence_planner.planning.sat.template import Template
 
 
 class Unrolling:
@@ -38,9 +40,10 @@ class Unrolling:
         self.solver = Solver()
         self.circuit = Circuit(self.solver)
         self.ticks: list[SymbolicTick] = []
-        self._template = Template(automaton, supervisor, order, unknown, inside, frozen, oracles, budget.require)
+        with collection_put_off():
+            self._template = Template(automaton, supervisor, order, unknown, inside, frozen, oracles, budget.require)
         self.circuit.reserve(self._template.top)
-        self._renaming: Renaming = ()
+        self._renaming = self._template.first()
         self._reading = Reading(self.circuit)
         self._tracker = Tracker(self.circuit)
         self._progress: dict[Goal, list[Progress]] = {}
@@ -50,13 +53,10 @@ class Unrolling:
         """So many ticks at least. Raises `SpentError` when the budget is spent meanwhile."""
         while len(self.ticks) < length:
             budget.require()
-            if not self.ticks:
-                self._renaming = self._template.first()
-                self.solver.add_clauses(self._template.clauses)
-            else:
+            if self.ticks:
                 self._renaming = self._template.next(self._renaming, self.circuit.top)
                 self.circuit.reserve(max(self._renaming))
-                self.solver.add_clauses(self._template.renamed(self._renaming))
+            self.solver.add_clauses(self._template.renamed(self._renaming))
             tick = self._template.tick(self._renaming, self._reading)
             self.ticks.append(tick)
             # A needless choice is one that the solver makes without being asked.
@@ -100,6 +100,14 @@ class Unrolling:
         """The literals that say a start is taken in one of the first `length` ticks."""
         return [choice for tick in self.ticks[:length] for _, choice in tick.starts]
 
+    def starts_by_ability(self, length: int) -> list[list[int]]:
+        """The same, for each ability."""
+        choices: dict[str, list[int]] = defaultdict(list)
+        for tick in self.ticks[:length]:
+            for name, choice in tick.starts:
+                choices[name].append(choice)
+        return list(choices.values())
+
     def read(self, length: int, starting: int, model: Sequence[int]) -> tuple[PlanTick, ...]:
         """The run of a model of the solver; only the first `starting` ticks have starts."""
         true = set(model)
@@ -110,3 +118,9 @@ class Unrolling:
             )
             for number, tick in enumerate(self.ticks[:length], start=1)
         )
+
+    def finishing(self, length: int, model: Sequence[int]) -> frozenset[str]:
+        """The abilities that finish in the first `length` ticks of a model."""
+        true = set(model)
+        ticks = self.ticks[:length]
+        return frozenset(name for tick in ticks for name, applied in tick.finishes.items() if applied in true)

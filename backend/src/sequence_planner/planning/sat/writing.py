@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
 
 from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.expressions.syntax import Assignment
@@ -11,8 +11,7 @@ from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicState
 
 
-@dataclass(frozen=True)
-class Write:
+class Write(NamedTuple):
     """A value that is written to a variable where `where` is true."""
 
     where: int
@@ -62,7 +61,7 @@ class Writing:
         merged: Writes = {}
         for choice, writes in taken:
             for name, write in writes.items():
-                where = self._circuit.conjunction((choice, write.where))
+                where = self._circuit.both(choice, write.where)
                 if name in merged:
                     before = merged[name]
                     value = self._reading.chosen(where, write.value, before.value)
@@ -82,13 +81,13 @@ class Writing:
         )
 
 
-def sharing(all_writes: Sequence[Writes]) -> list[tuple[int, int]]:
-    """The pairs of numbers of those that write a common variable, the smaller number first."""
-    writers: dict[str, list[int]] = {}
-    pairs: dict[tuple[int, int], None] = {}
-    for number, writes in enumerate(all_writes):
+def sharing(all_writes: Mapping[str, Writes]) -> list[tuple[str, str]]:
+    """The pairs of those that write a common variable, the earlier one first."""
+    writers: dict[str, list[str]] = {}
+    pairs: dict[tuple[str, str], None] = {}
+    for one, writes in all_writes.items():
         for name in writes:
             others = writers.setdefault(name, [])
-            pairs |= dict.fromkeys((other, number) for other in others)
-            others.append(number)
+            pairs |= dict.fromkeys((other, one) for other in others)
+            others.append(one)
     return list(pairs)

@@ -1,0 +1,128 @@
+"""One order of starts has every order in it that can make a difference."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from itertools import permutations
+
+from hypothesis import given
+
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.tick import initial_state, supervised_start
+from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.sat.circles import circles, linear
+from sequence_planner.planning.sat.demands import Demands
+from sequence_planner.planning.sat.pairs import Pairs
+from sequence_planner.planning.sat.sweep import Sweep
+from sequence_planner.synthesis.supervision import synthesise
+
+from .budget import examples
+from .building import Does, automaton
+from .choices import Choices, made_by
+from .random_problems import Problem, problem
+
+OFF = (BOOLEAN, False)
+Before = Mapping[str, Mapping[str, None]]
+
+
+def demands(choices: Choices) -> tuple[Before, tuple[str, ...]]:
+    """Which names must stand before which, and an order of some of them."""
+    names = "abcdef"[: choices.number(1, 6)]
+    before = {name: {other: None for other in names if other != name and choices.chance(3)} for name in names}
+    return before, tuple(choices.different(names, 0, min(len(names), 5)))
+
+
+def exchanged(before: Before, order: Sequence[str]) -> list[tuple[str, ...]]:
+    """All orders that come of it by exchanging neighbours of which the first need not stand before the second."""
+    kept = [(one, other) for n, one in enumerate(order) for other in order[n + 1 :] if one in before[other]]
+    return [each for each in permutations(order) if all(each.index(one) < each.index(other) for one, other in kept)]
+
+
+def is_part(some: Sequence[str], whole: Sequence[str]) -> bool:
+    left = iter(whole)
+    return all(name in left for name in some)
+
+
+@examples(300)
+@given(made_by(demands))
+def test_every_order_can_be_exchanged_until_it_is_a_part(given_: tuple[Before, tuple[str, ...]]) -> None:
+    before, order = given_
+    whole = tuple(linear(before))
+    assert set(whole) == set(before)
+    assert any(is_part(each, whole) for each in exchanged(before, order))
+
+
+@examples(200)
+@given(made_by(demands))
+def test_only_members_of_circles_are_repeated(given_: tuple[Before, tuple[str, ...]]) -> None:
+    before, _ = given_
+    places = Counter(linear(before))
+    for circle in circles(before):
+        assert all(1 <= places[name] <= len(circle) for name in circle)
+
+
+@examples(60)
+@given(made_by(problem))
+def test_what_texts_show_the_solver_finds_too(given_: Problem) -> None:
+    station, supervisor = given_.automaton, given_.supervisor
+    asked = {name: Demands(station, ability) for name, ability in station.abilities.items()}
+    told, merely_known = (Pairs(station, supervisor, known) for known in (False, True))
+    for one, other in permutations(asked, 2):
+        if asked[one].excludes(asked[other]):
+            assert not told.order_matters(one, other)
+        if asked[one].undone_by(asked[other]):
+            assert not merely_known.order_matters(one, other)
+        guarded = any(name in supervisor.guards or station.abilities[name].restart for name in (one, other))
+        if not guarded and asked[one].commutes_with(asked[other]):
+            assert not told.order_matters(one, other)
+
+
+def ends(station: Automaton, given_: Problem, settled: State, order: Sequence[str] | None) -> set[tuple[object, ...]]:
+    """All states at the end of the tick: with starts in any order, or as parts of `order`."""
+    found = {(tuple(settled.values()), frozenset[str](), 0)}
+    pending = [(settled, frozenset[str](), 0)]
+    while pending:
+        state, taken, place = pending.pop()
+        choices = (
+            enumerate(order[place:], start=place + 1) if order is not None else ((0, n) for n in station.abilities)
+        )
+        for following, name in choices:
+            ability = station.abilities[name]
+            if name in taken or ability.restart:
+                continue
+            after = supervised_start(station, given_.supervisor, given_.state, state, ability)
+            if after is None:
+                continue
+            key = (tuple(after.values()), taken | {name}, following)
+            if key not in found:
+                found.add(key)
+                pending.append((after, taken | {name}, following))
+    return {values for values, _, _ in found}
+
+
+@examples(100)
+@given(made_by(problem))
+def test_a_tick_without_needless_starts_ends_wherever_one_can(given_: Problem) -> None:
+    station = given_.automaton
+    sweep = Sweep(station, given_.supervisor, known=True)
+    order = [ability.name for ability in sweep.complete(Budget.seconds(60))]
+    if given_.supervisor.safe.includes(given_.state):
+        assert ends(station, given_, given_.state, order) == ends(station, given_, given_.state, None)
+
+
+def test_what_is_done_and_undone_at_will_is_not_repeated() -> None:
+    """A tool is picked up or put back in a tick; both together would be for nothing."""
+    station = automaton(
+        {
+            "pick": Does(start=("held := true",), enabled="not held"),
+            "put": Does(start=("held := false",), enabled="held"),
+        },
+        estimated={"held": OFF},
+        goals={"reach": "held"},
+    )
+    supervisor = synthesise(station)
+    assert initial_state(station)["held"] is False
+    for known, places in ((False, 3), (True, 2)):
+        assert len(Sweep(station, supervisor, known).complete(Budget.seconds(60))) == places
