@@ -6,6 +6,8 @@ NO_PYTHON = Python 3.11, 3.12 or 3.13 with venv is needed. On Debian and Ubuntu:
 VENV := backend/.venv
 BIN := $(VENV)/bin
 STATION ?= models/truck_engine_station
+FAST_DDS := /usr/include/fastdds/dds/topic/TopicDataType.hpp
+FAST_DDS_PACKAGES := g++ libfastrtps-dev libfoonathan-memory-dev
 PAGE_SOURCES := $(shell find frontend/src frontend/static -type f 2>/dev/null) $(wildcard frontend/*.ts frontend/*.js frontend/*.json)
 LOCK := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
   --no-emit-find-links --no-annotate --custom-compile-command 'make lock'
@@ -32,7 +34,7 @@ lint: install-test
 typecheck: install-test
 	cd backend && .venv/bin/mypy --strict
 
-pytest: install-test
+pytest: install-test foreign
 	cd backend && .venv/bin/pytest --junitxml=../.ci/results/pytest.xml
 
 svelte-check: frontend/node_modules/done.stamp
@@ -63,7 +65,7 @@ lock: install ## Lock the newest Python packages that pyproject.toml allows
 	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements-node.lock requirements-node.in
 
 clean: ## Remove everything that was installed or built
-	rm -rf $(VENV) .node .ci/results backend/.*_cache backend/.hypothesis frontend/node_modules frontend/build frontend/.svelte-kit e2e/node_modules
+	rm -rf $(VENV) .node .ci/results backend/.*_cache backend/.hypothesis backend/tests/foreign/.built frontend/node_modules frontend/build frontend/.svelte-kit e2e/node_modules
 
 # What the verbs stand on.
 
@@ -119,9 +121,16 @@ e2e/node_modules/done.stamp: .node/done.stamp e2e/package-lock.json
 	cd e2e && PLAYWRIGHT_SKIP_BROWSER_DOWNLOAD=1 npm ci
 	@touch $@
 
+# Other implementations of ROS 2 for the tests to speak to. Where one cannot be had its tests are skipped, and say so.
+foreign: install-test
+	@test -e $(FAST_DDS) || { [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release && \
+	{ apt-get install -y $(FAST_DDS_PACKAGES) || { apt-get update && apt-get install -y $(FAST_DDS_PACKAGES); }; }; } || \
+	echo "Tests with Fast DDS are skipped. For them: sudo apt-get install $(FAST_DDS_PACKAGES)" >&2
+	cd backend && PYTHONPATH=tests .venv/bin/python -m foreign.peers
+
 chromium:
 	@for each in "$$CHROMIUM" chromium chromium-browser google-chrome; do command -v "$$each" >/dev/null && exit 0; done; \
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node chromium
+.PHONY: help run emulator test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign chromium

@@ -2,6 +2,7 @@ from uuid import UUID
 
 from cyclonedds.core import Entity
 from cyclonedds.domain import DomainParticipant
+from cyclonedds.dynamic import TypeIdentifier
 from cyclonedds.internal import SampleInfo
 from cyclonedds.qos import Qos
 
@@ -17,6 +18,7 @@ class DcpsEndpoint:
     topic_name: str
     type_name: str
     qos: Qos
+    type_id: TypeIdentifier | None
     sample_info: SampleInfo
 
 class BuiltinDataReader(Entity):

@@ -11,7 +11,16 @@ class DDSException(Exception):
 class Entity:
     @property
     def guid(self) -> UUID: ...
+    def set_status_mask(self, mask: int) -> None: ...
     def __del__(self) -> None: ...
+
+class DDSStatus:
+    OfferedDeadlineMissed: int
+    RequestedDeadlineMissed: int
+    OfferedIncompatibleQos: int
+    RequestedIncompatibleQos: int
+    LivelinessLost: int
+    LivelinessChanged: int
 
 class SampleState:
     Read: int

@@ -6,3 +6,14 @@ class SampleInfo:
 
 class InvalidSample:
     sample_info: SampleInfo
+
+class CountedStatus:
+    total_count: int
+    total_count_change: int
+
+class IncompatibleQosStatus(CountedStatus):
+    last_policy_id: int
+
+class LivelinessChangedStatus:
+    not_alive_count: int
+    not_alive_count_change: int

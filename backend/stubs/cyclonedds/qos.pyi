@@ -37,6 +37,15 @@ class Policy:
     class DataRepresentation(BasePolicy):
         def __init__(self, use_cdrv0_representation: bool = False, use_xcdrv2_representation: bool = False) -> None: ...
 
+    class Deadline(BasePolicy):
+        deadline: int
+        def __init__(self, deadline: int) -> None: ...
+
+    class Liveliness:
+        class Automatic(BasePolicy):
+            lease_duration: int
+            def __init__(self, lease_duration: int) -> None: ...
+
     class Userdata(BasePolicy):
         data: bytes
         def __init__(self, data: bytes) -> None: ...

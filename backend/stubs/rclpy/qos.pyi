@@ -1,5 +1,7 @@
 from enum import IntEnum
 
+from rclpy.duration import Duration
+
 class HistoryPolicy(IntEnum):
     KEEP_LAST = 1
 
@@ -13,9 +15,17 @@ class DurabilityPolicy(IntEnum):
     TRANSIENT_LOCAL = 1
     VOLATILE = 2
 
+class LivelinessPolicy(IntEnum):
+    AUTOMATIC = 1
+
+def qos_policy_name_from_kind(policy_kind: int) -> str: ...
+
 class QoSProfile:
     reliability: ReliabilityPolicy
     durability: DurabilityPolicy
+    deadline: Duration
+    liveliness: LivelinessPolicy
+    liveliness_lease_duration: Duration
     def __init__(
         self,
         *,

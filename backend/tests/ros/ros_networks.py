@@ -16,8 +16,8 @@ from sequence_planner.ros.transport import Transport
 #: Test runs side by side must not meet. Above 100 the ports of a domain can be those the system gives to others.
 DOMAIN = 1 + os.getpid() % 100
 
-#: Seconds within which any vendor's discovery has come about.
-PATIENCE = 10.0
+#: Seconds within which a process has started and any vendor's discovery has come about, on a busy computer.
+PATIENCE = 30.0
 
 
 @cache

@@ -1,9 +1,11 @@
 """A peer in a process of its own: what it hears on /ping it says on /pong in capitals, until its input ends.
 
-    python ros_peer.py ours|plain DOMAIN
+    python ros_peer.py ours|device|plain|route DOMAIN
 
-`ours` speaks through the station's transport. `plain` shares no code with it: a program written with cyclonedds as its
+`ours` speaks through the station's transport. `device` does too, shows that it is alive twice a second, and serves
+/add and the action /fibonacci. `plain` shares no code with it: a program written with cyclonedds as its
 manual teaches, which knows ROS 2's names and leaves the bytes to cyclonedds' own codec.
+`route` is such a program too, and publishes on /route a type that no file of a station defines.
 """
 
 import asyncio
@@ -12,13 +14,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from cyclonedds.domain import DomainParticipant
-from cyclonedds.idl import IdlStruct
+from cyclonedds.idl import IdlStruct, make_idl_struct, types
 from cyclonedds.pub import DataWriter
 from cyclonedds.qos import Policy, Qos
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
 
+from sequence_planner.ros.action_server import ActionServer, Work
+from sequence_planner.ros.actions import GoalStatus, Outcome
 from sequence_planner.ros.choice import open_transport
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import QualityOfService, Sample
@@ -45,6 +49,34 @@ async def ours(domain: int) -> None:
     transport.close()
 
 
+ADD, FIBONACCI = "example_interfaces/srv/AddTwoInts", "example_interfaces/action/Fibonacci"
+
+
+async def device(domain: int) -> None:
+    registry = MessageRegistry.from_folder(None)
+    transport = open_transport("cyclonedds", registry, "device", asyncio.get_running_loop(), domain)
+
+    def answer(batch: Sequence[Sample]) -> None:
+        for sample in batch:
+            transport.publish("/pong", TEXT, sample.data)
+
+    async def add(request: bytes) -> bytes:
+        numbers = registry.decode(f"{ADD}_Request", request)
+        return registry.encode(f"{ADD}_Response", {"sum": int(str(numbers["a"])) + int(str(numbers["b"]))})
+
+    async def wait(work: Work) -> Outcome:
+        await work.cancel_wanted.wait()
+        return Outcome(GoalStatus.CANCELED, {"sequence": [1]})
+
+    transport.serve("/add", ADD, add)
+    server = ActionServer(transport, registry, "/fibonacci", FIBONACCI, wait)
+    transport.advertise("/pong", TEXT, QualityOfService(liveliness=0.5))
+    transport.subscribe("/ping", TEXT, QualityOfService.RELIABLE, answer)
+    await until_input_ends()
+    server.close()
+    transport.close()
+
+
 @dataclass
 class Text(IdlStruct, typename="std_msgs.msg.dds_.String_"):
     """std_msgs/msg/String as IDL."""
@@ -65,5 +97,29 @@ async def plain(domain: int) -> None:
         await asyncio.sleep(0.01)
 
 
+# Messages of the plant's own, with fields of every shape.
+POINT = make_idl_struct("Point", "plant_msgs.msg.dds_.Point_", {"x": types.float64, "level": types.uint8})
+ROUTE = make_idl_struct(
+    "Route",
+    "plant_msgs.msg.dds_.Route_",
+    {
+        "name": types.bounded_str[8],
+        "points": types.sequence[POINT],
+        "codes": types.array[types.uint16, 2],
+        "labels": types.sequence[str, 3],
+        "closed": bool,
+    },
+)
+
+
+async def route(domain: int) -> None:
+    participant = DomainParticipant(domain)
+    policies = (Policy.Reliability.Reliable(duration(seconds=1)), Policy.Durability.TransientLocal)
+    writer = DataWriter(participant, Topic(participant, "rt/route", ROUTE), Qos(*policies, Policy.History.KeepLast(1)))
+    points = [POINT(x=1.5, level=200)]
+    writer.write(ROUTE(name="nuts", points=points, codes=[1, 65535], labels=["a", "b"], closed=True))
+    await until_input_ends()
+
+
 if __name__ == "__main__":
-    asyncio.run({"ours": ours, "plain": plain}[sys.argv[1]](int(sys.argv[2])))
+    asyncio.run({"ours": ours, "device": device, "plain": plain, "route": route}[sys.argv[1]](int(sys.argv[2])))

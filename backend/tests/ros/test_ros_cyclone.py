@@ -3,11 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import subprocess
-import sys
-from collections.abc import AsyncIterator, Sequence
-from contextlib import asynccontextmanager
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,6 +15,7 @@ from cyclonedds.topic import Topic
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from ros_networks import DOMAIN, Network, eventually, play, settle, standard
+from ros_processes import peer
 
 from sequence_planner.ros import cyclone_network
 from sequence_planner.ros.choice import open_transport
@@ -35,27 +32,6 @@ class Expected(NamedTuple):
 
     node: str | None
     has_hash: bool
-
-
-@asynccontextmanager
-async def peer(kind: str) -> AsyncIterator[None]:
-    """Run `ros_peer.py` beside this process, on the loopback interface, and see it end well."""
-    # SUBNET takes the configuration from CYCLONEDDS_URI, which keeps the peer on the loopback interface all the same.
-    environ = os.environ | {
-        "CYCLONEDDS_URI": loopback_configuration(),
-        "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET",
-    }
-    command = [sys.executable, "-W", "error", str(Path(__file__).with_name("ros_peer.py")), kind, str(DOMAIN)]
-    process = await asyncio.create_subprocess_exec(*command, stdin=subprocess.PIPE, env=environ)
-    try:
-        yield
-        assert process.stdin is not None
-        process.stdin.close()
-        assert await asyncio.wait_for(process.wait(), 10) == 0
-    finally:
-        if process.returncode is None:
-            process.kill()
-            await process.wait()
 
 
 @pytest.mark.parametrize(
@@ -253,6 +229,8 @@ def test_a_computer_without_the_interface_is_told_what_to_do(monkeypatch: pytest
         ("ROS_AUTOMATIC_DISCOVERY_RANGE", "everywhere", "give one of LOCALHOST, SUBNET"),
         ("ROS_DOMAIN_ID", "300", "give a number from 0 to 232"),
         ("ROS_DOMAIN_ID", "one", "'one'"),
+        ("SEQUENCE_PLANNER_INTERFACE", "none0", r"this computer has .*lo.*: give one of these"),
+        ("SEQUENCE_PLANNER_INTERFACE", "lo", "set the range to SUBNET"),
     ],
 )
 def test_an_environment_that_cannot_be_honoured_is_refused(

@@ -45,7 +45,7 @@ def test_a_bad_line_is_named(tmp_path: Path, line: str, text: str) -> None:
         MessageRegistry.from_folder(tmp_path)
     assert (caught.value.path, caught.value.line) == (path, 4)
     assert text in caught.value.text
-    assert str(caught.value).startswith(f"{path}:4: ")
+    assert str(caught.value).startswith(f"{path}:4:")
 
 
 def test_messages_that_contain_each_other_are_refused(tmp_path: Path) -> None:

@@ -1,7 +1,8 @@
 """A colcon package of a station's messages.
 
 rclpy wants generated code for every message type, even to carry raw bytes. ROS 2 generates it when colcon builds a
-package with the `.msg` files and two files that say so; this module writes them from the station's `messages` folder.
+package with the `.msg`, `.srv` and `.action` files and two files that say so; this module writes them from the
+station's `messages` folder.
 """
 
 from __future__ import annotations
@@ -9,7 +10,7 @@ from __future__ import annotations
 import shutil
 from pathlib import Path
 
-from sequence_planner.ros.definitions import Definition, read_definitions
+from sequence_planner.ros.definitions import Interface, read_interfaces
 from sequence_planner.ros.fields import field_type
 from sequence_planner.ros.messages import MessageRegistry
 
@@ -57,12 +58,12 @@ def write_ament_package(messages_dir: Path, destination: Path) -> list[Path]:
     used. Either way nothing has been written then.
     """
     MessageRegistry.from_folder(messages_dir)
-    packages: dict[str, list[Definition]] = {}
-    for definition in read_definitions(messages_dir):
-        packages.setdefault(definition.type_name.split("/")[0], []).append(definition)
+    packages: dict[str, list[Interface]] = {}
+    for interface in read_interfaces(messages_dir):
+        packages.setdefault(interface.type_name.split("/")[0], []).append(interface)
     for package in packages:
         _check_replaceable(destination / package)
-    return [_write(destination / package, package, definitions) for package, definitions in packages.items()]
+    return [_write(destination / package, package, interfaces) for package, interfaces in packages.items()]
 
 
 def _check_replaceable(folder: Path) -> None:
@@ -72,19 +73,14 @@ def _check_replaceable(folder: Path) -> None:
         raise FileExistsError(f"{folder} is there already and was not written here: choose another destination")
 
 
-def _write(folder: Path, package: str, definitions: list[Definition]) -> Path:
-    used = {
-        field_type(field.description).type_name.split("/")[0]
-        for definition in definitions
-        for field in definition.fields
-        if field_type(field.description).kind == "message"
-    }
-    dependencies = sorted(used - {package})
+def _write(folder: Path, package: str, interfaces: list[Interface]) -> Path:
+    dependencies = sorted(_used(interfaces) - {package})
     if folder.exists():
         shutil.rmtree(folder)
-    (folder / "msg").mkdir(parents=True)
-    for definition in definitions:
-        shutil.copyfile(definition.path, folder / "msg" / definition.path.name)
+    files = [f"{interface.kind}/{interface.path.name}" for interface in interfaces]
+    for interface, file in zip(interfaces, files, strict=True):
+        (folder / file).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(interface.path, folder / file)
     depends = "".join(f"  <depend>{name}</depend>\n" for name in dependencies)
     (folder / "package.xml").write_text(
         _PACKAGE_XML.format(package=package, mark=_MARK, depends=depends), encoding="utf-8"
@@ -93,9 +89,21 @@ def _write(folder: Path, package: str, definitions: list[Definition]) -> Path:
         _CMAKE.format(
             package=package,
             finds="".join(f"find_package({name} REQUIRED)\n" for name in dependencies),
-            messages="".join(f'  "msg/{definition.path.name}"\n' for definition in definitions),
+            messages="".join(f'  "{file}"\n' for file in files),
             dependencies=f"  DEPENDENCIES {' '.join(dependencies)}\n" if dependencies else "",
         ),
         encoding="utf-8",
     )
     return folder
+
+
+def _used(interfaces: list[Interface]) -> set[str]:
+    """Return the packages whose messages are used, and what rosidl wants beside them for an action."""
+    used = {
+        field_type(field.description).type_name.split("/")[0]
+        for interface in interfaces
+        for message in interface.messages
+        for field in message.fields
+        if field_type(field.description).kind == "message"
+    }
+    return used | {"action_msgs"} if any(interface.kind == "action" for interface in interfaces) else used

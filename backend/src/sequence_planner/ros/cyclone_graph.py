@@ -18,17 +18,27 @@ from cyclonedds.builtin import (
 )
 from cyclonedds.core import InstanceState
 from cyclonedds.domain import DomainParticipant
+from cyclonedds.dynamic import TypeIdentifier
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
 from sequence_planner.ros import discovery_info, names
 from sequence_planner.ros.cyclone_network import release
-from sequence_planner.ros.cyclone_qos import discovery_qos, is_reliable, is_transient_local, user_data
+from sequence_planner.ros.cyclone_qos import (
+    deadline,
+    discovery_qos,
+    is_reliable,
+    is_transient_local,
+    liveliness,
+    user_data,
+)
 from sequence_planner.ros.cyclone_receiver import take_all
 from sequence_planner.ros.cyclone_types import RawSample
 from sequence_planner.ros.messages import MalformedMessageError, MessageRegistry
+from sequence_planner.ros.service_graph import ServiceEnd
 from sequence_planner.ros.transport import Direction, Endpoint
+from sequence_planner.ros.vendors import vendor_of
 
 _log = structlog.get_logger(__name__)
 
@@ -51,6 +61,7 @@ class Discovery:
         }
         self._known: dict[Direction, dict[UUID, DcpsEndpoint]] = {"publisher": {}, "subscriber": {}}
         self._nodes: dict[UUID, dict[UUID, str]] = {}  # participant -> endpoint -> node
+        self._made: dict[UUID, Endpoint] = {}  # by endpoint
         self._topic = Topic(participant, discovery_info.TOPIC, raw)
         self._reader = DataReader(participant, self._topic, discovery_qos(reader=True))
         self._writer = DataWriter(participant, self._topic, discovery_qos(reader=False))
@@ -72,22 +83,56 @@ class Discovery:
             if (topic := names.ros_topic(seen.topic_name)) is not None
         ]
 
+    def services(self) -> list[ServiceEnd]:
+        """Return the servers and clients of ROS 2 services that were on the network at the last look at endpoints."""
+        return [
+            ServiceEnd(
+                *service,
+                "server" if direction == "subscriber" else "client",
+                seen.participant_key == self._own,
+                self._node(seen),
+                vendor_of(seen.participant_key),
+            )
+            for direction, known in self._known.items()
+            for seen in known.values()
+            if (service := names.ros_service(seen.topic_name, seen.type_name)) is not None
+        ]
+
+    def type_id(self, endpoint: Endpoint) -> TypeIdentifier | None:
+        """Return the number that foreign endpoints like this one tell for their type, or None when they tell none."""
+        self._refresh(endpoint.direction)
+        for seen in self._known[endpoint.direction].values():
+            is_there = seen.type_id is not None and names.ros_topic(seen.topic_name) == endpoint.topic
+            if is_there and self._endpoint(endpoint.topic, endpoint.direction, seen) == endpoint:
+                return seen.type_id
+        return None
+
     def close(self) -> None:
         """Delete the entities of discovery."""
         for entity in (*self._builtin.values(), self._reader, self._writer, self._topic):
             release(entity)
 
+    def _node(self, seen: DcpsEndpoint) -> str | None:
+        return self._nodes.get(seen.participant_key, {}).get(seen.key)
+
     def _endpoint(self, topic: str, direction: Direction, seen: DcpsEndpoint) -> Endpoint:
-        return Endpoint(
-            topic=topic,
-            type_name=names.ros_type(seen.type_name),
-            direction=direction,
-            own=seen.participant_key == self._own,
-            type_hash=names.type_hash_of(user_data(seen.qos)),
-            node=self._nodes.get(seen.participant_key, {}).get(seen.key),
-            reliable=is_reliable(seen.qos),
-            transient_local=is_transient_local(seen.qos),
-        )
+        """Return what is told of an endpoint, made once: the graph is asked for every second."""
+        made, node = self._made.get(seen.key), self._node(seen)
+        if made is None or made.node != node:
+            made = self._made[seen.key] = Endpoint(
+                topic=topic,
+                type_name=names.ros_type(seen.type_name),
+                direction=direction,
+                own=seen.participant_key == self._own,
+                type_hash=names.type_hash_of(user_data(seen.qos)),
+                node=node,
+                reliable=is_reliable(seen.qos),
+                transient_local=is_transient_local(seen.qos),
+                deadline=deadline(seen.qos),
+                liveliness=liveliness(seen.qos),
+                vendor=vendor_of(seen.participant_key),
+            )
+        return made
 
     def _refresh(self, direction: Direction) -> None:
         """Take the announcements that have come since the last time."""
@@ -95,6 +140,7 @@ class Discovery:
         while True:
             taken = reader.take(_CHUNK)
             for seen in taken:
+                self._made.pop(seen.key, None)
                 if seen.sample_info.valid_data and seen.sample_info.instance_state == InstanceState.Alive:
                     known[seen.key] = seen
                 else:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import sys
 import threading
 from weakref import WeakValueDictionary
+from xml.sax.saxutils import quoteattr
 
 from cyclonedds.core import DDSException, Entity
 from cyclonedds.domain import Domain, DomainParticipant
@@ -42,11 +43,19 @@ def loopback_configuration() -> str:
     </Domain></CycloneDDS>"""
 
 
+def interface_configuration(interface: str) -> str:
+    """Return the cyclonedds configuration that uses the network interface of this name and no other."""
+    return f"""<CycloneDDS><Domain>
+      <General><Interfaces><NetworkInterface name={quoteattr(interface)}/></Interfaces></General>
+    </Domain></CycloneDDS>"""
+
+
 def join(domain_id: int, discovery: DiscoveryRange) -> tuple[Domain | None, DomainParticipant]:
     """Return a participant of the domain, and the domain's configuration, which must live as long.
 
-    With the range LOCALHOST the loopback configuration holds; with SUBNET and SYSTEM_DEFAULT that of CYCLONEDDS_URI, if
-    any. Raises TransportError when there is no network to join, or one that this library must not join.
+    With the range LOCALHOST the loopback configuration holds. With SUBNET it is the interface that the environment
+    names, if any; without one, and with SYSTEM_DEFAULT, the configuration of CYCLONEDDS_URI, if any. Raises
+    TransportError when there is no network to join, or one that this library must not join.
     """
     if environment.security_wanted():
         raise TransportError(
@@ -54,9 +63,14 @@ def join(domain_id: int, discovery: DiscoveryRange) -> tuple[Domain | None, Doma
         )
     if discovery is DiscoveryRange.OFF:
         raise TransportError(f"{environment.DISCOVERY_RANGE} is OFF, so no device could be found: use LOCALHOST")
+    interface = environment.interface(discovery)
     qos = Qos(Policy.Userdata(b"enclave=/;"))
     try:
-        domain = _loopback_domain(domain_id) if discovery is DiscoveryRange.LOCALHOST else None
+        domain = None
+        if discovery is DiscoveryRange.LOCALHOST:
+            domain = _configured(domain_id, loopback_configuration())
+        elif interface is not None:
+            domain = _configured(domain_id, interface_configuration(interface))
         return domain, DomainParticipant(domain_id, qos)
     except DDSException as error:
         way = "loopback interface" if discovery is DiscoveryRange.LOCALHOST else "network interface"
@@ -66,11 +80,11 @@ def join(domain_id: int, discovery: DiscoveryRange) -> tuple[Domain | None, Doma
         ) from error
 
 
-def _loopback_domain(domain_id: int) -> Domain:
+def _configured(domain_id: int, configuration: str) -> Domain:
     with _lock:
         domain = _domains.get(domain_id)
         if domain is None:
-            domain = _domains[domain_id] = Domain(domain_id, loopback_configuration())
+            domain = _domains[domain_id] = Domain(domain_id, configuration)
         return domain
 
 

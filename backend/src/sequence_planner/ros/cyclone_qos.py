@@ -7,13 +7,13 @@ from cyclonedds.util import duration
 
 from sequence_planner.ros.transport import QualityOfService
 
-_HISTORIES = {qos: Policy.History.KeepLast(qos.depth) for qos in QualityOfService}
-_RELIABLE = Policy.Reliability.Reliable(max_blocking_time=duration(infinite=True))
+_INFINITE = duration(infinite=True)
+_RELIABLE = Policy.Reliability.Reliable(max_blocking_time=_INFINITE)
 
 
 def endpoint_qos(qos: QualityOfService, user_data: bytes = b"") -> Qos:
     """Return the policies of a reader or writer that ROS 2 would give it, with `user_data` for its peers to read."""
-    history = _HISTORIES[qos]
+    history = Policy.History.KeepLast(qos.depth)
     policies = [
         _RELIABLE if qos.reliable else Policy.Reliability.BestEffort,
         history,
@@ -24,6 +24,10 @@ def endpoint_qos(qos: QualityOfService, user_data: bytes = b"") -> Qos:
     ]
     if qos.transient_local:
         policies += [Policy.Durability.TransientLocal, Policy.DurabilityService(0, history, -1, -1, -1)]
+    if qos.deadline is not None:
+        policies.append(Policy.Deadline(duration(seconds=qos.deadline)))
+    if qos.liveliness is not None:
+        policies.append(Policy.Liveliness.Automatic(duration(seconds=qos.liveliness)))
     if user_data:
         policies.append(Policy.Userdata(user_data))
     return Qos(*policies)
@@ -45,6 +49,22 @@ def discovery_qos(*, reader: bool) -> Qos:
 def user_data(qos: Qos) -> bytes:
     """Return what a peer wrote into its user data."""
     return qos[Policy.Userdata].data if Policy.Userdata in qos else b""
+
+
+def deadline(qos: Qos) -> float | None:
+    """Return how often (s) a peer sends or wants a sample; None when it says nothing of that."""
+    return _seconds(qos[Policy.Deadline].deadline) if Policy.Deadline in qos else None
+
+
+def liveliness(qos: Qos) -> float | None:
+    """Return how often (s) a peer shows that it is alive, or wants that shown; None when it says nothing of that."""
+    # Asked for by one class, the library finds the policy of any kind.
+    kind = Policy.Liveliness.Automatic
+    return _seconds(qos[kind].lease_duration) if kind in qos else None
+
+
+def _seconds(nanoseconds: int) -> float | None:
+    return None if nanoseconds >= _INFINITE else nanoseconds / 1e9
 
 
 def is_reliable(qos: Qos) -> bool:

@@ -85,7 +85,10 @@ class Receiver:
                 for topic, reader, delivery, _ in self._serving:
                     samples = list(take_all(reader))
                     received = time.monotonic()
-                    delivery.push(Sample(topic, sample.data, received) for sample in samples)
+                    delivery.push(
+                        Sample(topic, sample.data, received, sample.sample_info.publication_handle)
+                        for sample in samples
+                    )
             except DDSException:
                 _log.exception("DDS failed while receiving")
                 time.sleep(1.0)  # If it lasts, the log fills slowly and the processor stays free.

@@ -8,8 +8,7 @@ all the same: cyclonedds peers compare it, and do not match when the definitions
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import ClassVar, Self
+from typing import ClassVar, Protocol, Self
 
 from cyclonedds.idl import IdlStruct, make_idl_struct, types
 from cyclonedds.internal import SampleInfo
@@ -59,20 +58,37 @@ class RawSample:
         return cls(data)
 
 
-def raw_types(registry: MessageRegistry) -> Callable[[str], type[RawSample]]:
-    """Return the function that gives a type name its class, made on first use; it raises UnknownMessageTypeError."""
+#: What Cyclone's mapping of services puts before a request or a response: whose call it is, and the number of the call.
+#: ROS 2 has no field with two underscores, so these names are free.
+_CALL_HEADER: dict[str, object] = {"call__client": types.uint64, "call__number": types.int64}
+
+
+class RawTypes(Protocol):
+    """Gives a message type its class, made on first use; raises UnknownMessageTypeError.
+
+    With `called`, it is that of a request or response, before which the header of a call stands.
+    """
+
+    def __call__(self, type_name: str, *, called: bool = False) -> type[RawSample]:
+        """Return the class."""
+
+
+def raw_types(registry: MessageRegistry) -> RawTypes:
+    """Return the function that gives the types of `registry` their classes."""
     structs: dict[str, type[IdlStruct]] = {}
-    classes: dict[str, type[RawSample]] = {}
+    classes: dict[tuple[str, bool], type[RawSample]] = {}
 
     def struct(type_name: str) -> type[IdlStruct]:
         if type_name not in structs:
-            fields = {name: annotation(field) for name, field in registry.fields(type_name).items()}
-            dotted = registry.dds_name(type_name).replace("::", ".")
-            # As a dataclass it could not have a field named like a Python keyword, and nobody makes an instance of it.
-            structs[type_name] = make_idl_struct(
-                type_name.replace("/", "__"), dotted, fields or {PLACEHOLDER: types.uint8}, dataclassify=False
-            )
+            structs[type_name] = made(type_name, {})
         return structs[type_name]
+
+    def made(type_name: str, header: dict[str, object]) -> type[IdlStruct]:
+        fields = {name: annotation(field) for name, field in registry.fields(type_name).items()}
+        dotted = registry.dds_name(type_name).replace("::", ".")
+        # As a dataclass it could not have a field named like a Python keyword, and nobody makes an instance of it.
+        name = type_name.replace("/", "__")
+        return make_idl_struct(name, dotted, header | (fields or {PLACEHOLDER: types.uint8}), dataclassify=False)
 
     def annotation(field: FieldType) -> object:
         element: object
@@ -88,10 +104,11 @@ def raw_types(registry: MessageRegistry) -> Callable[[str], type[RawSample]]:
             return types.sequence[element, field.max_items] if field.max_items else types.sequence[element]
         return types.array[element, field.array]
 
-    def raw(type_name: str) -> type[RawSample]:
-        if type_name not in classes:
-            idl = struct(type_name).__idl__
-            classes[type_name] = type(type_name.replace("/", "__"), (RawSample,), {"__idl__": idl, "__slots__": ()})
-        return classes[type_name]
+    def raw(type_name: str, *, called: bool = False) -> type[RawSample]:
+        key = (type_name, called)
+        if key not in classes:
+            idl = (made(type_name, _CALL_HEADER) if called else struct(type_name)).__idl__
+            classes[key] = type(type_name.replace("/", "__"), (RawSample,), {"__idl__": idl, "__slots__": ()})
+        return classes[key]
 
     return raw

@@ -1,9 +1,10 @@
-"""Reading `.msg` files.
+"""Reading `.msg`, `.srv` and `.action` files.
 
 A message definition is a list of lines: `type name [default]` declares a field, `type NAME=value` a constant, and `#`
-begins a comment. The grammar is rosbags'; it is applied line by line here, so that an error can name its line, and with
-the stricter naming rules of ROS 2, so that what loads here is also built by colcon. rosbags drops default values; they
-are kept here, since a field left out of a message must have its default.
+begins a comment. A service is two of them with a line `---` between (request and response), an action three (goal,
+result and feedback). The grammar is rosbags'; it is applied line by line here, so that an error can name its line, and
+with the stricter naming rules of ROS 2, so that what loads here is also built by colcon. rosbags drops default values;
+they are kept here, since a field left out of a message must have its default.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal, cast
 
 from rosbags.typesys import TypesysError
 from rosbags.typesys.base import BaseName, BaseType, create_field_desc, normalize_fieldname
@@ -21,12 +22,23 @@ from rosbags.typesys.msg import MSGParser
 from sequence_planner.ros.errors import MessageDefinitionError
 
 if TYPE_CHECKING:
-    from rosbags.interfaces.typing import FieldDesc, Value
+    from rosbags.interfaces.typing import FieldDesc, ScalarValue, Value
     from rosbags.typesys.base import Field
 
+InterfaceKind = Literal["msg", "srv", "action"]
+
+#: The suffixes of the messages that a file of each kind defines, in their order.
+PARTS: dict[InterfaceKind, tuple[str, ...]] = {
+    "msg": ("",),
+    "srv": ("_Request", "_Response"),
+    "action": ("_Goal", "_Result", "_Feedback"),
+}
+
 _PACKAGE = re.compile(r"(?!.*__)[a-z][a-z0-9_]*(?<!_)")
-_MESSAGE = re.compile(r"[A-Z][A-Za-z0-9]*")
+_INTERFACE = re.compile(r"[A-Z][A-Za-z0-9]*")
 _FIELD = re.compile(r"(?!.*__)[a-z][a-z0-9_]*(?<!_)")
+_SEPARATOR = "---"
+_KIND_NAMES: dict[InterfaceKind, str] = {"msg": "a message", "srv": "a service", "action": "an action"}
 
 #: Types people write that ROS 2 does not have, and what to write instead.
 _INSTEAD = {
@@ -44,94 +56,153 @@ _INSTEAD = {
 
 @dataclass(frozen=True)
 class FieldDeclaration:
-    """One field of a definition, with the line that declares it and the default as written, if any."""
+    """One field of a definition, with the line and column that declare it and the default as written, if any."""
 
     name: str
     description: FieldDesc
     default: Value | None
     line: int
+    column: int
+
+
+@dataclass(frozen=True)
+class ConstantDeclaration:
+    """One constant of a definition: its name, the name of its type and its value."""
+
+    name: str
+    type_name: str
+    value: ScalarValue
 
 
 @dataclass(frozen=True)
 class Definition:
-    """One `.msg` file, read."""
+    """One message, read."""
 
     type_name: str
     path: Path
     fields: tuple[FieldDeclaration, ...]
+    constants: tuple[ConstantDeclaration, ...]
 
 
-def read_definitions(messages_dir: Path) -> Iterator[Definition]:
-    """Read every `<package>/msg/<Name>.msg` below `messages_dir`, in the order of their names.
+@dataclass(frozen=True)
+class Interface:
+    """One file, read: `type_name` is written `package/msg/Name`, with `srv` or `action` for the other kinds.
+
+    `messages` are the message itself, request and response, or goal, result and feedback.
+    """
+
+    type_name: str
+    kind: InterfaceKind
+    path: Path
+    messages: tuple[Definition, ...]
+
+
+def read_interfaces(messages_dir: Path) -> Iterator[Interface]:
+    """Read every `<package>/<kind>/<Name>.<kind>` below `messages_dir`: messages, then services, then actions.
 
     Raises MessageDefinitionError for a bad name, an unreadable file or a line that is neither field nor constant.
     """
     if not messages_dir.is_dir():
         raise MessageDefinitionError(messages_dir, 1, "no such folder; it should hold <package>/msg/<Name>.msg")
-    for path in sorted(messages_dir.glob("*/msg/*.msg")):
-        package = path.parent.parent.name
-        if not _PACKAGE.fullmatch(package):
-            raise MessageDefinitionError(
-                path, 1, f"{package!r} is not a package name: use lower case, digits and single underscores"
-            )
-        if not _MESSAGE.fullmatch(path.stem):
-            raise MessageDefinitionError(path, 1, f"{path.stem!r} is not a message name: write it as in NutState")
-        yield read_definition(path, f"{package}/msg/{path.stem}")
+    for kind in PARTS:
+        for path in sorted(messages_dir.glob(f"*/{kind}/*.{kind}")):
+            package = path.parent.parent.name
+            if not _PACKAGE.fullmatch(package):
+                raise MessageDefinitionError(
+                    path, 1, f"{package!r} is not a package name: use lower case, digits and single underscores"
+                )
+            if not _INTERFACE.fullmatch(path.stem):
+                raise MessageDefinitionError(
+                    path, 1, f"{path.stem!r} is not {_KIND_NAMES[kind]} name: write it as in NutState"
+                )
+            try:
+                text = path.read_text(encoding="utf-8")
+            except (OSError, UnicodeDecodeError) as error:
+                raise MessageDefinitionError(path, 1, f"cannot be read as UTF-8 text: {error}") from error
+            yield read_interface(f"{package}/{kind}/{path.stem}", path, text)
 
 
-def read_definition(path: Path, type_name: str) -> Definition:
-    """Read the definition of `type_name` from `path`; raises MessageDefinitionError."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        raise MessageDefinitionError(path, 1, f"cannot be read as UTF-8 text: {error}") from error
-    fields: list[FieldDeclaration] = []
-    taken: dict[str, int] = {}
+def read_interface(type_name: str, path: Path, text: str) -> Interface:
+    """Read the definition of `type_name`, whose `text` is from `path`; raises MessageDefinitionError."""
+    kind = cast("InterfaceKind", type_name.split("/")[1])
+    sections: list[list[tuple[int, str]]] = [[]]
     for line, source in enumerate(text.splitlines(), start=1):
+        if kind != "msg" and source.strip() == _SEPARATOR:
+            sections.append([])
+            if len(sections) > len(PARTS[kind]):
+                raise MessageDefinitionError(path, line, _sections_wanted(kind))
+        else:
+            sections[-1].append((line, source))
+    if len(sections) < len(PARTS[kind]):
+        raise MessageDefinitionError(path, max(len(text.splitlines()), 1), _sections_wanted(kind))
+    messages = (_message(type_name + part, path, lines) for part, lines in zip(PARTS[kind], sections, strict=True))
+    return Interface(type_name, kind, path, tuple(messages))
+
+
+def _sections_wanted(kind: InterfaceKind) -> str:
+    parts = ", ".join(part.strip("_").lower() for part in PARTS[kind])
+    return f"{_KIND_NAMES[kind]} has {len(PARTS[kind])} parts ({parts}) with a line {_SEPARATOR} between them"
+
+
+def _message(type_name: str, path: Path, lines: list[tuple[int, str]]) -> Definition:
+    fields: list[FieldDeclaration] = []
+    constants: list[ConstantDeclaration] = []
+    taken: dict[str, int] = {}
+    for line, source in lines:
         declared = _declaration(path, line, type_name, source)
         if declared is None:
             continue
-        name, field = declared
         # rosbags keeps a field as an attribute, where `from` and `from_` would meet.
-        attribute = normalize_fieldname(name)
+        attribute = normalize_fieldname(declared.name)
         if attribute in taken:
-            raise MessageDefinitionError(path, line, f"{name} is already declared in line {taken[attribute]}")
+            text = f"{declared.name} is already declared in line {taken[attribute]}"
+            raise MessageDefinitionError(path, line, text, _column(source, declared.name))
         taken[attribute] = line
-        if field is not None:
-            fields.append(field)
-    return Definition(type_name, path, tuple(fields))
+        if isinstance(declared, FieldDeclaration):
+            fields.append(declared)
+        else:
+            constants.append(declared)
+    return Definition(type_name, path, tuple(fields), tuple(constants))
 
 
-def _declaration(path: Path, line: int, type_name: str, source: str) -> tuple[str, FieldDeclaration | None] | None:
-    """Return what a line declares: its name, and the field unless it is a constant; None for an empty line."""
+def _declaration(path: Path, line: int, type_name: str, source: str) -> FieldDeclaration | ConstantDeclaration | None:
+    """Return what a line declares; None for an empty line."""
     text = source.strip()
     if not text or text.startswith("#"):
         return None
+    column = _column(source, text)
     written_type = re.split(r"[\s\[<]", text, maxsplit=1)[0]
     if written_type in _INSTEAD:
-        raise MessageDefinitionError(path, line, f"ROS 2 has no type {written_type}: {_INSTEAD[written_type]}")
+        raise MessageDefinitionError(path, line, f"ROS 2 has no type {written_type}: {_INSTEAD[written_type]}", column)
     try:
-        [message] = MSGParser(f"MSG: {type_name}\n{text}\n").specification()
+        # The parts of services and actions see the messages of their package as messages do.
+        [message] = MSGParser(f"MSG: {type_name.split('/', 1)[0]}/msg/Any\n{text}\n").specification()
     except TypesysError as error:
         wanted = "`type name`, `type name default` or `type NAME=value`"
-        raise MessageDefinitionError(path, line, f"cannot read {text!r}: write {wanted}") from error
+        raise MessageDefinitionError(path, line, f"cannot read {text!r}: write {wanted}", column) from error
     if message.constants:
-        return message.constants[0].name, None
+        constant = message.constants[0]
+        return ConstantDeclaration(constant.name, constant.typ.value, constant.value)
     if not message.fields:
         return None
     field = message.fields[0]
     if not _FIELD.fullmatch(field.name):
-        raise MessageDefinitionError(
-            path, line, f"{field.name!r} is not a field name: use lower case, digits and single underscores"
-        )
-    _check_quoted(path, line, text, field)
-    return field.name, FieldDeclaration(field.name, create_field_desc(field.typ), field.value, line)
+        reason = f"{field.name!r} is not a field name: use lower case, digits and single underscores"
+        raise MessageDefinitionError(path, line, reason, _column(source, field.name))
+    _check_quoted(path, line, source, field)
+    return FieldDeclaration(field.name, create_field_desc(field.typ), field.value, line, column)
 
 
-def _check_quoted(path: Path, line: int, text: str, field: Field) -> None:
+def _check_quoted(path: Path, line: int, source: str, field: Field) -> None:
     """Refuse a string default without quotes: what belongs to it, and what to a comment, would be a guess."""
     if field.value is None or field.typ.ref != BaseType(BaseName.STRING):
         return
     for value in field.value if isinstance(field.value, list) else [field.value]:
-        if f'"{value}"' not in text and f"'{value}'" not in text:
-            raise MessageDefinitionError(path, line, f"put the default of {field.name} in quotes")
+        if f'"{value}"' not in source and f"'{value}'" not in source:
+            reason = f"put the default of {field.name} in quotes"
+            raise MessageDefinitionError(path, line, reason, _column(source, str(value)))
+
+
+def _column(source: str, token: str) -> int:
+    """Return the column, from 1, in which `token` begins in the line `source`; 1 where it is not written so."""
+    return max(source.find(token), 0) + 1

@@ -1,8 +1,8 @@
 """From a middleware's thread to the event loop.
 
 Waking the loop once per sample costs more than the samples do, so samples wait in a queue, the first one wakes the loop
-and the loop takes all that have come by then as one batch. The queue is bounded: a loop that stands still loses the
-oldest samples, as DDS itself does, and the log says so.
+and the loop takes all that have come by then as one batch. The queue is bounded in samples and in bytes: a loop that
+stands still loses the oldest samples, as DDS itself does, and the log says so.
 """
 
 from __future__ import annotations
@@ -21,17 +21,28 @@ _log = structlog.get_logger(__name__)
 #: Samples of one subscription that may wait for the loop.
 CAPACITY = 10_000
 
+#: Bytes of one subscription that may wait for the loop. The newest sample may always, however large it is.
+CAPACITY_BYTES = 64 * 2**20
+
 
 class Delivery:
     """The queue of one subscription. `push` may be called on any thread, the rest on the loop's."""
 
     def __init__(
-        self, loop: asyncio.AbstractEventLoop, topic: str, on_batch: OnBatch, capacity: int = CAPACITY
+        self,
+        loop: asyncio.AbstractEventLoop,
+        topic: str,
+        on_batch: OnBatch,
+        capacity: int = CAPACITY,
+        capacity_bytes: int = CAPACITY_BYTES,
     ) -> None:
         self._loop = loop
         self._topic = topic
         self._on_batch = on_batch
-        self._waiting: deque[Sample] = deque(maxlen=capacity)
+        self._capacity = capacity
+        self._capacity_bytes = capacity_bytes
+        self._waiting: deque[Sample] = deque()
+        self._bytes = 0
         self._lost = 0
         self._awake = False
         self._closed = False
@@ -43,8 +54,13 @@ class Delivery:
             if self._closed:
                 return
             for sample in samples:
-                self._lost += len(self._waiting) == self._waiting.maxlen
                 self._waiting.append(sample)
+                self._bytes += len(sample.data)
+                while len(self._waiting) > self._capacity or (
+                    self._bytes > self._capacity_bytes and len(self._waiting) > 1
+                ):
+                    self._bytes -= len(self._waiting.popleft().data)
+                    self._lost += 1
             wake = bool(self._waiting) and not self._awake
             self._awake = self._awake or wake
         if wake:
@@ -63,6 +79,7 @@ class Delivery:
         with self._lock:
             batch, lost = tuple(self._waiting), self._lost
             self._waiting.clear()
+            self._bytes = 0
             self._lost = 0
             self._awake = False
         if lost:

@@ -2,11 +2,13 @@
 
 `ROS_DOMAIN_ID` and `ROS_AUTOMATIC_DISCOVERY_RANGE` mean what they mean to every ROS 2 program, with one difference: a
 range nobody set is LOCALHOST here and SUBNET there. A station that commands machines joins a network only when told to.
+ROS 2 has no variable for the network interface, so it is `SEQUENCE_PLANNER_INTERFACE`, by name as in `eth0`.
 """
 
 from __future__ import annotations
 
 import os
+import socket
 from collections.abc import Mapping
 from enum import StrEnum
 
@@ -14,6 +16,7 @@ from sequence_planner.ros.transport import TransportError
 
 DOMAIN_ID = "ROS_DOMAIN_ID"
 DISCOVERY_RANGE = "ROS_AUTOMATIC_DISCOVERY_RANGE"
+INTERFACE = "SEQUENCE_PLANNER_INTERFACE"
 SECURITY = "ROS_SECURITY_ENABLE"
 
 #: The highest domain whose UDP ports exist.
@@ -45,6 +48,39 @@ def discovery_range(environ: Mapping[str, str] = os.environ) -> DiscoveryRange:
     except ValueError:
         known = ", ".join(DiscoveryRange)
         raise TransportError(f"{DISCOVERY_RANGE} is {text!r}: give one of {known}") from None
+
+
+def interface(reach: DiscoveryRange, environ: Mapping[str, str] = os.environ) -> str | None:
+    """Return the network interface to use with the range SUBNET; None leaves the choice to the middleware.
+
+    Raises TransportError for one that this computer lacks, or that the range `reach` does not leave to be chosen.
+    """
+    name = environ.get(INTERFACE)
+    if not name:
+        return None
+    there = [known for _, known in socket.if_nameindex()]
+    if name not in there:
+        raise TransportError(f"{INTERFACE} is {name!r}, and this computer has {', '.join(there)}: give one of these")
+    if reach is DiscoveryRange.LOCALHOST:
+        raise TransportError(
+            f"{INTERFACE} is {name!r}, and {DISCOVERY_RANGE} is LOCALHOST, which stays on this computer: "
+            "set the range to SUBNET, or leave the interface out"
+        )
+    if reach is DiscoveryRange.SYSTEM_DEFAULT:
+        raise TransportError(
+            f"{INTERFACE} is {name!r}, and {DISCOVERY_RANGE} is SYSTEM_DEFAULT, with which the middleware's own "
+            "configuration (CYCLONEDDS_URI) names the interface: set the range to SUBNET, or leave the interface out"
+        )
+    return name
+
+
+def refuse_interface(environ: Mapping[str, str] = os.environ) -> None:
+    """Raise TransportError when an interface is named and rclpy is used, where each middleware has its own way."""
+    if environ.get(INTERFACE):
+        raise TransportError(
+            f"{INTERFACE} is {environ[INTERFACE]!r}, which rclpy cannot pass on: name the interface in the "
+            "configuration of its middleware (CYCLONEDDS_URI, FASTDDS_DEFAULT_PROFILES_FILE), and unset it"
+        )
 
 
 def security_wanted(environ: Mapping[str, str] = os.environ) -> bool:

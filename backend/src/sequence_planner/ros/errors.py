@@ -8,23 +8,24 @@ from pathlib import Path
 
 
 class MessageDefinitionError(Exception):
-    """A `.msg` file cannot be used. `line` counts from 1; `text` says what is wrong and what to do."""
+    """A definition file cannot be used. `line` and `column` count from 1; `text` says what is wrong and what to do."""
 
-    def __init__(self, path: Path, line: int, text: str) -> None:
-        super().__init__(f"{path}:{line}: {text}")
+    def __init__(self, path: Path, line: int, text: str, column: int = 1) -> None:
+        super().__init__(f"{path}:{line}:{column}: {text}")
         self.path = path
         self.line = line
+        self.column = column
         self.text = text
 
 
 class UnknownMessageTypeError(LookupError):
-    """No message type has this name. `suggestion` is the nearest name there is, if one is near."""
+    """No message, service or action has this name. `suggestion` is the nearest name there is, if one is near."""
 
-    def __init__(self, type_name: str, known: Iterable[str]) -> None:
+    def __init__(self, type_name: str, known: Iterable[str], kind: str = "message") -> None:
         self.type_name = type_name
         self.suggestion = nearest(type_name, known)
         hint = f", did you mean {self.suggestion}?" if self.suggestion else ""
-        super().__init__(f"no message type {type_name!r}{hint}")
+        super().__init__(f"no {kind} type {type_name!r}{hint}")
 
     def __str__(self) -> str:
         """The message itself (LookupError's children may print its repr)."""

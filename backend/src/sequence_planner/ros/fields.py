@@ -7,13 +7,14 @@ value (`bool`, `int`, `float`, `string`, `message`) and the limits of each, so `
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from rosbags.interfaces import Nodetype
 
 if TYPE_CHECKING:
-    from rosbags.interfaces.typing import FieldDesc
+    from rosbags.interfaces.typing import BaseDesc, Fielddefs, FieldDesc, NameDesc
 
 Kind = Literal["bool", "int", "float", "string", "message"]
 
@@ -30,6 +31,10 @@ FLOAT32_MAX = (2 - 2**-23) * 2.0**127
 
 #: The member DDS needs in a message without fields; nobody reads or writes it.
 PLACEHOLDER = "structure_needs_at_least_one_member"
+
+
+#: The types that are uint8 on the wire.
+ON_THE_WIRE = frozenset({"char", "byte"})
 
 
 @dataclass(frozen=True)
@@ -81,6 +86,27 @@ def field_type(description: FieldDesc) -> FieldType:
         size if is_sequence else 0,
         element.max_length,
     )
+
+
+def carried(fields: Fielddefs) -> Fielddefs:
+    """Return the fields that DDS carries for a message with these: at least one."""
+    return fields or [(PLACEHOLDER, (Nodetype.BASE, ("uint8", 0)))]
+
+
+def as_uint8(fields: Fielddefs, names: Set[str]) -> Fielddefs:
+    """Return `fields` with the primitives of these names, also in arrays, written as uint8."""
+    uint8: BaseDesc = (Nodetype.BASE, ("uint8", 0))
+
+    def single(description: BaseDesc | NameDesc) -> BaseDesc | NameDesc:
+        return uint8 if description[0] == Nodetype.BASE and description[1][0] in names else description
+
+    def any_of(description: FieldDesc) -> FieldDesc:
+        if description[0] == Nodetype.BASE or description[0] == Nodetype.NAME:
+            return single(description)
+        inner, size = description[1]
+        return (description[0], (single(inner), size))
+
+    return [(name, any_of(description)) for name, description in fields]
 
 
 def _kind(primitive: str) -> Kind:

@@ -1,7 +1,8 @@
 """The transport inside one process, for tests.
 
 It keeps the contract that DDS keeps: peers match on topic, type name and quality of service, a type hash tells a stale
-definition, late joiners of a latched topic get the last sample, and everything arrives later, on the event loop.
+definition, late joiners of a latched topic get the last sample, and everything arrives later, on the event loop. A
+deadline is kept with a timer; a publisher here cannot lose its liveliness, since it is no program of its own.
 """
 
 from __future__ import annotations
@@ -9,49 +10,34 @@ from __future__ import annotations
 import asyncio
 import time
 from collections import deque
-from dataclasses import dataclass, field
 
 from sequence_planner.ros.delivery import Delivery
+from sequence_planner.ros.memory_network import Member, Members, Participant, Server, match
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.names import check_node_name, check_topic
-from sequence_planner.ros.transport import Direction, Endpoint, OnBatch, QualityOfService, Sample, TransportError
+from sequence_planner.ros.service_graph import ServiceEnd
+from sequence_planner.ros.serving import check_hashes
+from sequence_planner.ros.transport import (
+    Endpoint,
+    Handler,
+    NoAnswerError,
+    NoServerError,
+    OnBatch,
+    OnQualityEvent,
+    QualityOfService,
+    Sample,
+    TransportError,
+)
+
+_SERVER_POLL = 0.01  # seconds between two looks for a server
 
 
-@dataclass(eq=False)
-class _Member:
-    """One endpoint on the network; `kept` holds what a publisher keeps for late joiners."""
-
-    transport: MemoryTransport
-    topic: str
-    type_name: str
-    qos: QualityOfService
-    direction: Direction
-    delivery: Delivery | None = None
-    kept: deque[bytes] = field(default_factory=deque)
-
-
-def _match(publisher: _Member, subscriber: _Member) -> bool:
-    return (
-        publisher.topic == subscriber.topic
-        and publisher.type_name == subscriber.type_name
-        and publisher.qos.reliable >= subscriber.qos.reliable
-        and publisher.qos.transient_local >= subscriber.qos.transient_local
-    )
-
-
-class MemoryNetwork:
+class MemoryNetwork(Members):
     """What transports join to meet one another."""
-
-    def __init__(self) -> None:
-        self.members: list[_Member] = []
 
     def join(self, registry: MessageRegistry, node_name: str, loop: asyncio.AbstractEventLoop) -> MemoryTransport:
         """Return a new transport on this network; raises ValueError for a bad node name."""
         return MemoryTransport(self, registry, node_name, loop)
-
-    def of(self, direction: Direction) -> list[_Member]:
-        """Return the publishers or the subscribers."""
-        return [member for member in self.members if member.direction == direction]
 
 
 class MemoryTransport:
@@ -63,20 +49,18 @@ class MemoryTransport:
         self, network: MemoryNetwork, registry: MessageRegistry, node_name: str, loop: asyncio.AbstractEventLoop
     ) -> None:
         self._network = network
-        self._registry = registry
-        self._node = f"/{check_node_name(node_name)}"
-        self._loop = loop
-        self._own: dict[str, _Member] = {}
+        self._me = Participant(registry, f"/{check_node_name(node_name)}", loop)
+        self._own: dict[str, Member] = {}
         self._closed = False
 
     def advertise(self, topic: str, type_name: str, qos: QualityOfService) -> None:
         """Announce a publisher; see `Transport.advertise`."""
         self._check_open()
-        self._registry.type_hash(type_name)
+        self._me.registry.type_hash(type_name)
         known = self._own.get(check_topic(topic))
         if known is None:
-            self._own[topic] = _Member(self, topic, type_name, qos, "publisher", kept=deque(maxlen=qos.depth))
-            self._network.members.append(self._own[topic])
+            self._own[topic] = Member(self._me, topic, type_name, qos, "publisher", kept=deque(maxlen=qos.depth))
+            self._network.add(self._own[topic])
         elif (known.type_name, known.qos) != (type_name, qos):
             raise TransportError(f"{topic} is already advertised as {known.type_name}, {known.qos}")
 
@@ -85,23 +69,59 @@ class MemoryTransport:
         publisher = self._own.get(topic)
         if publisher is None or publisher.type_name != type_name:
             raise TransportError(f"{topic} has not been advertised as {type_name}")
+        publisher.passed()
         if publisher.qos.transient_local:
             publisher.kept.append(data)
         for subscriber in self._network.of("subscriber"):
-            if subscriber.delivery is not None and _match(publisher, subscriber):
+            if subscriber.delivery is not None and match(publisher, subscriber):
                 subscriber.delivery.push([Sample(topic, data, time.monotonic())])
+                subscriber.passed()
 
     def subscribe(self, topic: str, type_name: str, qos: QualityOfService, on_batch: OnBatch) -> None:
         """Receive batches; see `Transport.subscribe`."""
         self._check_open()
-        self._registry.type_hash(type_name)
-        delivery = Delivery(self._loop, check_topic(topic), on_batch)
-        subscriber = _Member(self, topic, type_name, qos, "subscriber", delivery)
-        self._network.members.append(subscriber)
+        self._me.registry.type_hash(type_name)
+        delivery = Delivery(self._me.loop, check_topic(topic), on_batch)
+        subscriber = Member(self._me, topic, type_name, qos, "subscriber", delivery)
+        self._network.add(subscriber)
         if qos.transient_local:
             for publisher in self._network.of("publisher"):
-                if _match(publisher, subscriber):
+                if match(publisher, subscriber):
                     delivery.push(Sample(topic, data, time.monotonic()) for data in publisher.kept)
+
+    def watch(self, on_event: OnQualityEvent) -> None:
+        """Hear of qualities of service; see `Transport.watch`."""
+        self._me.watchers.append(on_event)
+
+    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+        """Call a service; see `Transport.call`."""
+        self._check_open()
+        self._me.registry.service(type_name)
+        check_topic(service)
+        until = time.monotonic() + within
+        while (server := self._server(service, type_name)) is None:
+            if time.monotonic() > until:
+                raise NoServerError(f"nobody serves {service} as {type_name}")
+            await asyncio.sleep(_SERVER_POLL)
+        answer: asyncio.Future[bytes] = self._me.loop.create_future()
+
+        def respond(response: bytes) -> None:
+            if not answer.done():
+                answer.set_result(response)
+
+        server.owner.serving.answer(service, server.handler, request, respond)
+        try:
+            return await asyncio.wait_for(answer, until - time.monotonic())
+        except TimeoutError:
+            raise NoAnswerError(f"{service} gave no answer within {within:g} s") from None
+
+    def serve(self, service: str, type_name: str, handler: Handler) -> None:
+        """Answer requests; see `Transport.serve`."""
+        self._check_open()
+        self._me.registry.service(type_name)
+        if any(server.owner is self._me and server.service == service for server in self._network.servers):
+            raise TransportError(f"{service} is already served")
+        self._network.servers.append(Server(self._me, check_topic(service), type_name, handler))
 
     def graph(self) -> list[Endpoint]:
         """Return all endpoints; see `Transport.graph`."""
@@ -111,23 +131,51 @@ class MemoryTransport:
                 topic=member.topic,
                 type_name=member.type_name,
                 direction=member.direction,
-                own=member.transport is self,
-                type_hash=member.transport._registry.type_hash(member.type_name),
-                node=member.transport._node,
+                own=member.owner is self._me,
+                type_hash=member.owner.registry.type_hash(member.type_name),
+                node=member.owner.node,
                 reliable=member.qos.reliable,
                 transient_local=member.qos.transient_local,
+                deadline=member.qos.deadline,
+                liveliness=member.qos.liveliness,
             )
             for member in self._network.members
         ]
 
+    def services(self) -> list[ServiceEnd]:
+        """Return all servers; clients come and go with their calls. See `TellsServices`."""
+        self._check_open()
+        return [
+            ServiceEnd(server.service, server.type_name, "server", server.owner is self._me, server.owner.node)
+            for server in self._network.servers
+        ]
+
     def close(self) -> None:
         """Leave the network; see `Transport.close`."""
-        for member in [member for member in self._network.members if member.transport is self]:
+        for member in [member for member in self._network.members if member.owner is self._me]:
             self._network.members.remove(member)
             if member.delivery is not None:
                 member.delivery.close()
+            if member.timer is not None:
+                member.timer.cancel()
+        self._network.servers[:] = [server for server in self._network.servers if server.owner is not self._me]
+        self._me.serving.close()
+        self._me.watchers.clear()
         self._own.clear()
         self._closed = True
+
+    def _server(self, service: str, type_name: str) -> Server | None:
+        """Return who serves; raises NoServerError for somebody whose definition is another one."""
+        for server in self._network.servers:
+            if (server.service, server.type_name) == (service, type_name):
+                check_hashes(
+                    service,
+                    type_name,
+                    server.owner.registry.type_hash(type_name),
+                    self._me.registry.type_hash(type_name),
+                )
+                return server
+        return None
 
     def _check_open(self) -> None:
         if self._closed:

@@ -1,6 +1,7 @@
 """The message types of a station: which there are, their fields, their bytes and their hashes.
 
-A type is known either from ROS 2 Jazzy's standard packages or from the station's own `messages/<package>/msg/*.msg`.
+A type is known either from ROS 2 Jazzy's standard packages or from the station's own `messages/<package>`, where
+`msg/*.msg`, `srv/*.srv` and `action/*.action` lie; what ROS 2 derives from services and actions is known with them.
 Its values travel as CDR (the encoding of DDS), and its hash (RIHS01 of REP 2016) tells whether a peer was built with
 the same definition: peers match on the name alone, and a stale definition silently loses or garbles every sample.
 """
@@ -12,31 +13,36 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rosbags.interfaces import Nodetype
 from rosbags.serde import SerdeError
-from rosbags.typesys import Stores, TypesysError, get_typestore
+from rosbags.typesys import TypesysError
 from rosbags.typesys.store import Typestore
 
 from sequence_planner.ros import names, values
-from sequence_planner.ros.definitions import Definition, FieldDeclaration, read_definitions
+from sequence_planner.ros.definitions import Definition, FieldDeclaration, Interface, read_interfaces
+from sequence_planner.ros.derived import ActionType, ServiceType, derived_of
 from sequence_planner.ros.errors import (
     MalformedMessageError,
     MessageDefinitionError,
     MessageValueError,
     UnknownMessageTypeError,
 )
-from sequence_planner.ros.fields import PLACEHOLDER, FieldType, field_type
+from sequence_planner.ros.fields import ON_THE_WIRE, PLACEHOLDER, FieldType, as_uint8, carried, field_type
 from sequence_planner.ros.nesting import check_references
+from sequence_planner.ros.standard_types import standard_interfaces, standard_store
+from sequence_planner.ros.type_description import FoundType
 
 if TYPE_CHECKING:
-    from rosbags.interfaces.typing import BaseDesc, Fielddefs, FieldDesc, NameDesc
+    from rosbags.interfaces.typing import Fielddefs, ScalarValue
 
 __all__ = [
+    "ActionType",
     "FieldType",
+    "FoundType",
     "MalformedMessageError",
     "MessageDefinitionError",
     "MessageRegistry",
     "MessageValueError",
+    "ServiceType",
     "UnknownMessageTypeError",
 ]
 
@@ -46,51 +52,100 @@ _STANDARD_DEFAULTS: dict[str, dict[str, object]] = {
     "sensor_msgs/msg/NavSatStatus": {"status": -2},
 }
 
-#: The types that are uint8 on the wire.
-_ON_THE_WIRE = {"char", "byte"}
-
 
 class MessageRegistry:
     """All message types that a station can use, written `package/msg/Name`."""
 
     def __init__(self) -> None:
-        self._store = get_typestore(Stores.ROS2_JAZZY)
+        self._store = standard_store()
         self._defaults = dict(_STANDARD_DEFAULTS)
+        self._constants: dict[str, dict[str, ScalarValue]] = {}
+        self._services: dict[str, ServiceType] = {}
+        self._actions: dict[str, ActionType] = {}
+        self._found: dict[str, FoundType] = {}
         # Hashes are made from the declared types, so they have a store of their own.
         self._declared = Typestore()
-        for name, (_, fields) in list(self._store.fielddefs.items()):
+        for name, (constants, fields) in list(self._store.fielddefs.items()):
+            self._constants[name] = {constant: value for constant, _, value in constants}
             self._declare(name, fields)
         self._shape = cache(self._find_shape)
         self._hash = cache(self._declared.hash_rihs01)
+        self._add(standard_interfaces())
 
     @classmethod
     def from_folder(cls, messages_dir: Path | None) -> MessageRegistry:
-        """Return the standard types and those of `messages_dir`, which holds `<package>/msg/<Name>.msg`.
+        """Return the standard types and those of `messages_dir`.
 
-        Raises MessageDefinitionError for a definition that cannot be used, with its file and line.
+        It holds `<package>/msg/<Name>.msg`, and `srv` and `action` likewise. Raises MessageDefinitionError for a
+        definition that cannot be used, with its file, line and column.
         """
         registry = cls()
         if messages_dir is not None:
-            registry._add(list(read_definitions(messages_dir)))
+            registry._add(tuple(read_interfaces(messages_dir)))
         return registry
 
     def type_names(self) -> list[str]:
-        """Return the names of all known types, sorted."""
-        return sorted(self._store.fielddefs)
+        """Return the names of all known messages (`package/msg/Name`), sorted; parts of services are left out."""
+        return sorted(name for name in self._store.fielddefs if name.split("/")[1] == "msg")
+
+    def service_names(self) -> list[str]:
+        """Return the names of all known services (`package/srv/Name`), sorted; those of actions are left out."""
+        return sorted(name for name in self._services if name.split("/")[1] == "srv")
+
+    def action_names(self) -> list[str]:
+        """Return the names of all known actions (`package/action/Name`), sorted."""
+        return sorted(self._actions)
+
+    def service(self, type_name: str) -> ServiceType:
+        """Return the messages of a service, those of actions among them; raises UnknownMessageTypeError."""
+        if type_name not in self._services:
+            raise UnknownMessageTypeError(type_name, self._services, "service")
+        return self._services[type_name]
+
+    def action(self, type_name: str) -> ActionType:
+        """Return the messages and services of an action; raises UnknownMessageTypeError."""
+        if type_name not in self._actions:
+            raise UnknownMessageTypeError(type_name, self._actions, "action")
+        return self._actions[type_name]
+
+    def constants(self, type_name: str) -> dict[str, ScalarValue]:
+        """Return the constants of a message by name, as enumerations use them; raises UnknownMessageTypeError."""
+        self._shape(type_name)
+        return dict(self._constants.get(type_name, {}))
 
     def fields(self, type_name: str) -> dict[str, FieldType]:
         """Return the fields of a type in their order; raises UnknownMessageTypeError."""
         return {name: field for name, field in self._shape(type_name).fields.items() if name != PLACEHOLDER}
 
     def type_hash(self, type_name: str) -> str:
-        """Return the hash of a type, `RIHS01_` and 64 hexadecimal digits; raises UnknownMessageTypeError."""
-        self._shape(type_name)
+        """Return the hash of a message, service or action, `RIHS01_` and 64 hexadecimal digits.
+
+        Raises UnknownMessageTypeError.
+        """
+        if type_name not in self._declared.fielddefs:
+            raise UnknownMessageTypeError(type_name, self._declared.fielddefs)
         return self._hash(type_name)
 
     def dds_name(self, type_name: str) -> str:
         """Return the name of a type in DDS; raises UnknownMessageTypeError."""
         self._shape(type_name)
         return names.dds_type(type_name)
+
+    def declared(self) -> dict[str, Fielddefs]:
+        """Return the fields of every message, service and action as type hashes see them."""
+        return {name: fields for name, (_, fields) in self._declared.fielddefs.items()}
+
+    def found(self) -> dict[str, FoundType]:
+        """Return the types that were found on the network, by name."""
+        return dict(self._found)
+
+    def enter_found(self, types: Mapping[str, Fielddefs], source: str) -> dict[str, FoundType]:
+        """Enter types that `source` has described, none of which may be known; `found_types` sees to that."""
+        for name, fields in types.items():
+            self._register(name, fields)
+        found = {name: FoundType(name, self._hash(name), source) for name in types}
+        self._found |= found
+        return found
 
     def encode(self, type_name: str, fields: Mapping[str, object]) -> bytes:
         """Return the CDR bytes (header included) of a message with these field values.
@@ -108,10 +163,9 @@ class MessageRegistry:
         """
         self._shape(type_name)
         try:
-            message = self._store.deserialize_cdr(data, type_name)
-        except (SerdeError, IndexError) as error:
+            return values.read(self._shape, type_name, self._store.deserialize_cdr(data, type_name))
+        except (SerdeError, IndexError, MessageValueError) as error:
             raise MalformedMessageError(type_name, str(error)) from error
-        return values.read(self._shape, type_name, message)
 
     def _find_shape(self, type_name: str) -> values.MessageShape:
         if type_name not in self._store.fielddefs:
@@ -119,30 +173,52 @@ class MessageRegistry:
         fields = {name: field_type(description) for name, description in self._store.fielddefs[type_name][1]}
         return values.MessageShape(type_name, fields, self._defaults.get(type_name, {}), self._store.types[type_name])
 
-    def _add(self, definitions: list[Definition]) -> None:
+    def _add(self, interfaces: tuple[Interface, ...]) -> None:
+        definitions = [message for interface in interfaces for message in interface.messages]
         check_references(definitions, set(self._store.fielddefs))
         for definition in definitions:
-            # Constants are for people and code generators; nothing on the wire has them.
             fields = [(field.name, field.description) for field in definition.fields]
-            if not fields:
-                fields = [(PLACEHOLDER, (Nodetype.BASE, ("uint8", 0)))]
             try:
-                self._store.register({definition.type_name: ([], _as_uint8(fields, _ON_THE_WIRE))})
+                self._register(definition.type_name, fields)
             except TypesysError as error:
                 text = f"{definition.type_name} differs from the standard one; give the package another name"
                 raise MessageDefinitionError(definition.path, 1, text) from error
-            self._declare(definition.type_name, fields)
             self._defaults[definition.type_name] = {}
+            self._constants[definition.type_name] = {c.name: c.value for c in definition.constants}
+        for interface in interfaces:
+            self._derive(interface)
         for definition in definitions:
             for field in definition.fields:
                 if field.default is not None:
                     self._set_default(definition, field)
 
+    def _derive(self, interface: Interface) -> None:
+        name = interface.type_name
+        if interface.kind == "srv":
+            self._services[name] = ServiceType(name)
+        elif interface.kind == "action":
+            action = self._actions[name] = ActionType(name)
+            self._services |= {service.type_name: service for service in (action.send_goal, action.get_result)}
+        derived = derived_of(interface)
+        for message, fields in derived.messages.items():
+            self._register(message, fields)
+        for structure, fields in derived.structures.items():
+            self._declared.fielddefs[structure] = ([], fields)
+
+    def _register(self, type_name: str, fields: Fielddefs) -> None:
+        """Enter a message; raises TypesysError when one of this name is known and differs."""
+        # Constants are for people and code generators; nothing on the wire has them.
+        fields = carried(fields)
+        wanted, known = as_uint8(fields, ON_THE_WIRE), self._store.fielddefs.get(type_name)
+        if known is None or known[1] != wanted:
+            self._store.register({type_name: ([], wanted)})
+        self._declare(type_name, fields)
+
     def _declare(self, type_name: str, fields: Fielddefs) -> None:
         """Enter a type: for hashes as rosidl sees it, to which `char` is uint8; for the codec as it is on the wire."""
-        self._declared.fielddefs[type_name] = ([], _as_uint8(fields, {"char"}))
+        self._declared.fielddefs[type_name] = ([], as_uint8(fields, {"char"}))
         # rosbags would read `byte` as signed.
-        self._store.fielddefs[type_name] = ([], _as_uint8(fields, _ON_THE_WIRE))
+        self._store.fielddefs[type_name] = ([], as_uint8(fields, ON_THE_WIRE))
 
     def _set_default(self, definition: Definition, field: FieldDeclaration) -> None:
         wanted = field_type(field.description)
@@ -153,20 +229,5 @@ class MessageRegistry:
             values.build(self._shape, definition.type_name, {field.name: default})
         except MessageValueError as error:
             text = f"the default of {field.name} should be {error.expected}, not {error.found!r}"
-            raise MessageDefinitionError(definition.path, field.line, text) from error
+            raise MessageDefinitionError(definition.path, field.line, text, field.column) from error
         self._defaults[definition.type_name][field.name] = default
-
-
-def _as_uint8(fields: Fielddefs, names_of_uint8: set[str]) -> Fielddefs:
-    uint8: BaseDesc = (Nodetype.BASE, ("uint8", 0))
-
-    def single(description: BaseDesc | NameDesc) -> BaseDesc | NameDesc:
-        return uint8 if description[0] == Nodetype.BASE and description[1][0] in names_of_uint8 else description
-
-    def any_of(description: FieldDesc) -> FieldDesc:
-        if description[0] == Nodetype.BASE or description[0] == Nodetype.NAME:
-            return single(description)
-        inner, size = description[1]
-        return (description[0], (single(inner), size))
-
-    return [(name, any_of(description)) for name, description in fields]

@@ -14,7 +14,11 @@ import re
 _TOPIC = re.compile(r"(/[A-Za-z_][A-Za-z0-9_]*)+")
 _NODE = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
 _DDS_TYPE = re.compile(r"(?P<package>\w+)::(?P<kind>msg|srv|action)::dds_::(?P<name>\w+)_")
+_REQUEST = re.compile(r"rq(/.+)Request")
 _TYPE_HASH = re.compile(rb"(?:^|;)typehash=(RIHS01_[0-9a-f]{64});")
+
+_SERVER = re.compile(rb"(?:^|;)serviceid=([0-9a-f.]+);")
+_CLIENT = re.compile(rb"(?:^|;)clientid=([0-9a-f.]+);")
 
 #: Marks a topic of ROS 2 (services have `rq` and `rr`).
 TOPIC_PREFIX = "rt"
@@ -45,6 +49,48 @@ def dds_topic(topic: str) -> str:
 def ros_topic(dds_name: str) -> str | None:
     """Return the ROS 2 topic of the DDS topic `dds_name`, or None when it is not one (a service, plain DDS)."""
     return dds_name.removeprefix(TOPIC_PREFIX) if dds_name.startswith(f"{TOPIC_PREFIX}/") else None
+
+
+def dds_service(service: str) -> tuple[str, str]:
+    """Return the DDS topics of requests and of replies of a ROS 2 service; raises ValueError for a bad name."""
+    check_topic(service)
+    return f"rq{service}Request", f"rr{service}Reply"
+
+
+def ros_service(dds_name: str, dds_type_name: str) -> tuple[str, str] | None:
+    """Return the service, and its type, to which a DDS topic of requests belongs; None for any other topic.
+
+    >>> ros_service("rq/arm/stopRequest", "std_srvs::srv::dds_::Trigger_Request_")
+    ('/arm/stop', 'std_srvs/srv/Trigger')
+    """
+    match = _REQUEST.fullmatch(dds_name)
+    return (match.group(1), ros_type(dds_type_name).removesuffix("_Request")) if match else None
+
+
+def server_user_data(identity: bytes) -> bytes:
+    """Return the user data by which both endpoints of a server tell that they belong together."""
+    return f"serviceid={_dotted(identity)};".encode()
+
+
+def client_user_data(identity: bytes) -> bytes:
+    """Return the user data by which both endpoints of a client tell that they belong together."""
+    return f"clientid={_dotted(identity)};".encode()
+
+
+def server_of(user_data: bytes) -> str | None:
+    """Return the identity of the server an endpoint belongs to, or None when it does not say."""
+    match = _SERVER.search(user_data)
+    return match.group(1).decode() if match else None
+
+
+def client_of(user_data: bytes) -> str | None:
+    """Return the identity of the client an endpoint belongs to, or None when it does not say."""
+    match = _CLIENT.search(user_data)
+    return match.group(1).decode() if match else None
+
+
+def _dotted(identity: bytes) -> str:
+    return ".".join(f"{byte:x}" for byte in identity)
 
 
 def dds_type(type_name: str) -> str:

@@ -12,6 +12,8 @@ from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from sequence_planner.ros.rclpy_qos import seconds
+from sequence_planner.ros.service_graph import ServiceEnd
 from sequence_planner.ros.transport import Direction, Endpoint
 
 #: What the middleware calls a node that has not told its name yet.
@@ -36,6 +38,15 @@ def endpoints(node: Node, own_name: str, published: Set[str], subscribed: Mappin
     return found
 
 
+def service_ends(node: Node) -> list[ServiceEnd]:
+    """Return a server for each service that `node` knows; rclpy does not say whose it is, nor who calls it."""
+    return [
+        ServiceEnd(service, type_name, "server", False, None)
+        for service, type_names in node.get_service_names_and_types()
+        for type_name in type_names
+    ]
+
+
 def _of_topic(
     topic: str, direction: Direction, infos: list[TopicEndpointInfo], own_name: str, own: int
 ) -> list[Endpoint]:
@@ -55,6 +66,8 @@ def _of_topic(
                 node=None if info.node_name == _UNNAMED else name,
                 reliable=info.qos_profile.reliability == ReliabilityPolicy.RELIABLE,
                 transient_local=info.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL,
+                deadline=seconds(info.qos_profile.deadline),
+                liveliness=seconds(info.qos_profile.liveliness_lease_duration),
             )
         )
     return found

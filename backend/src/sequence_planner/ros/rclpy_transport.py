@@ -13,8 +13,8 @@ import os
 import threading
 import time
 from collections import Counter
-from collections.abc import Callable
-from typing import TypeVar
+from contextlib import suppress
+from typing import Literal
 
 import rclpy
 import structlog
@@ -22,19 +22,30 @@ from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, HistoryPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.signals import SignalHandlerOptions
-from rosidl_runtime_py.utilities import get_message
 
 from sequence_planner.ros import environment, names
+from sequence_planner.ros.both_sides import both_sides
 from sequence_planner.ros.delivery import Delivery
 from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.rclpy_graph import endpoints
-from sequence_planner.ros.transport import Endpoint, OnBatch, QualityOfService, Sample, TransportError
+from sequence_planner.ros.quality import Direction
+from sequence_planner.ros.rclpy_graph import endpoints, service_ends
+from sequence_planner.ros.rclpy_qos import Tell, profile, publisher_events, subscription_events
+from sequence_planner.ros.rclpy_services import RclpyServices
+from sequence_planner.ros.rclpy_types import guarded, message_class
+from sequence_planner.ros.service_graph import ServiceEnd
+from sequence_planner.ros.transport import (
+    Endpoint,
+    Handler,
+    OnBatch,
+    OnQualityEvent,
+    QualityEvent,
+    QualityOfService,
+    Sample,
+    TransportError,
+)
 
 _log = structlog.get_logger(__name__)
-
-T = TypeVar("T")
 
 
 class RclpyTransport:
@@ -55,8 +66,10 @@ class RclpyTransport:
         self._loop = loop
         self._publishers: dict[str, tuple[Publisher, str, QualityOfService]] = {}
         self._subscriptions: list[tuple[str, Delivery]] = []
+        self._watchers: list[OnQualityEvent] = []
         self._closing = False
         domain = environment.domain_id(domain_id)
+        environment.refuse_interface()
         # The middleware reads the range itself; left unset it would be the whole subnet.
         os.environ[environment.DISCOVERY_RANGE] = environment.discovery_range()
         self._context = Context()
@@ -74,6 +87,7 @@ class RclpyTransport:
         except RuntimeError as error:  # RCLError is one
             self._context.try_shutdown()
             raise TransportError(f"ROS 2 cannot start on domain {domain}: {error}") from error
+        self._services = RclpyServices(self._node, registry, loop)
         self._executor.add_node(self._node)
         self._thread = threading.Thread(target=self._spin, name=f"rclpy-{node_name}", daemon=True)
         self._thread.start()
@@ -86,7 +100,11 @@ class RclpyTransport:
                 raise TransportError(f"{topic} is already advertised as {known[1]}, {known[2]}")
             return
         message = self._message_class(topic, type_name)
-        publisher = _guarded(f"advertise {topic}", lambda: self._node.create_publisher(message, topic, _profile(qos)))
+        events = publisher_events(qos, self._teller(topic, "publisher", qos))
+        publisher = guarded(
+            f"advertise {topic}",
+            lambda: self._node.create_publisher(message, topic, profile(qos), event_callbacks=events),
+        )
         self._publishers[topic] = (publisher, type_name, qos)
 
     def publish(self, topic: str, type_name: str, data: bytes) -> None:
@@ -94,7 +112,7 @@ class RclpyTransport:
         known = self._publishers.get(topic)
         if known is None or known[1] != type_name:
             raise TransportError(f"{topic} has not been advertised as {type_name}")
-        _guarded(f"publish on {topic}", lambda: known[0].publish(data))
+        guarded(f"publish on {topic}", lambda: known[0].publish(data))
 
     def subscribe(self, topic: str, type_name: str, qos: QualityOfService, on_batch: OnBatch) -> None:
         """Receive batches; see `Transport.subscribe`."""
@@ -104,11 +122,28 @@ class RclpyTransport:
         def received(data: bytes) -> None:
             delivery.push([Sample(topic, data, time.monotonic())])
 
-        _guarded(
+        events = subscription_events(qos, self._teller(topic, "subscriber", qos))
+        guarded(
             f"subscribe to {topic}",
-            lambda: self._node.create_subscription(message, topic, received, _profile(qos), raw=True),
+            lambda: self._node.create_subscription(
+                message, topic, received, profile(qos), event_callbacks=events, raw=True
+            ),
         )
         self._subscriptions.append((topic, delivery))
+
+    def watch(self, on_event: OnQualityEvent) -> None:
+        """Hear of qualities of service; see `Transport.watch`."""
+        self._watchers.append(on_event)
+
+    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+        """Call a service; see `Transport.call`."""
+        self._check_open()
+        return await self._services.call(service, type_name, request, within)
+
+    def serve(self, service: str, type_name: str, handler: Handler) -> None:
+        """Answer requests; see `Transport.serve`."""
+        self._check_open()
+        self._services.serve(service, type_name, handler)
 
     def graph(self) -> list[Endpoint]:
         """Return all endpoints; see `Transport.graph`."""
@@ -116,12 +151,19 @@ class RclpyTransport:
         subscribed = Counter(topic for topic, _ in self._subscriptions)
         return endpoints(self._node, f"/{self._node_name}", set(self._publishers), subscribed)
 
+    def services(self) -> list[ServiceEnd]:
+        """Return the services known; see `TellsServices`."""
+        self._check_open()
+        return service_ends(self._node)
+
     def close(self) -> None:
         """Leave the domain; see `Transport.close`."""
         if self._closing:
             return
         for _, delivery in self._subscriptions:
             delivery.close()
+        self._watchers.clear()
+        self._services.close()
         self._closing = True
         self._executor.create_task(lambda: None)  # Work of any kind lets `spin_once` return.
         self._thread.join()
@@ -141,14 +183,23 @@ class RclpyTransport:
         self._check_open()
         names.check_topic(topic)
         self._registry.type_hash(type_name)
-        try:
-            return get_message(type_name)
-        except (ImportError, AttributeError, ValueError) as error:
-            package = type_name.split("/", maxsplit=1)[0]
-            raise TransportError(
-                f"{topic}: ROS 2 has no generated code for {type_name} ({error}). Build the package {package}: "
-                "write it with `sequence-planner messages --ament`, build it with colcon, source its install/setup.bash"
-            ) from error
+        return message_class(topic, type_name)
+
+    def _teller(self, topic: str, direction: Direction, qos: QualityOfService) -> Tell:
+        """Return what tells the event loop of an event, on whichever thread it is called."""
+
+        def tell(kind: Literal["incompatible", "deadline", "liveliness"], count: int, detail: str) -> None:
+            def told() -> None:
+                if self._closing or not self._watchers:
+                    return
+                text = both_sides(self.graph(), topic, direction, qos) if kind == "incompatible" else ""
+                for watcher in self._watchers:
+                    watcher(QualityEvent(topic, direction, kind, count, f"{topic}: {text or detail}"))
+
+            with suppress(RuntimeError):  # The loop has been closed: nobody listens any more.
+                self._loop.call_soon_threadsafe(told)
+
+        return tell
 
     def _spin(self) -> None:
         while not self._closing:
@@ -159,20 +210,3 @@ class RclpyTransport:
             except Exception:
                 _log.exception("ROS 2 failed while receiving")
                 time.sleep(1.0)  # If it lasts, the log fills slowly and the processor stays free.
-
-
-def _profile(qos: QualityOfService) -> QoSProfile:
-    return QoSProfile(
-        history=HistoryPolicy.KEEP_LAST,
-        depth=qos.depth,
-        reliability=ReliabilityPolicy.RELIABLE if qos.reliable else ReliabilityPolicy.BEST_EFFORT,
-        durability=DurabilityPolicy.TRANSIENT_LOCAL if qos.transient_local else DurabilityPolicy.VOLATILE,
-    )
-
-
-def _guarded(what: str, action: Callable[[], T]) -> T:
-    """Return what `action` returns; rclpy's many unrelated exceptions become TransportError."""
-    try:
-        return action()
-    except Exception as error:
-        raise TransportError(f"ROS 2 cannot {what}: {error}") from error

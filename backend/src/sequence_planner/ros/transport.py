@@ -1,61 +1,67 @@
-"""The port through which a station speaks ROS 2: bytes on topics, and who else is there.
+"""The port through which a station speaks ROS 2: bytes on topics, calls of services, and who else is there.
 
-A transport knows topics, type names and qualities of service, and carries CDR bytes; what they mean is for
-`sequence_planner.ros.messages`. All methods are called on the event loop's thread, and so are the callbacks: the
-threads of the middleware never show. Discovery takes time (a tenth of a second to several seconds, by vendor), so
-`graph` tells what is known now, and whoever needs a peer waits for it.
+A transport knows topics, services, type names and qualities of service, and carries CDR bytes; what they mean is for
+`sequence_planner.ros.messages`. Actions stand above it, in `sequence_planner.ros.actions`. All methods are called on
+the event loop's thread, and so are the callbacks: the threads of the middleware never show. Discovery takes time (a
+tenth of a second to several seconds, by vendor), so `graph` tells what is known now, and whoever needs a peer waits.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
-from typing import Literal, Protocol
+from typing import Protocol
 
-Direction = Literal["publisher", "subscriber"]
+from sequence_planner.ros.quality import Direction, QualityEvent, QualityOfService
+
+__all__ = [
+    "Direction",
+    "Endpoint",
+    "Handler",
+    "NoAnswerError",
+    "NoServerError",
+    "OnBatch",
+    "OnQualityEvent",
+    "QualityEvent",
+    "QualityOfService",
+    "Sample",
+    "Transport",
+    "TransportError",
+]
 
 
 class TransportError(Exception):
     """A transport cannot start or carry on; the text says why and what to do."""
 
 
-class QualityOfService(StrEnum):
-    """How samples of a topic are kept and delivered; both sides must agree.
+class NoServerError(TransportError):
+    """Nobody serves a service, or nobody that can be understood; nothing has been sent."""
 
-    A subscriber that asks for more than a publisher offers (reliable of best effort, latched of volatile) gets nothing.
-    """
 
-    RELIABLE = "reliable"  # reliable, volatile, keep last 10: commands and states
-    SENSOR_DATA = "sensor_data"  # best effort, volatile, keep last 5: fast streams where only the newest counts
-    LATCHED = "latched"  # reliable, transient local, keep last 1: late joiners get the last sample
-
-    @property
-    def reliable(self) -> bool:
-        """Whether lost samples are sent again."""
-        return self is not QualityOfService.SENSOR_DATA
-
-    @property
-    def transient_local(self) -> bool:
-        """Whether a late joiner gets the samples kept."""
-        return self is QualityOfService.LATCHED
-
-    @property
-    def depth(self) -> int:
-        """How many samples are kept."""
-        return {QualityOfService.RELIABLE: 10, QualityOfService.SENSOR_DATA: 5, QualityOfService.LATCHED: 1}[self]
+class NoAnswerError(TransportError):
+    """A request was sent and no answer came in time; whether it was carried out is unknown."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sample:
-    """One message as received: its CDR bytes, and when, in seconds of `time.monotonic()`."""
+    """One message as received: its CDR bytes, and when, in seconds of `time.monotonic()`.
+
+    `source` tells publishers apart where the middleware does, and is 0 elsewhere. `trouble` says why there are no
+    bytes, where a transport reads messages itself and could not read this one.
+    """
 
     topic: str
     data: bytes
     received: float
+    source: int = 0
+    trouble: str = ""
 
 
 OnBatch = Callable[[Sequence[Sample]], None]
+OnQualityEvent = Callable[[QualityEvent], None]
+
+#: What answers a request: from its CDR bytes to those of the response.
+Handler = Callable[[bytes], Awaitable[bytes]]
 
 
 @dataclass(frozen=True)
@@ -63,8 +69,8 @@ class Endpoint:
     """A publisher or subscriber on the network.
 
     `own` tells this transport's endpoints from everybody else's. `type_name` is `package/msg/Name`, or whatever the
-    peer calls it when ROS 2 did not make the name. `type_hash` and `node` (as in `/cell/robot`) are None where the peer
-    does not tell, or not yet.
+    peer calls it when ROS 2 did not make the name. `type_hash`, `node` (as in `/cell/robot`) and `vendor` (of its
+    middleware) are None where the peer does not tell, or not yet.
     """
 
     topic: str
@@ -75,13 +81,22 @@ class Endpoint:
     node: str | None
     reliable: bool
     transient_local: bool
+    deadline: float | None = None
+    liveliness: float | None = None
+    vendor: str | None = None
+
+    @property
+    def quality(self) -> QualityOfService:
+        """What it offers or wants; how many samples it keeps is nobody else's affair."""
+        return QualityOfService(self.reliable, self.transient_local, deadline=self.deadline, liveliness=self.liveliness)
 
 
 class Transport(Protocol):
     """A way to the ROS 2 network.
 
-    Methods raise ValueError for a name ROS 2 does not allow, UnknownMessageTypeError for a type the station does not
-    know, and TransportError when the middleware refuses.
+    Types of services are written `package/srv/Name`, or `package/action/Name_SendGoal` and the like. Methods raise
+    ValueError for a name ROS 2 does not allow, UnknownMessageTypeError for a type the station does not know, and
+    TransportError when the middleware refuses.
     """
 
     @property
@@ -96,6 +111,21 @@ class Transport(Protocol):
 
     def subscribe(self, topic: str, type_name: str, qos: QualityOfService, on_batch: OnBatch) -> None:
         """Have `on_batch` called with the samples of `topic`, oldest first, as they arrive."""
+
+    def watch(self, on_event: OnQualityEvent) -> None:
+        """Have `on_event` called when a quality of service is not agreed on or not kept, from now on."""
+
+    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+        """Return the CDR bytes that the server of `service` answers to `request`, within so many seconds.
+
+        A server is waited for as long as that. Raises NoServerError and NoAnswerError.
+        """
+
+    def serve(self, service: str, type_name: str, handler: Handler) -> None:
+        """Have `handler` answer the requests to `service`, on the event loop, several at a time.
+
+        Where it fails, the log says so and the client gets no answer.
+        """
 
     def graph(self) -> list[Endpoint]:
         """Return the endpoints of all topics known now, this transport's own among them."""

@@ -38,7 +38,10 @@ def build(shapes: Shapes, type_name: str, values: Mapping[str, object]) -> objec
 
 
 def read(shapes: Shapes, type_name: str, message: object) -> dict[str, object]:
-    """Return the plain values of a message object of `type_name`."""
+    """Return the plain values of a message object of `type_name`; raises MessageValueError where a bound is exceeded.
+
+    rosbags does not look at the bounds of strings and sequences when it reads bytes.
+    """
     return {
         name: _plain(shapes, field, getattr(message, normalize_fieldname(name)))
         for name, field in shapes(type_name).fields.items()
@@ -147,6 +150,8 @@ def _dtype(field: FieldType) -> np.dtype[np.generic]:
 
 
 def _plain(shapes: Shapes, field: FieldType, value: object) -> object:
+    if field.max_items or field.max_length:
+        _check_bounds(field, value)
     if field.kind == "message":
         if isinstance(value, list):
             return [read(shapes, field.type_name, item) for item in value]
@@ -154,3 +159,12 @@ def _plain(shapes: Shapes, field: FieldType, value: object) -> object:
     if isinstance(value, np.ndarray):
         return value.tolist()
     return list(value) if isinstance(value, list) else value
+
+
+def _check_bounds(field: FieldType, value: object) -> None:
+    if field.max_items and isinstance(value, (list, np.ndarray)) and len(value) > field.max_items:
+        raise MessageValueError(str(field), "", f"at most {field.max_items} items", len(value))
+    if field.max_length:
+        for text in value if isinstance(value, list) else [value]:
+            if isinstance(text, str) and len(text.encode()) > field.max_length:
+                raise MessageValueError(str(field), "", f"at most {field.max_length} bytes of UTF-8", text)

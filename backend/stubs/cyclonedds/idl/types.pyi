@@ -1,10 +1,18 @@
 # Every name here is an annotation that `make_idl_struct` reads, so none has a static type worth telling.
-class _Parametrised:
-    def __getitem__(self, parameters: object) -> object: ...
+class _Parametrised(type):
+    def __getitem__(cls, parameters: object) -> object: ...
 
-array: _Parametrised
-sequence: _Parametrised
-bounded_str: _Parametrised
+class array(metaclass=_Parametrised):
+    subtype: object
+    length: int
+
+class sequence(metaclass=_Parametrised):
+    subtype: object
+    max_length: int | None
+
+class bounded_str(metaclass=_Parametrised):
+    max_length: int
+
 int8: object
 int16: object
 int32: object

@@ -1,0 +1,124 @@
+"""Services over rclpy.
+
+rclpy takes and gives message objects here, never bytes, so they pass through the generated code of their types. Its
+executor would keep a processor busy for as long as a coroutine waits for an answer; so the callback of a service only
+hands the request over to the event loop, and the response is sent when it is there.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable
+from contextlib import suppress
+
+from rclpy.client import Client
+from rclpy.node import Node
+from rclpy.service import RequestHeader, Service
+from rclpy.task import Future
+
+from sequence_planner.ros import names
+from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.rclpy_types import (
+    ServiceClass,
+    deserialize_message,
+    guarded,
+    serialize_message,
+    service_class,
+)
+from sequence_planner.ros.serving import Serving
+from sequence_planner.ros.transport import Handler, NoAnswerError, NoServerError, TransportError
+
+_POLL = 0.02  # seconds between two looks for a server
+
+
+class RclpyServices:
+    """The clients and servers of one node. All methods belong on the event loop's thread."""
+
+    def __init__(self, node: Node, registry: MessageRegistry, loop: asyncio.AbstractEventLoop) -> None:
+        self._node = node
+        self._registry = registry
+        self._loop = loop
+        self._clients: dict[tuple[str, str], tuple[Client, ServiceClass]] = {}
+        self._servers: dict[str, Service] = {}
+        self._waiting: set[asyncio.Future[bytes]] = set()
+        self._serving = Serving()
+
+    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+        """Call a service; see `Transport.call`."""
+        client, types = self._client(service, type_name)
+        until = time.monotonic() + within
+        while not client.service_is_ready():
+            if time.monotonic() > until:
+                raise NoServerError(f"nobody serves {service} as {type_name}")
+            await asyncio.sleep(_POLL)
+        answer: asyncio.Future[bytes] = self._loop.create_future()
+        self._waiting.add(answer)
+
+        def received(future: Future) -> None:
+            """Hand the response over to the event loop; called on the executor's thread."""
+            self._post(lambda: _settle(answer, future))
+
+        sent = guarded(f"call {service}", lambda: client.call_async(deserialize_message(request, types.Request)))
+        sent.add_done_callback(received)
+        try:
+            return await asyncio.wait_for(answer, max(until - time.monotonic(), 0))
+        except TimeoutError:
+            client.remove_pending_request(sent)
+            raise NoAnswerError(f"{service} gave no answer within {within:g} s") from None
+        finally:
+            self._waiting.discard(answer)
+
+    def serve(self, service: str, type_name: str, handler: Handler) -> None:
+        """Answer requests; see `Transport.serve`."""
+        names.check_topic(service)
+        self._registry.service(type_name)
+        if service in self._servers:
+            raise TransportError(f"{service} is already served")
+        types = service_class(service, type_name)
+
+        def received(request: object, response: object) -> object:
+            """Let the executor go on with the request itself, which `hand_over` then gets with its header."""
+            return request
+
+        def hand_over(request: object, header: RequestHeader) -> None:
+            data = bytes(serialize_message(request))
+            self._post(lambda: self._serving.answer(service, handler, data, lambda answer: respond(answer, header)))
+
+        def respond(answer: bytes, header: RequestHeader) -> None:
+            send(deserialize_message(answer, types.Response), header)
+
+        server = guarded(f"serve {service}", lambda: self._node.create_service(types, service, received))
+        self._servers[service] = server
+        send, server.send_response = server.send_response, hand_over
+
+    def close(self) -> None:
+        """Answer nothing any more, and let those who wait for an answer know."""
+        self._serving.close()
+        for answer in self._waiting:
+            if not answer.done():
+                answer.set_exception(TransportError("the transport is closed"))
+
+    def _client(self, service: str, type_name: str) -> tuple[Client, ServiceClass]:
+        names.check_topic(service)
+        self._registry.service(type_name)
+        key = (service, type_name)
+        if key not in self._clients:
+            types = service_class(service, type_name)
+            client = guarded(f"call {service}", lambda: self._node.create_client(types, service))
+            self._clients[key] = (client, types)
+        return self._clients[key]
+
+    def _post(self, work: Callable[[], None]) -> None:
+        with suppress(RuntimeError):  # The loop has been closed: nobody waits any more.
+            self._loop.call_soon_threadsafe(work)
+
+
+def _settle(answer: asyncio.Future[bytes], future: Future) -> None:
+    if answer.done():
+        return
+    error = future.exception()
+    if error is not None:
+        answer.set_exception(TransportError(f"ROS 2 cannot call: {error}"))
+    else:
+        answer.set_result(bytes(serialize_message(future.result())))

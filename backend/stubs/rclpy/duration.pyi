@@ -1,0 +1,3 @@
+class Duration:
+    nanoseconds: int
+    def __init__(self, *, seconds: float = 0, nanoseconds: int = 0) -> None: ...

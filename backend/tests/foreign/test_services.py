@@ -1,0 +1,118 @@
+"""Services with implementations that do not say in which mapping they speak.
+
+Fast DDS has a mapping of its own. ros2-client has both, but its DDS, RustDDS, sends no user data, so that neither its
+servers nor its clients tell which. The station, for which a wrong guess would be a server that executes garbage, has
+nothing to do with any of them. That what it writes and reads is right all the same is tried with that rule put aside,
+against peers that were told to speak the station's mapping.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import os
+from collections.abc import Awaitable, Callable
+
+import pytest
+from structlog.testing import capture_logs
+
+from foreign.peers import FAST_DDS, PATIENCE, ROS2_CLIENT, Peer, built, eventually, running
+from sequence_planner.ros import names
+from sequence_planner.ros.choice import open_transport
+from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.transport import NoServerError, Transport
+
+DOMAIN = 1 + (os.getpid() + 25) % 100
+Role = tuple[str, ...]
+ASKS_AS_WE_DO, SERVES_AS_WE_DO = (ROS2_CLIENT, "call", "cyclone"), (ROS2_CLIENT, "serve", "cyclone")
+SERVICE, TYPE = "/add_two_ints", "example_interfaces/srv/AddTwoInts"
+
+
+@pytest.fixture(scope="module")
+def registry() -> MessageRegistry:
+    return MessageRegistry.from_folder(None)
+
+
+@pytest.fixture
+def vouched(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Whoever serves or asks is taken to speak the station's mapping."""
+    monkeypatch.setattr(names, "server_of", lambda data: b"vouched")
+    monkeypatch.setattr(names, "client_of", lambda data: b"vouched")
+
+
+def play(registry: MessageRegistry, role: Role, scenario: Callable[[Transport, Peer], Awaitable[None]]) -> None:
+    """Run `scenario` beside a peer: its program, and what it does."""
+    program = built(role[0])
+
+    async def live() -> None:
+        transport = open_transport("cyclonedds", registry, "station", asyncio.get_running_loop(), DOMAIN)
+        try:
+            async with running(program, DOMAIN, *role[1:]) as peer:
+                await scenario(transport, peer)
+        finally:
+            transport.close()
+
+    asyncio.run(live())
+
+
+@pytest.mark.parametrize("role", [SERVES_AS_WE_DO, (ROS2_CLIENT, "serve", "enhanced"), (FAST_DDS, "serve")])
+def test_a_server_that_does_not_tell_its_mapping_is_not_called(registry: MessageRegistry, role: Role) -> None:
+    """In another mapping the server would take the header of our request for its content, and carry it out."""
+
+    async def scenario(station: Transport, peer: Peer) -> None:
+        request = registry.encode(f"{TYPE}_Request", {"a": 2, "b": 3})
+        with pytest.raises(NoServerError, match="it would execute garbage, so nothing was sent"):
+            await station.call(SERVICE, TYPE, request, PATIENCE)
+        assert peer.lines == []
+
+    play(registry, role, scenario)
+
+
+@pytest.mark.parametrize("role", [ASKS_AS_WE_DO, (ROS2_CLIENT, "call", "enhanced")])
+def test_a_client_that_does_not_tell_its_mapping_is_not_answered(registry: MessageRegistry, role: Role) -> None:
+    """What the enhanced mapping sends, cyclonedds itself drops already."""
+
+    async def scenario(station: Transport, peer: Peer) -> None:
+        asked: list[bytes] = []
+
+        async def add(request: bytes) -> bytes:
+            asked.append(request)
+            return request
+
+        with capture_logs() as log:
+            station.serve(SERVICE, TYPE, add)
+            if role == ASKS_AS_WE_DO:
+                await eventually(lambda: log, "the request is noticed")
+            await asyncio.sleep(2)  # in which the client asks some ten times
+        assert (asked, peer.lines) == ([], [])
+        assert ["(no clientid)" in event["event"] for event in log] == [True] * (role == ASKS_AS_WE_DO)
+
+    play(registry, role, scenario)
+
+
+@pytest.mark.usefixtures("vouched")
+def test_a_server_of_the_same_mapping_understands_each_call(registry: MessageRegistry) -> None:
+    async def scenario(station: Transport, peer: Peer) -> None:
+        async def added(a: int, b: int) -> object:
+            request = registry.encode(f"{TYPE}_Request", {"a": a, "b": b})
+            return registry.decode(f"{TYPE}_Response", await station.call(SERVICE, TYPE, request, PATIENCE))["sum"]
+
+        assert await added(-(2**62), 2**62 - 1) == -1
+        # As many at a time as the peer keeps.
+        assert await asyncio.gather(*(added(number, 1) for number in range(10))) == list(range(1, 11))
+        assert len(peer.lines) == 11
+
+    play(registry, SERVES_AS_WE_DO, scenario)
+
+
+@pytest.mark.usefixtures("vouched")
+def test_a_client_of_the_same_mapping_gets_its_answers(registry: MessageRegistry) -> None:
+    async def scenario(station: Transport, peer: Peer) -> None:
+        async def add(request: bytes) -> bytes:
+            assert registry.decode(f"{TYPE}_Request", request) == {"a": 2, "b": 3}
+            return registry.encode(f"{TYPE}_Response", {"sum": 5})
+
+        station.serve(SERVICE, TYPE, add)
+        await eventually(lambda: len(peer.lines) >= 3, "the client has its answers")
+        assert set(peer.lines) == {"answered 5"}
+
+    play(registry, ASKS_AS_WE_DO, scenario)
