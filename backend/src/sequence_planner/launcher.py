@@ -39,6 +39,7 @@ class Launch:
     host: str
     port: int
     transport: str
+    rosbridge: str | None
     emulator: bool
     start: bool
     emulator_speed: float
@@ -134,6 +135,7 @@ class _Launcher:
         self._request = request
         self._stop = stop
         model, transport = str(request.model), ["--transport", request.transport]
+        transport += ["--rosbridge", request.rosbridge] if request.rosbridge else []
         controller = [model, "--socket", str(socket), *transport]
         controller += ["--emulated"] if request.emulator else []
         address = ["--host", request.host, "--port", str(request.port)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -10,22 +11,27 @@ from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.collection import collection_put_off
 from sequence_planner.expressions.syntax import TRUE
-from sequence_planner.model.loading import load_station
+from sequence_planner.model.flow_documents import ExampleDocument
+from sequence_planner.model.loading import Station, load_station
 from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.pipelines.building import build_pipelines, load_messages
+from sequence_planner.pipelines.examples import PipelineExample
+from sequence_planner.pipelines.flow_building import flow_name
+from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.pipelines.inference import with_inferred_variables
-from sequence_planner.pipelines.pipeline import StationPipelines
 from sequence_planner.planning.goals.monitor import TooManyStatesError, monitor_of
 from sequence_planner.ros.messages import MessageRegistry
 
 
 @dataclass(frozen=True)
 class ReadyStation:
-    """What the controller runs, and what the emulated devices are made from."""
+    """What the controller runs, and what the emulated devices are made from. `ros_1` are the topics of ROS 1."""
 
     automaton: Automaton
     pipelines: StationPipelines
     registry: MessageRegistry
+    ros_1: frozenset[str] = frozenset()
+    examples: tuple[PipelineExample, ...] = ()
 
 
 @collection_put_off()
@@ -36,7 +42,27 @@ def prepare_station(folder: Path) -> ReadyStation:
     station = with_inferred_variables(written, registry)
     automaton = ground(station)
     _require_plannable(automaton)
-    return ReadyStation(automaton, build_pipelines(station, automaton, registry), registry)
+    pipelines = build_pipelines(station, automaton, registry)
+    examples = tuple(
+        PipelineExample(name, document, pipelines, automaton, registry)
+        for name, written in _examples(station)
+        for document in written
+    )
+    return ReadyStation(automaton, pipelines, registry, _of_ros_1(station), examples)
+
+
+def _examples(station: Station) -> Iterator[tuple[str, list[ExampleDocument]]]:
+    """The examples of each topic and flow, by its name."""
+    for resource, document in station.resources.items():
+        for topic, written in document.topics.items():
+            yield str(topic), written.examples
+        for flow, made in document.flows.items():
+            yield flow_name(resource, flow), made.examples
+
+
+def _of_ros_1(station: Station) -> frozenset[str]:
+    topics = [topic for resource in station.resources.values() for topic in resource.topics.items()]
+    return frozenset(str(name) for name, document in topics if document.ros == 1)
 
 
 def _require_plannable(automaton: Automaton) -> None:

@@ -19,6 +19,8 @@ from sequence_planner.control.tasks import Task, TaskDesk
 from sequence_planner.emulation.devices import EmulatedDevices
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.types import Value
+from sequence_planner.pipelines.running import RunningPipelines
+from sequence_planner.pipelines.running_outgoing import first_message
 from sequence_planner.planning.plan import PlanRequest
 from sequence_planner.planning.planner import Planner
 from sequence_planner.station import ReadyStation, prepare_station
@@ -77,7 +79,7 @@ class Rig:
         self.execution = Execution(self.station.automaton, supervisor)
         self.desk = TaskDesk(self.station.automaton)
         self.devices = EmulatedDevices(self.station.automaton, self.station.pipelines, seed=self.seed)
-        self._memory: dict[str, dict[str, Value | None]] = {name: {} for name in self.station.pipelines.incoming}
+        self.pipelines = RunningPipelines(self.station.pipelines)
 
     def start_production(self) -> None:
         self.execution.start_production()
@@ -137,13 +139,11 @@ class Rig:
                 assert not holds(specification.forbidden, self.execution.state), (specification.name, outcome)
 
     def measured(self) -> dict[str, Value | None]:
-        values: dict[str, Value | None] = {}
-        for name, pipeline in self.station.pipelines.incoming.items():
-            if name in self.silent:
-                values |= dict.fromkeys(pipeline.variables)
-            else:
-                values |= pipeline.read(self.devices.report(name), self._memory[name]).values
-        return values
+        speaking = {name: name not in self.silent for name in self.station.pipelines.incoming}
+        for name, speaks in speaking.items():
+            if speaks:
+                self.pipelines.take(name, self.devices.report(name), self.now)
+        return self.pipelines.values(speaking)
 
     def value(self, name: str) -> Value | None:
         return self.execution.state[name]
@@ -153,4 +153,6 @@ class Rig:
             return
         for name, pipeline in self.station.pipelines.outgoing.items():
             if outputs & set(pipeline.variables):
-                assert not self.devices.command(name, pipeline.write(self.execution.state))
+                message = first_message(pipeline, self.execution.state)
+                assert message is not None
+                assert not self.devices.command(name, message)

@@ -24,7 +24,7 @@ def alarms(rig: Rig) -> Alarms:
         transport = MemoryNetwork().join(station.registry, "sequence_planner", asyncio.get_running_loop())
         return Commander(station.pipelines.outgoing, station.registry, transport)
 
-    feeds = Feeds(station.pipelines.incoming, station.registry)
+    feeds = Feeds(station.pipelines, station.registry)
     network = NetworkWatch(station.pipelines, station.registry)
     return Alarms(rig.execution, Outside(rig.execution), feeds, network, asyncio.run(join()))
 

@@ -18,7 +18,7 @@ from sequence_planner.control.controller import Controller
 from sequence_planner.control.process import start_when_alone
 from sequence_planner.control.view import Mode, PlanStatus, Priority, Production
 from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.pipelines.pipeline import StationPipelines
+from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.ros.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.ros.transport import QualityOfService, TransportError
 from sequence_planner.station import ReadyStation

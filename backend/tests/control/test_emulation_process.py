@@ -56,7 +56,7 @@ def test_devices_obey_report_and_survive_what_cannot_be_read(monkeypatch: pytest
         assert not emulating.done()
         emulating.cancel()
         await asyncio.gather(emulating, return_exceptions=True)
-        assert {member.transport for member in network.members} == {person}, "it has left the network"
+        assert all(endpoint.own for endpoint in person.graph()), "it has left the network"
 
     asyncio.run(scenario())
 

@@ -10,6 +10,7 @@ from control.rig import PAIRS, Rig, at_once, never
 from sequence_planner.control.tasks import Task
 from sequence_planner.control.view import Mode, PlanStatus
 from sequence_planner.control.waiting import waits_for
+from sequence_planner.pipelines.running_outgoing import first_message
 
 MOVES = [f"robot.move_to_position({p})" for p in ("home", "above_engine", *PAIRS)]
 
@@ -99,7 +100,7 @@ def test_devices_that_were_started_again_are_brought_back_to_work() -> None:
     rig.devices = fresh.devices
     rig.silent = set()
     for name, pipeline in rig.station.pipelines.outgoing.items():
-        rig.devices.command(name, pipeline.write(rig.execution.state))
+        rig.devices.command(name, first_message(pipeline, rig.execution.state) or {})
     rig.devices.advance(rig.now)
     assert rig.run(150, until=lambda: engines(rig) >= 1)
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 from hypothesis import given
 from hypothesis import strategies as st
 
 from control.bench import POSES, STATE, STATE_TYPE, cell
+from pipelines.station_writing import station_with
 from sequence_planner.control.feeds import Feeds, one_per_topic
 from sequence_planner.ros.transport import Sample
 
@@ -17,7 +19,7 @@ UNKNOWN = {"arm.pose": None, "arm.moving": None, "arm.last": None}
 def feeds(deadline: float | None = 1.0) -> Feeds:
     station = cell()[0]
     incoming = {name: replace(p, deadline=deadline) for name, p in station.pipelines.incoming.items()}
-    return Feeds(incoming, station.registry)
+    return Feeds(replace(station.pipelines, incoming=incoming), station.registry)
 
 
 def says(pose: str, received: float) -> Sample:
@@ -86,3 +88,51 @@ def test_topics_delivered_one_after_the_other_are_not_shown_out_of_step() -> Non
     turning, stopped = Sample("tool", b"turning", 1.0), Sample("tool", b"stopped", 2.0)
     still, moving = Sample("arm", b"still", 1.1), Sample("arm", b"moving", 2.1)
     assert list(one_per_topic([still, moving, turning, stopped])) == [[turning, still], [stopped, moving]]
+
+
+def test_time_passes_in_the_stages_between_messages(tmp_path: Path) -> None:
+    resource = """
+topics:
+  /switch:
+    type: std_msgs/msg/Bool
+    direction: in
+    deadline: 5.0
+    pipeline: [rename: {data: pressed}, debounce: {fields: [pressed], seconds: 0.1}]
+measured: {pressed: {type: bool}}
+"""
+    station = station_with(tmp_path, resource, {})
+    topics = Feeds(station.pipelines, station.registry)
+
+    def press(pressed: bool, now: float) -> None:
+        topics.take([Sample("/switch", station.registry.encode("std_msgs/msg/Bool", {"data": pressed}), now)])
+
+    press(False, 1.0)
+    press(True, 1.02)
+    assert (topics.measured(1.05)["tank.pressed"], topics.due) == (False, 1.12)
+    topics.wake(1.1)
+    assert topics.measured(1.1)["tank.pressed"] is False
+    topics.wake(1.12)
+    assert (topics.measured(1.12)["tank.pressed"], topics.due) == (True, None)
+    assert topics.measured(7.0)["tank.pressed"] is None, "it is silent beyond its deadline"
+
+
+SAID = st.lists(
+    st.tuples(st.sampled_from(["home", "out", "unknown", None]), st.floats(0.05, 1.5), st.booleans()), max_size=12
+)
+
+
+@given(SAID)
+def test_a_message_that_says_the_same_need_not_be_looked_at(said: list[tuple[str | None, float, bool]]) -> None:
+    """None stands for bytes that are no message; now and then the publisher goes."""
+    quick, slow = feeds(), feeds()
+    slow.running.repeats = dict.fromkeys(slow.running.repeats, False)
+    now = 10.0
+    for pose, seconds, goes in said:
+        now += seconds
+        for topics in (quick, slow):
+            topics.take([Sample(STATE, b"\x00\x01\x00\x00", now) if pose is None else says(pose, now)])
+            if goes:
+                topics.abandon(STATE)
+        assert quick.measured(now + 0.5) == slow.measured(now + 0.5)
+        assert quick.topics[STATE].trouble == slow.topics[STATE].trouble
+    assert quick.topics[STATE].messages == slow.topics[STATE].messages == len(said)

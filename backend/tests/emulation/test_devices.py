@@ -10,6 +10,8 @@ from hypothesis import strategies as st
 
 from sequence_planner.emulation.devices import EmulatedDevices
 from sequence_planner.expressions.types import Value
+from sequence_planner.pipelines.running import RunningPipelines
+from sequence_planner.pipelines.running_outgoing import first_message
 from sequence_planner.station import prepare_station
 
 CELL = prepare_station(Path(__file__).parents[1] / "stations" / "cell")
@@ -24,7 +26,7 @@ class Bench:
     def __init__(self, speed: float = 1.0, seed: int = 0, station: str = "cell") -> None:
         self.station = {"cell": CELL, "truck": TRUCK}[station]
         self.devices = EmulatedDevices(self.station.automaton, self.station.pipelines, speed, seed)
-        self.memory: dict[str, Value | None] = {}
+        self.pipelines = RunningPipelines(self.station.pipelines)
         self.now = 100.0
         self.outputs = dict(self.station.automaton.initial_valuation)
 
@@ -34,19 +36,19 @@ class Bench:
         registry = self.station.registry
         for topic, pipeline in self.station.pipelines.outgoing.items():
             type_name = pipeline.topic.type_name
-            data = registry.encode(type_name, pipeline.write(self.outputs))
+            message = first_message(pipeline, self.outputs)
+            assert message is not None
+            data = registry.encode(type_name, message)
             assert self.devices.command(topic, registry.decode(type_name, data)) == []
 
     def reported(self) -> dict[str, Value | None]:
         """What a controller would read from the reports now."""
-        values: dict[str, Value | None] = {}
         for topic, pipeline in self.station.pipelines.incoming.items():
             type_name = pipeline.topic.type_name
             data = self.station.registry.encode(type_name, self.devices.report(topic))
-            reading = pipeline.read(self.station.registry.decode(type_name, data), self.memory)
-            assert not reading.troubles
-            values |= reading.values
-        return values
+            self.pipelines.take(topic, self.station.registry.decode(type_name, data), self.now)
+            assert not self.pipelines.trouble(topic)
+        return self.pipelines.values(dict.fromkeys(self.station.pipelines.incoming, True))
 
     def wait(self, seconds: float) -> None:
         for _ in range(round(seconds / STEP)):
@@ -193,7 +195,7 @@ def test_a_command_without_sense_is_said_and_makes_the_command_unknown() -> None
     bench = Bench()
     bench.command(arm__goto="out")
     troubles = bench.devices.command("/arm/command", {"joints": [float("nan"), 0.0], "speed": 0.5})
-    assert troubles == ["joints is no position: [nan, 0.0]"]
+    assert troubles == ["joints is [nan, 0.0]: no command makes it so"]
     bench.wait(5)
     assert bench.reported()["arm.pose"] == "home"
 

@@ -18,7 +18,10 @@ ARM, STATION, OPERATIONS, SPECIFICATIONS = (
     "specifications.yaml",
 )
 NAMES = "names with their definitions"
-STAGE = "a stage is exactly one of discretise, remember, undiscretise, constant, rename"
+STAGE = (
+    "a stage is exactly one of rename, constant, expression, discretise, undiscretise, map, table, match, member, "
+    "remember, filter, debounce, limit, tick, override, fold, timeout, python"
+)
 NOT_YAML = "this is not YAML:"
 INDENTATION = "this does not belong to what is above it: look at the indentation and the quotes"
 DURATION = "expected seconds, or the fewest and the most as in `[0.5, 1.5]`"

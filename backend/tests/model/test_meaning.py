@@ -16,6 +16,7 @@ ARM, STATION, OPERATIONS, SPECIFICATIONS = (
 )
 STATE, COMMAND = "messages/cell_msgs/msg/ArmState.msg", "messages/cell_msgs/msg/ArmCommand.msg"
 POZE = "unknown variable or value `poze`; did you mean `pose`?"
+STATE_STAGE_1, STATE_STAGE_2 = "`/arm/state` → stage 1 `discretise`", "`/arm/state` → stage 2"
 NO_TOPIC = (
     "is not a topic name: write it absolute, as in /robot/state, "
     "of letters, digits and single underscores, no part beginning with a digit"
@@ -271,88 +272,88 @@ NO_NAME = "is no name: use letters, digits and `_`, and none of the words of the
             ARM,
             "          field: joints\n",
             "          field: ‹joint\n",
-            "the message has no field `joint`; did you mean `joints`?",
+            f"{STATE_STAGE_1}: there is no field `joint` here; did you mean `joints`?",
         ),
-        (
-            ARM,
-            "          variable: pose\n",
-            "          variable: ‹poses\n",
-            "`arm` has no measured variable `poses`; did you mean `pose`?",
-        ),
-        (ARM, "          variable: pose\n", "          variable: ‹goto\n", "`arm` has no measured variable `goto`"),
         (
             ARM,
             "          otherwise: unknown\n",
             "          otherwise: ‹unknwon\n",
-            "`unknwon` is none of {unknown, home, out}; did you mean `unknown`?",
+            f"{STATE_STAGE_1}: `unknwon` is none of {{unknown, home, out}}; did you mean `unknown`?",
         ),
         (
             ARM,
-            "            out: [1.0, 0.5]\n",
-            "            ‹out: [0.0, 0.0]\n",
-            "`out` is at the same coordinates as `home`",
+            "          field: joints\n",
+            "          field: ‹moving\n",
+            f"{STATE_STAGE_1}: `moving` must be an array of numbers, or a number, and is bool",
         ),
-        (ARM, "          field: joints\n", "          field: ‹moving\n", "`moving` must be an array of numbers"),
         (
             ARM,
             "{variable: last, of: pose, except: [unknown]}",
             "{variable: ‹lst, of: pose, except: [unknown]}",
-            "`arm` has no measured variable `lst`; did you mean `last`?",
+            f"{STATE_STAGE_2} `remember`: `arm` has no measured variable `lst`, and no later stage reads it; "
+            "did you mean `last`?",
         ),
         (
             ARM,
             "{variable: last, of: pose, except: [unknown]}",
             "{variable: last, of: ‹pos, except: [unknown]}",
-            "`arm` has no measured variable `pos`; did you mean `pose`?",
+            f"{STATE_STAGE_2} `remember`: there is no field `pos` here; did you mean `pose`?",
         ),
         (
             ARM,
             "{variable: last, of: pose, except: [unknown]}",
             "{variable: ‹last, of: pose}",
-            "`last` cannot be unknown: put it into `except`",
+            f"{STATE_STAGE_2} `remember`: `last` cannot be unknown: put it into `except`",
         ),
         (
             ARM,
             "{variable: last, of: pose, except: [unknown]}",
             "{variable: last, of: pose, except: [unknown, ‹hoome]}",
-            "`hoome` is no value of `pose`; did you mean `home`?",
+            f"{STATE_STAGE_2} `remember`: `hoome` is no value of `pose`; did you mean `home`?",
         ),
-        (ARM, "{speed: 0.5}", "{‹sped: 0.5}", "the message has no field `sped`; did you mean `speed`?"),
+        (
+            ARM,
+            "{speed: 0.5}",
+            "{‹sped: 0.5}",
+            "`/arm/command` → stage 2 `constant`: the message has no field `sped`, and no later stage reads it; "
+            "did you mean `speed`?",
+        ),
         (
             ARM,
             "{speed: 0.5}",
             "{‹speed: fast}",
-            "the message cannot be written: cell_msgs/msg/ArmCommand speed: expected float64, found 'fast' (str)",
+            "`/arm/command` → stage 2 `constant`: `speed` is real, and 'fast' is no value of that type",
         ),
         (
             ARM,
             "{speed: 0.5}\n",
             "{speed: 0.5}\n      - rename: {speed: ‹gotoo}\n",
-            "`arm` has no output variable `gotoo`; did you mean `goto`?",
+            "`/arm/command` → stage 3 `rename`: there is no field `gotoo` here; did you mean `goto`?",
         ),
         (
             ARM,
             "      - remember",
             "      - constant: {‹moving: true}\n      - remember",
-            "`constant` is for outgoing topics: an incoming message has its own values",
+            f"{STATE_STAGE_2} `constant`: `constant` is for outgoing topics: an incoming message has its own values",
         ),
         (
             ARM,
             "{variable: goto, field: joints, values: *poses}",
             "{variable: goto, field: ‹joint, values: *poses}",
-            "the message has no field `joint`; did you mean `joints`?",
+            "`/arm/command` → stage 1 `undiscretise`: the message has no field `joint`, and no later stage reads it; "
+            "did you mean `joints`?",
         ),
         (
             ARM,
             "variable: goto, field: joints, values: *poses}",
             "variable: ‹goto, field: joints, values: {home: [0, 0]}}",
-            "no coordinates for out",
+            "`/arm/command` → stage 1 `undiscretise`: no coordinates for out",
         ),
         (
             ARM,
             "      - undiscretise: {variable: goto, field: joints, values: *poses}",
             "      - discretise: {field: ‹joints, variable: pose, values: *poses, tolerance: 1, otherwise: unknown}",
-            "`discretise` is for incoming topics; use `undiscretise` here",
+            "`/arm/command` → stage 1 `discretise`: `discretise` is for incoming topics; use `undiscretise` here",
         ),
         # messages
         (STATE, "bool moving", "bool moving\n‹bool moving", "moving is already declared in line 2"),
@@ -376,11 +377,11 @@ def test_a_variable_in_two_sections_and_an_ability_of_its_name(tmp_path: Path) -
 
 
 def test_a_field_that_does_not_correspond(tmp_path: Path) -> None:
-    for fields, found in (("int8 moving", "int8"), ("bool[2] moving", "bool[2]"), ("string moving", "string")):
+    for fields, found in (("int8 moving", "-128..127"), ("bool[2] moving", "bool[2]"), ("string moving", "text")):
         station = copy_of_cell(tmp_path / found)
         replace(station, STATE, "bool moving", fields)
         [place] = replace(station, ARM, "  /arm/state:", "  ‹/arm/state:")
-        message = f"field `moving` is a {found}, and `arm.moving` is bool: they do not correspond"
+        message = f"field `moving` is {found}, and `arm.moving` is bool: they do not correspond"
         assert findings(station) == [f"{place}: {message}"]
 
 
@@ -389,7 +390,7 @@ def test_a_range_must_fit_into_the_field(tmp_path: Path) -> None:
     replace(station, STATE, "bool moving", "bool moving\nuint8 count")
     replace(station, ARM, "  moving: {type", "  count: {type: -1..3}\n  moving: {type")
     [line] = findings(station)
-    assert line.endswith(": field `count` is a uint8, and `arm.count` is -1..3: they do not correspond")
+    assert line.endswith(": field `count` is 0..255, and `arm.count` is -1..3: they do not correspond")
 
 
 def test_coordinates_that_do_not_fit_are_said_of_every_stage_that_uses_them(tmp_path: Path) -> None:
@@ -398,7 +399,10 @@ def test_coordinates_that_do_not_fit_are_said_of_every_stage_that_uses_them(tmp_
     here = replace(station, ARM, "          field: joints", "          field: ‹joints")
     there = replace(station, ARM, "goto, field: joints", "goto, field: ‹joints")
     assert findings(station) == [
-        f"{place}: all points need as many coordinates as `joints` has: float64[2]" for place in (*here, *there)
+        f"{place}: {stage}: all points need as many coordinates as `joints` has: real[2]"
+        for place, stage in zip(
+            (*here, *there), (STATE_STAGE_1, "`/arm/command` → stage 1 `undiscretise`"), strict=True
+        )
     ]
 
 
@@ -418,11 +422,26 @@ def test_a_topic_that_feeds_nothing_and_one_that_feeds_what_is_fed_already(tmp_p
     ]
 
 
+def test_points_at_the_same_place_are_said_of_every_stage_that_uses_them(tmp_path: Path) -> None:
+    station = copy_of_cell(tmp_path)
+    [place] = replace(station, ARM, "            out: [1.0, 0.5]\n", "            ‹out: [0.0, 0.0]\n")
+    stages = ("`/arm/command` → stage 1 `undiscretise`", STATE_STAGE_1)
+    assert findings(station) == [f"{place}: {stage}: `out` is at the same coordinates as `home`" for stage in stages]
+
+
+def test_a_name_misspelt_where_it_is_given_is_found_where_it_is_read(tmp_path: Path) -> None:
+    station = copy_of_cell(tmp_path)
+    replace(station, ARM, "          variable: pose\n", "          variable: poses\n")
+    [place] = replace(station, ARM, "{variable: last, of: pose", "{variable: last, of: ‹pose")
+    message = f"{STATE_STAGE_2} `remember`: there is no field `pose` here; did you mean `poses`?"
+    assert findings(station) == [f"{place}: {message}"]
+
+
 def test_only_what_the_topic_has_said_can_be_remembered(tmp_path: Path) -> None:
     station = copy_of_cell(tmp_path)
     replace(station, ARM, "measured:\n", "measured:\n  elsewhere: {type: target}\n")
     [place] = replace(station, ARM, "of: pose, except: [unknown]", "of: ‹elsewhere")
-    message = "`elsewhere` has no value yet: only what this topic has said can be remembered"
+    message = f"{STATE_STAGE_2} `remember`: there is no field `elsewhere` here"
     assert findings(station) == [f"{place}: {message}"]
 
 

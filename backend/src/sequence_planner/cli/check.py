@@ -15,6 +15,8 @@ from sequence_planner.cli.loading import Model, load_model
 from sequence_planner.cli.options import FINDINGS, UNUSABLE, AnyModel, AsJson, print_json
 from sequence_planner.collection import collection_put_off
 from sequence_planner.model.source import Finding, ModelError
+from sequence_planner.pipelines.examples import failures, loading_failures
+from sequence_planner.station import ReadyStation
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,7 @@ class Checked:
 def check(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = False) -> None:
     """Check a model: its documents, its pipelines, that its specifications can be met, and what is suspicious in it.
 
+    The examples of the pipelines are carried out; one that fails is an error.
     Errors make a model unusable: they go to standard error, and the exit code is 2. Warnings, also that the
     specifications cannot be met, go to standard output, and the exit code is 1. Without either it is 0.
     A trace shows how something comes about, step by step; it is indented below the warning.
@@ -36,7 +39,10 @@ def check(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = F
     {initial, forbidden_by, steps: [{kind, names, finished, changes, forbidden_by, text}]}, or null.
     """
     try:
-        checked = _checked(load_model(model), deadline)
+        loaded = load_model(model)
+        if loaded.station is not None and (failed := _failures(loaded.station)):
+            raise ModelError(failed)
+        checked = _checked(loaded, deadline)
     except ModelError as error:
         if json:
             findings = [_unusable(each) for each in error.findings]
@@ -51,6 +57,11 @@ def check(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = F
         _say(checked)
     if checked.findings:
         raise typer.Exit(FINDINGS)
+
+
+def _failures(station: ReadyStation) -> list[Finding]:
+    """What is wrong with the pipelines as they run: stages that cannot be loaded, and then examples that fail."""
+    return loading_failures(station.pipelines) or failures(station.examples)
 
 
 def _checked(model: Model, deadline: float) -> Checked:

@@ -6,6 +6,7 @@ import asyncio
 import contextlib
 import signal
 from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated
 
@@ -14,6 +15,7 @@ import typer
 from sequence_planner.analysis.process import SynthesisEndedError
 from sequence_planner.cli.options import StationFolder, refuse
 from sequence_planner.control.unix_socket import SocketTakenError
+from sequence_planner.emulation.possible import emulation_findings
 from sequence_planner.emulation.process import BY_HAND_TOPIC, BY_HAND_TYPE, Emulation, emulate
 from sequence_planner.launcher import Launch, launch
 from sequence_planner.lifeline import end_with_launcher
@@ -25,12 +27,21 @@ from sequence_planner.ros.ament import write_ament_package
 from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.exclusivity import DISCOVERY
 from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.routing import ROSBRIDGE, open_routed
 from sequence_planner.ros.transport import QualityOfService, Transport, TransportError
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.web.settings import Settings, SettingsError
 
 TransportOption = Annotated[
     TransportChoice, typer.Option(help="How to speak ROS 2; auto takes rclpy where it can be imported.")
+]
+RosbridgeOption = Annotated[
+    str | None,
+    typer.Option(
+        envvar=ROSBRIDGE,
+        help="Address of the rosbridge server for topics of ROS 1, such as ws://127.0.0.1:9090.",
+        show_envvar=True,
+    ),
 ]
 Launched = Annotated[
     bool, typer.Option("--launched", hidden=True, help="End when standard input does; `run` sets this.")
@@ -43,6 +54,7 @@ def run(
     host: Annotated[str, typer.Option(help="Address of the page; the loopback only.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port of the page.")] = 8000,
     transport: TransportOption = "auto",
+    rosbridge: RosbridgeOption = None,
     emulator: Annotated[bool, typer.Option("--emulator", help="Run emulated devices beside it.")] = False,
     start: Annotated[bool, typer.Option("--start", help="Start production at once; only with --emulator.")] = False,
     emulator_speed: Annotated[float, typer.Option(min=0.1, max=100, help="Emulated devices go so much faster.")] = 1.0,
@@ -52,7 +64,7 @@ def run(
         refuse("--start is for emulated devices: with real ones a person starts production on the page")
     _prepare(model)
     try:
-        raise typer.Exit(launch(Launch(model, host, port, transport, emulator, start, emulator_speed)))
+        raise typer.Exit(launch(Launch(model, host, port, transport, rosbridge, emulator, start, emulator_speed)))
     except SettingsError as error:
         refuse(str(error))
 
@@ -60,6 +72,7 @@ def run(
 def emulate_command(
     model: StationFolder,
     transport: TransportOption = "auto",
+    rosbridge: RosbridgeOption = None,
     speed: Annotated[float, typer.Option(min=0.1, max=100, help="Go so much faster than real devices.")] = 1.0,
     seed: Annotated[int, typer.Option(help="Draws the delays.")] = 0,
     launched: Launched = False,
@@ -67,7 +80,10 @@ def emulate_command(
     """Run emulated devices for a station, in place of real ones."""
     _begin(launched)
     station = _prepare(model)
-    _until_interrupted(lambda connect: emulate(Emulation(station, speed, seed), connect), station.registry, transport)
+    if findings := emulation_findings(station):
+        refuse("\n".join(map(str, findings)))
+    network = _Network(station, transport, rosbridge)
+    _until_interrupted(lambda connect: emulate(Emulation(station, speed, seed), connect), network)
 
 
 def by_hand(
@@ -98,6 +114,7 @@ def controller(
     model: StationFolder,
     socket: Socket,
     transport: TransportOption = "auto",
+    rosbridge: RosbridgeOption = None,
     emulated: Annotated[bool, typer.Option("--emulated")] = False,
     start: Annotated[bool, typer.Option("--start")] = False,
     launched: Launched = False,
@@ -108,9 +125,8 @@ def controller(
 
     _begin(launched, socket.parent)
     station = _prepare(model)
-    _until_interrupted(
-        lambda connect: control(Running(station, socket, connect, emulated, start)), station.registry, transport
-    )
+    network = _Network(station, transport, rosbridge)
+    _until_interrupted(lambda connect: control(Running(station, socket, connect, emulated, start)), network)
 
 
 def server(
@@ -141,14 +157,33 @@ def _prepare(folder: Path) -> ReadyStation:
         refuse(str(error))
 
 
-def _until_interrupted(
-    life: Callable[[Callable[[str], Transport]], Awaitable[None]], registry: MessageRegistry, choice: TransportChoice
-) -> None:
+@dataclass(frozen=True)
+class _Network:
+    """How a station's processes join its network."""
+
+    station: ReadyStation
+    choice: TransportChoice
+    rosbridge: str | None
+
+    def join(self, node: str, loop: asyncio.AbstractEventLoop) -> Transport:
+        """Join as the node of this name; see `open_transport` and `open_routed`."""
+        registry = self.station.registry
+        return open_routed(
+            lambda: open_transport(self.choice, registry, node, loop),
+            self.station.ros_1,
+            self.rosbridge,
+            registry,
+            node,
+            loop,
+        )
+
+
+def _until_interrupted(life: Callable[[Callable[[str], Transport]], Awaitable[None]], network: _Network) -> None:
     """Run a coroutine that connects to the network, until SIGTERM or SIGINT; trouble ends with exit code 2."""
 
     async def live() -> None:
         loop = asyncio.get_running_loop()
-        running = asyncio.ensure_future(life(lambda node: open_transport(choice, registry, node, loop)))
+        running = asyncio.ensure_future(life(lambda node: network.join(node, loop)))
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, running.cancel)
         with contextlib.suppress(asyncio.CancelledError):

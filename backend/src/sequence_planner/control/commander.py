@@ -6,14 +6,28 @@ tried again until it is out, and as long as one is owed nothing further should b
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 from sequence_planner.automaton.structure import State
-from sequence_planner.pipelines.pipeline import OutgoingPipeline
+from sequence_planner.expressions.types import Value
+from sequence_planner.pipelines.graph import OutgoingPipeline
+from sequence_planner.pipelines.observation import PipelineView
+from sequence_planner.pipelines.running_outgoing import RunningOutgoing
 from sequence_planner.ros.errors import MessageValueError
 from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import Transport, TransportError
+from sequence_planner.ros.transport import QualityOfService, TransportError
+
+
+class Publisher(Protocol):
+    """The part of a transport that carries commands."""
+
+    def advertise(self, topic: str, type_name: str, qos: QualityOfService) -> None:
+        """Announce a topic."""
+
+    def publish(self, topic: str, type_name: str, data: bytes) -> None:
+        """Send a message; raises `TransportError`."""
 
 
 @dataclass
@@ -21,18 +35,27 @@ class Command:
     """One outgoing topic. `last` is on the clock of `time.monotonic`; `owed` says why its message is not out yet."""
 
     pipeline: OutgoingPipeline
+    running: RunningOutgoing
+    said: tuple[Value | None, ...] | None = None  # the values of its variables that were taken last
+    message: dict[str, object] | None = None  # the last one that came of them
     last: float | None = None
     messages: int = 0
     owed: str | None = None
+
+    def news(self, state: State) -> bool:
+        """Whether a variable has changed on which the message depends; from now on `state` is known."""
+        said = tuple([state[name] for name in self.pipeline.variables])
+        is_new, self.said = said != self.said, said
+        return is_new
 
 
 class Commander:
     """Publishes the outputs. It has no will of its own: nothing is sent unless it is called, and no call raises."""
 
     def __init__(
-        self, pipelines: Mapping[str, OutgoingPipeline], registry: MessageRegistry, transport: Transport
+        self, pipelines: Mapping[str, OutgoingPipeline], registry: MessageRegistry, transport: Publisher
     ) -> None:
-        self.topics = {name: Command(pipeline) for name, pipeline in pipelines.items()}
+        self.topics = {name: Command(pipeline, RunningOutgoing(pipeline)) for name, pipeline in pipelines.items()}
         self._registry = registry
         self._transport = transport
         for pipeline in pipelines.values():
@@ -43,30 +66,67 @@ class Commander:
         """The topics whose message is not out yet, and why."""
         return {name: command.owed for name, command in self.topics.items() if command.owed is not None}
 
-    def publish(self, state: State, changed: Set[str], now: float) -> None:
-        """Send the messages in which one of the `changed` variables stands."""
-        self._send((c for c in self.topics.values() if not changed.isdisjoint(c.pipeline.variables)), state, now)
+    @property
+    def due(self) -> float | None:
+        """When `repeat` next makes a difference because a stage waits for it."""
+        return min((due for c in self.topics.values() if (due := c.running.chain.due) is not None), default=None)
+
+    def publish(self, state: State, now: float) -> None:
+        """Send the messages that depend on a variable which has changed since they were last made."""
+        for command in self.topics.values():
+            if command.news(state):
+                self._send(command, command.running.take(state, now), now)
 
     def publish_all(self, state: State, now: float) -> None:
         """Send every message."""
-        self._send(self.topics.values(), state, now)
+        for command in self.topics.values():
+            command.news(state)
+            self._send(command, command.running.take(state, now), now)
 
-    def repeat(self, state: State, now: float) -> None:
-        """Send the messages that are owed, and those whose interval has passed since they were last sent."""
-        self._send((c for c in self.topics.values() if c.owed is not None or _is_due(c, now)), state, now)
+    def repeat(self, now: float) -> None:
+        """Send the messages that are owed, those for which a stage has waited, and those whose interval has passed."""
+        for command in self.topics.values():
+            due = command.running.chain.due
+            if due is not None and due <= now:
+                for message in command.running.wake(now):
+                    self._send(command, message, now)
+            if command.owed is not None or _is_due(command, now):
+                self._send(command, command.message, now)
 
-    def _send(self, commands: Iterable[Command], state: State, now: float) -> None:
-        for command in commands:
-            topic = command.pipeline.topic
-            try:
-                data = self._registry.encode(topic.type_name, command.pipeline.write(state))
-                self._transport.publish(topic.name, topic.type_name, data)
-            except (TransportError, MessageValueError) as error:
-                command.owed = str(error)
-                continue
-            command.owed = None
-            command.last = now
-            command.messages += 1
+    def set_override(self, topic: str, name: str, fields: Mapping[str, object], now: float, actor: str) -> None:
+        """A person sets fields, and what comes of it is sent. Raises ValueError for what the model does not allow."""
+        command = self.topics[topic]
+        self._send(command, command.running.set_override(name, fields, now, actor), now)
+
+    def clear_override(self, topic: str, name: str, now: float) -> None:
+        """A person takes back what was set, and what comes of it is sent."""
+        command = self.topics[topic]
+        self._send(command, command.running.clear_override(name, now), now)
+
+    def observed(self) -> dict[str, PipelineView]:
+        """What has passed each edge of each pipeline."""
+        return {name: command.running.observed() for name, command in self.topics.items()}
+
+    def close(self) -> None:
+        """End what stages have started beside. May be repeated."""
+        for command in self.topics.values():
+            command.running.chain.close()
+
+    def _send(self, command: Command, message: dict[str, object] | None, now: float) -> None:
+        """Send a message, unless it is held back."""
+        if message is None:
+            return
+        command.message = message
+        topic = command.pipeline.topic
+        try:
+            data = self._registry.encode(topic.type_name, message)
+            self._transport.publish(topic.name, topic.type_name, data)
+        except (TransportError, MessageValueError) as error:
+            command.owed = str(error)
+            return
+        command.owed = None
+        command.last = now
+        command.messages += 1
 
 
 def _is_due(command: Command, now: float) -> bool:

@@ -10,7 +10,7 @@ is tried again at the next look at the clock.
 from __future__ import annotations
 
 import asyncio
-from collections import deque
+import time
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
@@ -19,20 +19,36 @@ import structlog
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.alarms import Alarms
+from sequence_planner.control.clients import Clients
 from sequence_planner.control.commander import Commander
-from sequence_planner.control.commands import AcknowledgeTask, Command, CommandRefused, SetMode, StartProduction
+from sequence_planner.control.commands import (
+    AcknowledgeTask,
+    ClearOverride,
+    Command,
+    CommandRefused,
+    SetMode,
+    SetOverride,
+    StartProduction,
+)
 from sequence_planner.control.execution import Execution, TickOutcome
-from sequence_planner.control.feeds import Feeds, one_per_topic
+from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.inbox import Inbox
+from sequence_planner.control.link_messages import About
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.observing import Observing
 from sequence_planner.control.outside import Outside
+from sequence_planner.control.overrides import Overrides
+from sequence_planner.control.pipeline_graph import pipelines_view
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.questions import Questions
 from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.view import Production, StationIdentity, StationView
 from sequence_planner.control.viewing import Viewing
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.plan import Circumstances
-from sequence_planner.ros.transport import Sample, Transport
+from sequence_planner.ros.service_graph import TellsServices
+from sequence_planner.ros.transport import QualityEvent, Sample, Transport
 from sequence_planner.station import ReadyStation
 from sequence_planner.synthesis.guards import Guard
 
@@ -57,17 +73,22 @@ class Controller:
         self.execution = Execution(automaton, supervisor)
         self.execution.production = Production.WAITING
         self.desk = TaskDesk(automaton, pipelines.feeds)
-        self.feeds = Feeds(pipelines.incoming, registry)
+        self.feeds = Feeds(pipelines, registry)
         self.network = NetworkWatch(pipelines, registry)
         self._transport = transport
+        transport.watch(self._hear_quality)
+        self._inbox = Inbox(self.feeds.reports)
+        self._wake = asyncio.Event()
+        self._clients = Clients(pipelines, registry, transport, self.feeds, self._hear)
         self._commander = Commander(pipelines.outgoing, registry, transport)
+        self._overrides = Overrides(pipelines, self.feeds, self._commander)
+        self._observing = Observing()
+        self._pipelines = pipelines
         self._outside = Outside(self.execution)
         self._alarms = Alarms(self.execution, self._outside, self.feeds, self.network, self._commander)
         self._viewing = Viewing(identity, self.execution, self._outside, self.feeds, self.network)
         self._questions = Questions(self.execution, self._outside, self._take)
-        self._samples: deque[Sample] = deque()
         self._measured: dict[str, Value | None] = {}
-        self._wake = asyncio.Event()
         self._again = False
         self._due = True  # a tick is wanted whatever the measurements say
         self._in_a_row = 0  # ticks that only followed from the one before
@@ -81,13 +102,22 @@ class Controller:
             while True:
                 moment = Moment.now()
                 self._step(moment)
-                if self._samples or (self._again and self._in_a_row < MOST_TICKS):
+                if self._inbox or (self._again and self._in_a_row < MOST_TICKS):
                     await asyncio.sleep(0)
                 else:
                     self._wake.clear()
-                    await _first(self._wake, LOOK_EVERY)
+                    await _first(self._wake, self._rest())
         finally:
+            self._clients.close()
+            self.feeds.running.close()
+            self._commander.close()
             self._questions.close()
+
+    def _rest(self) -> float:
+        """Seconds until the next look at the clock: at the latest when a stage of a pipeline waits for it."""
+        is_started = self.execution.production is Production.STARTED
+        dues = [due for due in (self.feeds.due, self._commander.due if is_started else None) if due is not None]
+        return min(LOOK_EVERY, max(0.0, min(dues) - time.monotonic())) if dues else LOOK_EVERY
 
     async def command(self, command: Command) -> None:
         """Carry out a command. Raises `CommandRefused`."""
@@ -98,6 +128,10 @@ class Controller:
                 self._start_production()
             case AcknowledgeTask(task=task, revision=revision):
                 self.desk.acknowledge(task, revision)
+            case SetOverride(name=name, fields=fields, actor=actor):
+                self._overrides.set(name, fields, actor, time.monotonic())
+            case ClearOverride(name=name):
+                self._overrides.clear(name, time.monotonic())
         LOG.info("command", **command.model_dump(mode="json"))
         self._tick_again()
 
@@ -105,7 +139,13 @@ class Controller:
         """What there is to show now."""
         moment = Moment.now()
         alarms = self._alarms.current(self._questions.trouble, moment)
-        return self._viewing.view(self.desk, self._commander, alarms, moment)
+        return self._viewing.view(self.desk, self._commander, self._overrides.view(moment), alarms, moment)
+
+    def answer(self, about: About) -> PipelinesView | FlowsView:
+        """What is told only when somebody asks for it."""
+        if about == "pipelines":
+            return pipelines_view(self._pipelines)
+        return self._observing.view(self.feeds.observed() | self._commander.observed(), Moment.now())
 
     def know(self, analysis: AnalysisDocument, guards: Mapping[str, Guard] | None) -> None:
         """Take note of what synthesis has found beside the supervisor, to be shown."""
@@ -125,11 +165,23 @@ class Controller:
                 "other-commander", "Somebody else commands the devices", f"{text}. Stop the other one."
             )
         self.execution.start_production()
-        self._commander.publish_all(self.execution.published, Moment.now().monotonic)
+        now = Moment.now().monotonic
+        self._commander.publish_all(self.execution.published, now)
+        self._clients.heed(self.execution.published, now)
 
     def _hear(self, samples: Sequence[Sample]) -> None:
-        self._samples.extend(samples)
+        self._inbox.put(samples)
         self._wake.set()
+
+    def _hear_quality(self, event: QualityEvent) -> None:
+        """A quality of service is not kept; on what is not agreed on, `network` looks itself."""
+        if event.kind == "incompatible":
+            LOG.warning("a quality of service is not agreed on", topic=event.topic, text=event.text)
+        elif event.topic in self.feeds.topics:
+            self.feeds.abandon(event.topic, event.text)
+            self._wake.set()
+        else:
+            self.feeds.reports.note(event.topic, event.text, time.monotonic(), lasting=False)
 
     def _tick_again(self) -> None:
         self._due = self._again = True
@@ -142,15 +194,17 @@ class Controller:
             self._see_network()
 
     def _see_network(self) -> None:
-        for topic in self.network.look(self._transport.graph()):
+        graph = self._transport.graph()
+        ends = self._transport.services() if isinstance(self._transport, TellsServices) else None
+        for topic in self.network.look(graph, ends):
             self.feeds.abandon(topic)
+        self._clients.look(graph)
 
     def _step(self, moment: Moment) -> None:
         """All ticks that are due: one for each part of what was heard, and one for the look at the clock."""
         self._attempt("looking at the network", lambda: self._look_at_network(moment))
-        heard, self._samples = self._samples, deque()
         self._again = False
-        for part in one_per_topic(heard):
+        for part in self._inbox.parts():
             # What a message says counts from when it was received, however late its turn comes.
             self._attempt("a tick", partial(self._tick, part, moment, part[-1].received))
         self._attempt("a tick", lambda: self._tick((), moment, moment.monotonic))
@@ -159,11 +213,13 @@ class Controller:
 
     def _repeat(self, moment: Moment) -> None:
         if self.execution.production is Production.STARTED:
-            self._commander.repeat(self.execution.published, moment.monotonic)
+            self._commander.repeat(moment.monotonic)
+            self._clients.heed(self.execution.published, moment.monotonic)
 
     def _tick(self, samples: Sequence[Sample], moment: Moment, monotonic: float) -> None:
         """Take messages of `monotonic`, of which no topic has more than one, and tick if that is something new."""
         self.feeds.take(samples)
+        self.feeds.wake(monotonic)
         measured = self.feeds.measured(monotonic) | self.desk.measured()
         obstacles = self._obstacles()
         circumstances = Circumstances(self.feeds.offline(monotonic))
@@ -182,8 +238,9 @@ class Controller:
         self._again = self._again or self._due
         self._in_a_row = self._in_a_row + 1 if outcome.changed and not news else 0
         self._alarms.restless = outcome.finished if self._in_a_row >= MOST_TICKS else ()
-        if outcome.outputs:
-            self._commander.publish(self.execution.published, outcome.outputs, moment.monotonic)
+        if self.execution.production is Production.STARTED:
+            self._commander.publish(self.execution.published, moment.monotonic)
+            self._clients.heed(self.execution.published, moment.monotonic)
         self.desk.update(self.execution.state, outcome.finished, outcome.ended, moment.epoch)
         self._alarms.note(outcome)
         self._viewing.note(outcome, moment.epoch)

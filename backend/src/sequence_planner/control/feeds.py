@@ -1,12 +1,18 @@
-"""Incoming topics: the last thing each said, whether it still counts, and batches cut so that no value is skipped."""
+"""Incoming topics: the last thing each said, whether it still counts, and batches cut so that no value is skipped.
+
+What services and actions answer is taken as a topic's messages are, under the names of their parts.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 
+from sequence_planner.control.bad_input import Reports
 from sequence_planner.expressions.types import Value
-from sequence_planner.pipelines.pipeline import IncomingPipeline
+from sequence_planner.pipelines.graph import IncomingPipeline, StationPipelines
+from sequence_planner.pipelines.observation import PipelineView
+from sequence_planner.pipelines.running import RunningPipelines
 from sequence_planner.ros.errors import MalformedMessageError
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import Sample
@@ -20,73 +26,128 @@ class Feed:
     """
 
     pipeline: IncomingPipeline
+    running: RunningPipelines
     last: float | None = None
     messages: int = 0
-    trouble: str | None = None
-    abandoned: bool = False  # its publishers have gone since the last message
-    values: dict[str, Value | None] = field(default_factory=dict)
-    memory: dict[str, Value | None] = field(default_factory=dict)
+    abandoned: bool = False  # what it said counts no more, since before the next message
+    why: str = ""  # it was abandoned
+    since: float = float("-inf")  # what was received before counts no more
+    data: bytes | None = None  # of the last message, if it could be read; None also once it counts no more
 
-    def take(self, sample: Sample, registry: MessageRegistry) -> None:
-        """Read one message. One that cannot be read makes the topic's variables unknown."""
-        if not self.fresh(sample.received):
-            self.memory.clear()  # also when nobody looked while it was silent
-        self.last = sample.received
-        self.abandoned = False
-        self.messages += 1
-        try:
-            record = registry.decode(self.pipeline.topic.type_name, sample.data)
-        except MalformedMessageError as error:
-            self.values = {}
-            self.trouble = str(error)
-            return
-        reading = self.pipeline.read(record, self.memory)
-        self.values = reading.values
-        self.trouble = "; ".join(reading.troubles) or None
+    @property
+    def trouble(self) -> str | None:
+        """What in its last message made no sense."""
+        return self.running.trouble(self.pipeline.topic.name)
 
     def fresh(self, now: float) -> bool:
         """Whether the topic has spoken, and within its deadline, and its publishers are still there."""
         deadline = self.pipeline.deadline
         return self.last is not None and not self.abandoned and (deadline is None or now - self.last <= deadline)
 
-    def measured(self, now: float) -> dict[str, Value | None]:
-        """The values of its variables; all unknown when it is not fresh."""
-        if not self.fresh(now):
-            self.memory.clear()
-            return dict.fromkeys(self.pipeline.variables)
-        return {name: self.values.get(name) for name in self.pipeline.variables}
-
 
 class Feeds:
-    """All incoming topics of a station."""
+    """All incoming topics of a station, and what becomes of their messages."""
 
-    def __init__(self, pipelines: Mapping[str, IncomingPipeline], registry: MessageRegistry) -> None:
-        self.topics = {name: Feed(pipeline) for name, pipeline in pipelines.items()}
+    def __init__(self, pipelines: StationPipelines, registry: MessageRegistry) -> None:
+        self.running = RunningPipelines(pipelines)
+        self.topics = {name: Feed(pipeline, self.running) for name, pipeline in pipelines.incoming.items()}
+        self.answers = {name: Feed(pipeline, self.running) for name, pipeline in pipelines.answers.items()}
+        self.reports = Reports()
+        self._all = self.topics | self.answers
+        polled = {use.response.name for use in pipelines.services.values() if use.every is not None}
+        self._expected = {name: feed for name, feed in self._all.items() if name in self.topics or name in polled}
+        self.heard_on = pipelines.heard_on
         self._registry = registry
+        self._forgotten: set[str] = set(self._all)  # topics of which nothing is remembered
 
     def take(self, samples: Iterable[Sample]) -> None:
         """Read messages, of which no topic has more than one."""
         for sample in samples:
-            self.topics[sample.topic].take(sample, self._registry)
+            feed = self._all[sample.topic]
+            if sample.received < feed.since:
+                continue
+            self._take(feed, sample)
+            if (trouble := sample.trouble or feed.trouble) is not None:
+                self.reports.note(sample.topic, trouble, sample.received)
+            else:
+                self.reports.settle(sample.topic)
 
-    def abandon(self, topic: str) -> None:
-        """The last publisher of the topic has gone."""
+    def begin_anew(self, name: str, now: float) -> None:
+        """What the topic, the service or the action has said until now counts no more."""
+        feed = self._all[name]
+        feed.abandoned, feed.since = True, now
+        self._forget(name)
+
+    def _take(self, feed: Feed, sample: Sample) -> None:
+        """Read one message. One that cannot be read makes what comes of the topic unknown."""
+        if not feed.fresh(sample.received):
+            self._forget(sample.topic)  # also when nobody looked while it was silent
+        feed.last = sample.received
+        feed.abandoned = False
+        feed.messages += 1
+        if sample.data == feed.data and self.running.repeats[sample.topic]:
+            self.running.repeat(sample.topic)
+            return
+        self._forgotten.discard(sample.topic)
+        if sample.trouble:
+            feed.data = None
+            self.running.spoil(sample.topic, sample.trouble)
+            feed.abandoned = sample.topic in self.answers  # nobody answers
+            return
+        try:
+            record = self._registry.decode(feed.pipeline.topic.type_name, sample.data)
+        except MalformedMessageError as error:
+            feed.data = None
+            self.running.spoil(sample.topic, str(error))
+        else:
+            feed.data = sample.data
+            self.running.take(sample.topic, record, sample.received)
+
+    def wake(self, now: float) -> None:
+        """Let time pass in the pipelines; `due` says when it next makes a difference."""
+        due = self.running.due
+        if due is not None and due <= now:
+            self.running.wake(now)
+
+    def observed(self) -> dict[str, PipelineView]:
+        """What has passed each edge of each pipeline."""
+        return self.running.observed()
+
+    @property
+    def due(self) -> float | None:
+        """When `wake` next makes a difference if nothing comes before."""
+        return self.running.due
+
+    def abandon(self, topic: str, why: str = "its publishers have gone") -> None:
+        """What the topic said counts no more: the last publisher has gone, or a promise has been broken."""
         self.topics[topic].abandoned = True
+        self.topics[topic].why = why
 
     def measured(self, now: float) -> dict[str, Value | None]:
-        """The values of all measured variables that topics feed."""
-        values: dict[str, Value | None] = {}
-        for feed in self.topics.values():
-            values |= feed.measured(now)
-        return values
+        """The values of all measured variables that topics feed; unknown are those of which a topic is not fresh."""
+        fresh = {name: feed.fresh(now) for name, feed in self._all.items()}
+        for name, is_fresh in fresh.items():
+            if not is_fresh:
+                self._forget(name)
+        return self.running.values(fresh)
 
     def awaited(self, now: float) -> list[str]:
-        """The topics that are not fresh."""
-        return [name for name, feed in self.topics.items() if not feed.fresh(now)]
+        """The topics that are not fresh, and the services called every so often that do not answer."""
+        return [name for name, feed in self._expected.items() if not feed.fresh(now)]
+
+    def resource_of(self, name: str) -> str:
+        """The resource of a topic, or of a service or action by the name of a part."""
+        return self._all[name].pipeline.topic.resource
 
     def offline(self, now: float) -> frozenset[str]:
-        """The resources of which a topic is not fresh."""
-        return frozenset(self.topics[name].pipeline.topic.resource for name in self.awaited(now))
+        """The resources from which something is awaited."""
+        return frozenset(map(self.resource_of, self.awaited(now)))
+
+    def _forget(self, topic: str) -> None:
+        if topic not in self._forgotten:
+            self._forgotten.add(topic)
+            self._all[topic].data = None
+            self.running.forget(topic)
 
 
 def one_per_topic(samples: Iterable[Sample]) -> Iterator[list[Sample]]:

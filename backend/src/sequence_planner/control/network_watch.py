@@ -4,46 +4,45 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sequence_planner.pipelines.pipeline import StationPipelines, Topic
+from sequence_planner.control.mismatches import mismatches, uses
+from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import Direction, Endpoint
+from sequence_planner.ros.service_graph import ServiceEnd
+from sequence_planner.ros.transport import Endpoint
 
 
 class NetworkWatch:
     """The last look at the graph, as it concerns the station's topics.
 
     `peers` counts those that can be understood, `troubles` and `rivals` say in words what is wrong with others.
+    `seen` is all that there was, also on other topics, and of services where the transport can tell.
     """
 
     def __init__(self, pipelines: StationPipelines, registry: MessageRegistry) -> None:
-        self._registry = registry
-        self._topics: dict[str, tuple[Topic, Direction]] = {
-            **{n: (p.topic, "publisher") for n, p in pipelines.incoming.items()},
-            **{n: (p.topic, "subscriber") for n, p in pipelines.outgoing.items()},
-        }
-        self._outgoing = frozenset(pipelines.outgoing)
+        self.uses = uses(pipelines, registry)
         self._speaking: set[str] = set()  # incoming topics that had a publisher
-        self.peers: dict[str, int] = dict.fromkeys(self._topics, 0)
+        self.seen: tuple[Sequence[Endpoint], Sequence[ServiceEnd] | None] = ((), None)
+        self.peers: dict[str, int] = dict.fromkeys(self.uses, 0)
         self.troubles: dict[str, str] = {}
         self.rivals: dict[str, str] = {}  # who else publishes a topic with which the station commands, in words
 
-    def look(self, graph: Sequence[Endpoint]) -> frozenset[str]:
+    def look(self, graph: Sequence[Endpoint], ends: Sequence[ServiceEnd] | None = None) -> frozenset[str]:
         """Take a new look; returns the incoming topics whose publishers have all gone since the last one."""
-        self.peers = dict.fromkeys(self._topics, 0)
+        self.seen = (graph, ends)
+        self.peers = dict.fromkeys(self.uses, 0)
         self.troubles, self.rivals = {}, {}
         speaking: set[str] = set()
         for endpoint in graph:
-            if endpoint.own or endpoint.topic not in self._topics:
+            use = self.uses.get(endpoint.topic)
+            if endpoint.own or use is None:
                 continue
-            topic, wanted = self._topics[endpoint.topic]
-            if topic.name not in self._outgoing and endpoint.direction == "publisher":
-                speaking.add(topic.name)
-            if (trouble := self._trouble(endpoint, topic, wanted)) is not None:
-                self.troubles[topic.name] = trouble
-            elif (rival := self._rival(endpoint, topic)) is not None:
-                self.rivals[topic.name] = rival
-            elif endpoint.direction == wanted:
-                self.peers[topic.name] += 1
+            if use.own == "subscriber" and endpoint.direction == "publisher":
+                speaking.add(endpoint.topic)
+            found = mismatches(endpoint, use)
+            for each in found:
+                (self.rivals if each.kind == "rival" else self.troubles)[endpoint.topic] = each.text
+            if not found and endpoint.direction == use.peer:
+                self.peers[endpoint.topic] += 1
         gone, self._speaking = self._speaking - speaking, speaking
         return frozenset(gone)
 
@@ -55,29 +54,11 @@ class NetworkWatch:
         foreign = [
             e
             for e in graph
-            if not e.own and e.topic in self._topics and (e.direction == "publisher" or e.topic in self._outgoing)
+            if not e.own
+            and (use := self.uses.get(e.topic)) is not None
+            and (e.direction == "publisher" or use.own == "publisher")
         ]
         there = {(e.topic, e.direction) for e in foreign if e.node == node}
-        missing = [f"{node} is not yet on {t}" for t, (_, wanted) in self._topics.items() if (t, wanted) not in there]
+        missing = [f"{node} is not yet on {t}" for t, use in self.uses.items() if (t, use.peer) not in there]
         others = {f"{e.node or 'another node'} is on {e.topic}" for e in foreign if e.node != node}
         return [*missing, *sorted(others)]
-
-    def _trouble(self, endpoint: Endpoint, topic: Topic, wanted: Direction) -> str | None:
-        who = endpoint.node or "another node"
-        does = "publishes" if endpoint.direction == "publisher" else "subscribes to"
-        if endpoint.type_name != topic.type_name:
-            if endpoint.direction != wanted:
-                return None
-            return f"{who} {does} {topic.name} as {endpoint.type_name}, and the station's model says {topic.type_name}"
-        ours = self._registry.type_hash(topic.type_name)
-        if endpoint.direction == wanted and endpoint.type_hash not in (None, ours):
-            return (
-                f"{who} {does} {topic.name} with another definition of {topic.type_name}: "
-                f"theirs is {endpoint.type_hash}, ours is {ours}"
-            )
-        return None
-
-    def _rival(self, endpoint: Endpoint, topic: Topic) -> str | None:
-        if endpoint.direction != "publisher" or topic.name not in self._outgoing:
-            return None
-        return f"{endpoint.node or 'another node'} also publishes {topic.name}: two would command the same device"

@@ -12,6 +12,7 @@ from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
+from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.start_order import Step
 from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.view import (
@@ -53,7 +54,7 @@ class Viewing:
         self._outside = outside
         self._feeds = feeds
         self._network = network
-        self._feeding = {v: name for name, feed in feeds.topics.items() for v in feed.pipeline.variables}
+        self._feeding = feeds.heard_on
         self._since: dict[str, tuple[Value | None, float]] = {}
         self._active_since: dict[str, float] = {}
         self.completed: dict[str, int] = dict.fromkeys(execution.automaton.operations, 0)
@@ -70,7 +71,14 @@ class Viewing:
                 self._since[name] = (value, now)
         self._active_since = {name: self._active_since.get(name, now) for name in self._execution.active}
 
-    def view(self, desk: TaskDesk, commander: Commander, alarms: dict[str, AlarmView], moment: Moment) -> StationView:
+    def view(
+        self,
+        desk: TaskDesk,
+        commander: Commander,
+        overrides: dict[str, OverrideView],
+        alarms: dict[str, AlarmView],
+        moment: Moment,
+    ) -> StationView:
         """The whole document."""
         execution = self._execution
         return StationView(
@@ -86,6 +94,7 @@ class Viewing:
             plan=self._plan(),
             tasks=self._tasks(desk),
             topics=self._topics(commander, moment),
+            overrides=overrides,
             alarms=alarms,
             way_back=way_back(self._execution.automaton, self._outside, self._feeding),
             analysis=self.analysis,
@@ -94,7 +103,7 @@ class Viewing:
     def _resources(self, moment: Moment) -> dict[str, ResourceView]:
         awaited: dict[str, list[str]] = {name: [] for name in self._execution.automaton.resources}
         for topic in self._feeds.awaited(moment.monotonic):
-            awaited[self._feeds.topics[topic].pipeline.topic.resource].append(topic)
+            awaited[self._feeds.resource_of(topic)].append(topic)
         return {
             name: ResourceView(title=title, online=not awaited[name], awaited_topics=awaited[name])
             for name, title in self._execution.automaton.resources.items()

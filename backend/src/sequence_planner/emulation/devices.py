@@ -7,29 +7,25 @@ variable there are numbers, which glide to their next named point while the effe
 from __future__ import annotations
 
 import random
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from sequence_planner.automaton.structure import Automaton, Kind, target
 from sequence_planner.automaton.tick import effect_writes
+from sequence_planner.emulation.commanded import CommandReader
+from sequence_planner.emulation.spoken import Message, glided, spoken
 from sequence_planner.expressions.types import Value, contains
-from sequence_planner.pipelines.pipeline import StationPipelines
-from sequence_planner.pipelines.stages import DiscretiseStage, Record
-
-Numbers = tuple[float, ...]
-
-# How far outside the tolerance a device between named points starts, in tolerances.
-_JUST_OUTSIDE = 2.0
+from sequence_planner.pipelines.graph import StationPipelines
 
 
 @dataclass(frozen=True)
 class _Underway:
-    """An effect that will write `writes` at `due`; `origin` has the numbers from which a glide began."""
+    """An effect that will write `writes` at `due`; `origin` has the messages from which a glide began."""
 
     began: float
     due: float
     writes: Mapping[str, Value]
-    origin: Mapping[str, Numbers]
+    origin: Mapping[str, Message]
 
 
 class EmulatedDevices:
@@ -45,6 +41,9 @@ class EmulatedDevices:
         self._speed = speed
         self._random = random.Random(seed)
         fed = pipelines.feeds
+        self._topics = {variable: sorted(pipelines.topics_of(name)) for variable, name in fed.items()}
+        self._between = {each.variable: each.between for node in pipelines.nodes for each in node.writings}
+        self._readers = {name: CommandReader(each, automaton) for name, each in pipelines.outgoing.items()}
         self._effects = [
             effect
             for effect in automaton.effects
@@ -53,20 +52,22 @@ class EmulatedDevices:
         # Nothing has been commanded yet, so the outputs are unknown until a message brings them.
         self.state: dict[str, Value | None] = dict(automaton.initial_valuation)
         self.state |= dict.fromkeys((*automaton.names(Kind.OUTPUT), *automaton.names(Kind.ESTIMATED)), None)
-        self._stages = {s.variable: s for p in pipelines.incoming.values() for s in p.discretised}
-        self._numbers: dict[str, Numbers] = {}
-        self._set({name: automaton.variables[name].initial for name in self._stages})
+        self._messages: dict[str, Message] = {}
+        for topic in pipelines.incoming:
+            self._messages[topic] = spoken(pipelines, topic, self.state, {})
         self._underway: dict[str, _Underway] = {}
 
-    def command(self, topic: str, record: Record) -> list[str]:
+    def command(self, topic: str, message: Mapping[str, object]) -> list[str]:
         """Take a message on an outgoing topic of the station; returns what in it made no sense."""
-        reading = self._pipelines.outgoing[topic].device_reading(record)
-        self.state |= reading.values
-        return reading.troubles
+        values, troubles = self._readers[topic].read(message)
+        self.state |= {
+            name: value for name, value in values.items() if self._automaton.variables[name].kind is Kind.OUTPUT
+        }
+        return troubles
 
     def report(self, topic: str) -> dict[str, object]:
         """The message that the device behind an incoming topic would send now."""
-        return self._pipelines.incoming[topic].device_record(self.state, self._numbers)
+        return self._messages[topic]
 
     def put(self, variable: str, value: Value) -> None:
         """Bring a measured variable to a value by hand. Raises ValueError for a variable or value that is none."""
@@ -89,7 +90,7 @@ class EmulatedDevices:
             underway = self._underway.get(effect.name)
             if underway is None or underway.writes != writes:  # a new destination is a new journey
                 seconds = self._random.uniform(effect.shortest, effect.longest) / self._speed
-                underway = _Underway(now, now + seconds, writes, dict(self._numbers))
+                underway = _Underway(now, now + seconds, writes, dict(self._messages))
                 self._underway[effect.name] = underway
             if now >= underway.due:
                 self._set(writes)
@@ -99,25 +100,17 @@ class EmulatedDevices:
 
     def _set(self, writes: Mapping[str, Value]) -> None:
         self.state |= writes
-        for name, value in writes.items():
-            if name in self._stages:
-                self._numbers[name] = self._at(self._stages[name], value)
+        for topic in self._spoken_on(writes):
+            self._messages[topic] = spoken(self._pipelines, topic, self.state, self._messages[topic])
 
-    def _at(self, stage: DiscretiseStage, value: Value) -> Numbers:
-        """The numbers of a named point, or ones near where the device is that are at none."""
-        if (point := stage.coordinates.points.get(str(value))) is not None:
-            return point
-        numbers = self._numbers.get(stage.variable) or next(iter(stage.coordinates.points.values()))
-        step = _JUST_OUTSIDE * stage.tolerance
-        while stage.coordinates.nearest(numbers, stage.tolerance) is not None:
-            numbers = (numbers[0] + step, *numbers[1:])
-            step *= 2  # in the end beyond every point
-        return numbers
+    def _spoken_on(self, variables: Iterable[str]) -> set[str]:
+        return {topic for variable in variables for topic in self._topics[variable]}
 
     def _glide(self, writes: Mapping[str, Value], underway: _Underway, now: float) -> None:
+        """Numbers go steadily to where they will be, but for those of a device that only leaves a point."""
         share = (now - underway.began) / (underway.due - underway.began)
-        for name, value in writes.items():
-            target = self._stages[name].coordinates.points.get(str(value)) if name in self._stages else None
-            if target is not None:
-                origin = underway.origin[name]
-                self._numbers[name] = tuple(a + share * (b - a) for a, b in zip(origin, target, strict=True))
+        going = {name: value for name, value in writes.items() if self._between.get(name) not in (None, value)}
+        for topic in self._spoken_on(going):
+            now_said = self._messages[topic]
+            goal = spoken(self._pipelines, topic, {**self.state, **going}, now_said)
+            self._messages[topic] = glided(now_said, underway.origin[topic], goal, share)

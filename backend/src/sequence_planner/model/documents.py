@@ -2,37 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import Annotated, Any, Literal, TypeVar
+from typing import Annotated, Literal
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BeforeValidator, Field, model_validator
 
+from sequence_planner.model.client_documents import ActionDocument, ServiceDocument
+from sequence_planner.model.document_part import DocumentPart, Given, Predicate, Seconds
+from sequence_planner.model.flow_documents import ExampleDocument, FlowDocument
 from sequence_planner.model.source import SourceText
+from sequence_planner.model.stage_documents import StageDocument
+
+__all__ = ["DocumentPart", "Given", "Predicate", "Seconds", "StageDocument"]
 
 
-class DocumentPart(BaseModel):
-    """Base of all parts: nothing beside what is declared."""
-
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", allow_inf_nan=False, strict=True, use_attribute_docstrings=True
-    )
-
-
-T = TypeVar("T")
-
-
-def _given(value: object) -> object:
-    if value is None:
-        raise ValueError("there is nothing here: write a value, or leave the key out")
-    return value
-
-
-# What may be left out, and is not left empty: a key without a value says nothing.
-Given = Annotated[T | None, BeforeValidator(_given)]
-
-# A predicate is a text of the guard language; YAML itself reads a bare `true` as a truth value.
-Predicate = SourceText | bool
-Seconds = Annotated[float, Field(ge=0, le=86_400)]
 Parameters = dict[SourceText, SourceText]
 
 
@@ -166,66 +148,19 @@ class AbilityDocument(DocumentPart):
         return self
 
 
-Coordinates = dict[SourceText, Annotated[list[float], Field(min_length=1)]]
+class QualityDocument(DocumentPart):
+    """The quality of service of a topic, in full."""
 
-
-class DiscretiseDocument(DocumentPart):
-    """Numbers of a message become the value whose coordinates are within `tolerance` of each, else `otherwise`."""
-
-    field: SourceText
-    """An array of numbers in the message."""
-    variable: SourceText
-    """The measured enumeration that gets the name of the point."""
-    values: Coordinates
-    """The coordinates of each named point."""
-    tolerance: Annotated[float, Field(gt=0)]
-    """How far from a point each number may be."""
-    otherwise: SourceText
-    """The value between points."""
-
-
-class RememberDocument(DocumentPart):
-    """A variable keeps the last value of another, but for the values in `except`."""
-
-    variable: SourceText
-    """The measured variable that keeps the value."""
-    of: SourceText
-    """The variable, of the same topic, whose value is kept."""
-    ignored: list[SourceText] = Field(default_factory=list, alias="except")
-    """Values that are not kept."""
-
-
-class UndiscretiseDocument(DocumentPart):
-    """A value becomes its coordinates."""
-
-    variable: SourceText
-    """The output whose value names a point."""
-    field: SourceText
-    """The array of numbers in the message."""
-    values: Coordinates
-    """The coordinates of every value."""
-
-
-class StageDocument(DocumentPart):
-    """One stage of a pipeline: exactly one kind. Fields and variables of one name are mapped without being asked."""
-
-    discretise: Given[DiscretiseDocument] = None
-    """From numbers to the name of a point; for incoming topics."""
-    remember: Given[RememberDocument] = None
-    """Keep the last value of another variable; for incoming topics."""
-    undiscretise: Given[UndiscretiseDocument] = None
-    """From the name of a point to its numbers; for outgoing topics."""
-    constant: Given[Mapping[SourceText, Any]] = None
-    """Fields with a fixed value; for outgoing topics."""
-    rename: Given[dict[SourceText, SourceText]] = None
-    """Which field is which variable, where their names differ: `{field: variable}`."""
-
-    @model_validator(mode="after")
-    def _one_kind(self) -> StageDocument:
-        kinds = [name for name in type(self).model_fields if getattr(self, name) is not None]
-        if len(kinds) != 1:
-            raise ValueError(f"a stage is exactly one of {', '.join(type(self).model_fields)}")
-        return self
+    reliability: Literal["reliable", "best_effort"] = "reliable"
+    """Whether lost messages are sent again."""
+    durability: Literal["volatile", "transient_local"] = "volatile"
+    """Whether those who come later get the last messages."""
+    depth: Annotated[int, Field(ge=1, le=10_000)] = 10
+    """How many messages are kept."""
+    deadline: Given[Annotated[float, Field(gt=0)]] = None
+    """Seconds within which the next message comes."""
+    liveliness: Given[Annotated[float, Field(gt=0)]] = None
+    """Seconds within which a publisher shows that it is there."""
 
 
 class TopicDocument(DocumentPart):
@@ -239,12 +174,16 @@ class TopicDocument(DocumentPart):
     """Seconds without a message after which the topic's variables are unknown; incoming topics only."""
     every: Given[Annotated[float, Field(gt=0)]] = None
     """Seconds after which the message is repeated; outgoing topics only."""
-    quality: Literal["reliable", "sensor_data", "latched"] = "reliable"
-    """The topic's quality of service."""
+    quality: Literal["reliable", "sensor_data", "latched"] | QualityDocument = "reliable"
+    """The topic's quality of service, by name or in full."""
+    ros: Literal[1, 2] = 2
+    """Which ROS the device speaks: 2, or 1, which is reached through a rosbridge server."""
     ignore: list[SourceText] = Field(default_factory=list)
     """Fields that are no variables."""
     pipeline: list[StageDocument] = Field(default_factory=list)
     """Stages, where names alone do not tell what belongs together."""
+    examples: list[ExampleDocument] = Field(default_factory=list)
+    """What comes of what, checked by `check`."""
 
     @model_validator(mode="after")
     def _timing_fits_direction(self) -> TopicDocument:
@@ -262,6 +201,12 @@ class ResourceDocument(DocumentPart):
     """For people."""
     topics: dict[SourceText, TopicDocument] = Field(default_factory=dict)
     """The ROS 2 topics that the resource is reached by."""
+    flows: dict[SourceText, FlowDocument] = Field(default_factory=dict)
+    """Records of several topics brought together, or of one topic a second time."""
+    services: dict[SourceText, ServiceDocument] = Field(default_factory=dict)
+    """The ROS 2 services of the device that the station calls."""
+    actions: dict[SourceText, ActionDocument] = Field(default_factory=dict)
+    """The ROS 2 actions of the device that the station sends goals to."""
     measured: dict[SourceText, VariableDocument] = Field(default_factory=dict)
     """Variables written by incoming messages."""
     output: dict[SourceText, VariableDocument] = Field(default_factory=dict)

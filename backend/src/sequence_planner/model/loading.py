@@ -26,7 +26,7 @@ from sequence_planner.model.validation import findings_of, shown
 
 D = TypeVar("D", bound=BaseModel)
 
-FOLDERS = ("resources", "messages")
+FOLDERS = ("resources", "messages", "stages")
 # The documents of a station beside its resources.
 FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml")
 

@@ -1,29 +1,26 @@
-"""Pipelines from documents: fields mapped by name and type, stages checked against the message and the variables."""
+"""Pipelines from documents: the whole graph of a station, checked, with everything that is wrong with it at once."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable
 
-from sequence_planner.automaton.structure import Automaton, Kind, VariableDeclaration
+from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
-from sequence_planner.expressions.types import BooleanType, EnumerationType, IntegerRange, Type
-from sequence_planner.model.documents import Coordinates as CoordinatesDocument
-from sequence_planner.model.documents import StageDocument, TopicDocument
+from sequence_planner.model.documents import TopicDocument
 from sequence_planner.model.loading import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
-from sequence_planner.pipelines.pipeline import IncomingPipeline, OutgoingPipeline, StationPipelines, Topic
-from sequence_planner.pipelines.stages import (
-    ConstantStage,
-    Coordinates,
-    DiscretiseStage,
-    FieldStage,
-    RememberStage,
-    UndiscretiseStage,
-)
+from sequence_planner.pipelines.chains import ChainBuilding, Findings
+from sequence_planner.pipelines.client_building import ClientBuilding
+from sequence_planner.pipelines.client_parts import client_of, is_part, parts
+from sequence_planner.pipelines.flow_building import WrittenFlow, found_flows, joined_fields
+from sequence_planner.pipelines.graph import Flow, IncomingPipeline, Joining, OutgoingPipeline, StationPipelines, Topic
+from sequence_planner.pipelines.graph_building import Resource, incoming_pipeline, outgoing_pipeline, writings
+from sequence_planner.pipelines.message_types import message_fields
+from sequence_planner.pipelines.record import RecordType
+from sequence_planner.pipelines.running_outgoing import first_message
 from sequence_planner.ros.errors import MessageDefinitionError, MessageValueError
-from sequence_planner.ros.fields import FieldType
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.names import check_topic
 from sequence_planner.ros.transport import QualityOfService
@@ -39,265 +36,156 @@ def load_messages(station: Station) -> MessageRegistry:
 
 def build_pipelines(station: Station, automaton: Automaton, registry: MessageRegistry) -> StationPipelines:
     """The pipelines of all topics, whose message types `registry` knows. Raises `ModelError` with all findings."""
-    building = _Building(automaton, registry)
+    building = _Building(station, automaton, registry)
     for resource, document in station.resources.items():
-        for name, topic in document.topics.items():
+        for name, topic in (*document.topics.items(), *parts(document, registry).items()):
             building.add(resource, name, topic)
-    if building.findings:
-        raise ModelError(building.findings)
-    return StationPipelines(building.incoming, building.outgoing)
+    flows = {resource: document.flows for resource, document in station.resources.items()}
+    for flow in found_flows(flows, building.incoming, building.outgoing, building.findings):
+        building.add_flow(flow)
+    if building.has_all(sum(map(len, flows.values()))):
+        building.check_uses()
+    clients = ClientBuilding(automaton, building.findings)
+    for resource, document in station.resources.items():
+        clients.add(resource, document, building.incoming, building.outgoing)
+    if building.findings.found:
+        raise ModelError(building.findings.found)
+    incoming = {name: each for name, each in building.incoming.items() if not is_part(name)}
+    outgoing = {name: each for name, each in building.outgoing.items() if not is_part(name)}
+    return StationPipelines(incoming, outgoing, building.flows, clients.services, clients.actions)
 
 
 class _Building:
-    def __init__(self, automaton: Automaton, registry: MessageRegistry) -> None:
-        self.automaton = automaton
+    def __init__(self, station: Station, automaton: Automaton, registry: MessageRegistry) -> None:
+        self._folder = station.folder
+        self._automaton = automaton
         self._registry = registry
-        self.findings: list[Finding] = []
+        self._resources = {name: Resource(name, automaton) for name in station.resources}
+        self._chains: dict[str, ChainBuilding] = {}
+        self._fed: dict[str, SourceText] = {}
+        self._above: dict[str, frozenset[str]] = {}  # the variables written by a topic or flow, or before it
+        self._unsound: set[str] = set()  # topics and flows with findings: what follows from these is not said as well
+        self.findings = Findings()
         self.incoming: dict[str, IncomingPipeline] = {}
         self.outgoing: dict[str, OutgoingPipeline] = {}
-        self._fed: dict[str, SourceText] = {}
+        self.flows: dict[str, Flow] = {}
 
     def add(self, resource: str, name: SourceText, document: TopicDocument) -> None:
         """Add the pipeline of one topic."""
         try:
-            check_topic(name)
+            check_topic(client_of(name))
         except ValueError as error:
-            self.found(name, str(error).replace("'", "`"))
+            self.findings.add(name.place, str(error).replace("'", "`"))
             return
-        if name in self.incoming or name in self.outgoing:
-            self.found(name, f"duplicate name `{name}`: a topic belongs to one resource")
+        if name in self._chains:
+            what = "a service or an action" if is_part(name) else "a topic"
+            self.findings.add(name.place, f"duplicate name `{client_of(name)}`: {what} belongs to one resource")
             return
-        incoming = document.direction == "in"
-        stages = _TopicStages(
-            self, resource, self._registry.fields(document.type), Kind.MEASURED if incoming else Kind.OUTPUT
-        )
-        before = len(self.findings)
-        for stage in document.pipeline:
-            stages.add(stage, incoming)
-        stages.ignore(document.ignore)
-        stages.map_remaining_fields(name)
-        is_sound = len(self.findings) == before  # else what follows from that would be reported as well
-        if is_sound:
-            stages.check_remembered()
-        topic = Topic(str(name), str(document.type), resource, QualityOfService(document.quality))
-        if incoming:
-            pipeline = IncomingPipeline(
-                topic, document.deadline, tuple(stages.fields), tuple(stages.discretised), tuple(stages.remembered)
-            )
-            self._check_feeds(name, pipeline, is_sound)
-            self.incoming[topic.name] = pipeline
+        topic = Topic(str(name), str(document.type), resource, _quality(document))
+        message = message_fields(self._registry, topic.type_name)
+        constants = self._registry.constants(topic.type_name)
+        of = self._resources[resource]
+        before = len(self.findings.found)
+        if document.direction == "in":
+            chain = self._begin(topic.name, name, message, of)
+            self.incoming[topic.name] = incoming_pipeline(of, topic, document, chain, constants)
+            self._feed(topic.name, name, self.incoming[topic.name].variables, frozenset())
+            self._note(topic.name, before)
         else:
-            self.outgoing[topic.name] = OutgoingPipeline(
-                topic, document.every, tuple(stages.fields), tuple(stages.undiscretised), tuple(stages.constants)
-            )
-            if is_sound:
+            chain = ChainBuilding(name, False, message, self._folder, self.findings, [of.all])
+            self._chains[topic.name] = chain
+            self.outgoing[topic.name] = outgoing_pipeline(of, topic, document, chain, constants)
+            self._check_read(topic.name, "the message has no field", message)
+            if len(self.findings.found) == before:
                 self._check_writable(name, document)
 
-    def _check_feeds(self, name: SourceText, pipeline: IncomingPipeline, is_sound: bool) -> None:
-        if is_sound and not pipeline.variables:
-            self.found(name, f"`{name}` feeds no variable: no field bears the name of a measured variable")
-        for variable in pipeline.variables:
+    def add_flow(self, flow: WrittenFlow) -> None:
+        """Add a flow, unless one of its sources could not be made."""
+        if not all(source in self._chains and self._chains[source].is_sound for source in flow.sources.values()):
+            return
+        ends = {alias: self._chains[source].chain.end for alias, source in flow.sources.items()}
+        of = self._resources[flow.resource]
+        before = len(self.findings.found)
+        chain = self._begin(flow.name, flow.written, joined_fields(flow.joining, ends), of)
+        chain.add(flow.document.pipeline)
+        above = frozenset().union(*(self._above[source] for source in flow.sources.values()))
+        names = set(chain.chain.end) - set(map(of.short, above)) | set(chain.given)
+        made = writings(of, chain, names)
+        self.flows[flow.name] = Flow(flow.name, flow.resource, flow.joining, flow.sources, chain.chain, made)
+        self._feed(flow.name, flow.written, self.flows[flow.name].variables, above)
+        self._note(flow.name, before)
+
+    def has_all(self, flows: int) -> bool:
+        """Whether so many flows, which is all, could be made: else nobody knows what is of no use."""
+        return len(self.flows) == flows and all(self._chains[name].is_sound for name in self.flows)
+
+    def check_uses(self) -> None:
+        """Whether everything that topics and flows give has a use."""
+        for name in (*self.incoming, *self.flows):
+            chain = self._chains[name]
+            node = self.incoming.get(name) or self.flows[name]
+            resource = node.topic.resource if isinstance(node, IncomingPipeline) else node.resource
+            before = len(self.findings.found)
+            self._check_read(name, f"`{resource}` has no measured variable", self._resources[resource].measured)
+            self._note(name, before)
+            if name not in self._unsound and not node.variables and not self._readers(name) and not is_part(name):
+                what = "no field bears the name of a measured variable"
+                self.findings.add(chain.name.place, f"`{chain.name}` feeds no variable: {what}")
+
+    def _note(self, name: str, before: int) -> None:
+        if len(self.findings.found) > before:
+            self._unsound.add(name)
+
+    def _begin(self, full: str, name: SourceText, fields: RecordType, of: Resource) -> ChainBuilding:
+        """A chain for what comes in."""
+        self._chains[full] = ChainBuilding(name, True, of.measured, self._folder, self.findings, [fields])
+        return self._chains[full]
+
+    def _feed(self, full: str, name: SourceText, variables: tuple[str, ...], above: frozenset[str]) -> None:
+        self._above[full] = above.union(variables)
+        for variable in variables:
             if variable in self._fed:
-                self.found(name, f"`{variable}` is fed by `{self._fed[variable]}` already")
+                self.findings.add(name.place, f"`{variable}` is fed by `{self._fed[variable]}` already")
             self._fed[variable] = name
+
+    def _check_read(self, name: str, complaint: str, wanted: Iterable[str]) -> None:
+        """Whether all that the stages give is wanted at the end, or read."""
+        chain = self._chains[name]
+        if chain.is_sound:
+            for given, edge in chain.unread(self._read_behind(name)):
+                said = f"{complaint} `{given}`, and no later stage reads it{suggestion(given, wanted)}"
+                self.findings.add(chain.place_of(given), f"{edge}: {said}")
+
+    def _readers(self, name: str) -> list[Flow]:
+        return [flow for flow in self.flows.values() if name in flow.sources.values()]
+
+    def _read_behind(self, name: str) -> frozenset[str]:
+        """The keys at the end of a topic or flow that flows behind it read or write."""
+        found: set[str] = set()
+        for flow in self._readers(name):
+            chain = self._chains[flow.name]
+            read = frozenset().union(*(chain.keys_read(index) for index in range(len(chain.stages))))
+            keys = read | self._read_behind(flow.name) | {each.field for each in flow.writings}
+            if flow.joining is Joining.MERGE:
+                aliases = [f"{alias}." for alias, source in flow.sources.items() if source == name]
+                keys = frozenset(key.removeprefix(alias) for key in keys for alias in aliases if key.startswith(alias))
+            found |= keys
+        return frozenset(found)
 
     def _check_writable(self, name: SourceText, document: TopicDocument) -> None:
         """Encode the initial outputs once: a constant that does not fit is found here and not on a running station."""
         pipeline = self.outgoing[str(name)]
+        message = first_message(pipeline, self._automaton.initial_valuation)
         try:
-            self._registry.encode(pipeline.topic.type_name, pipeline.write(self.automaton.initial_valuation))
+            self._registry.encode(pipeline.topic.type_name, message or {})
         except MessageValueError as error:
             field = re.split(r"[.\[]", error.path)[0]
             constants = [key for stage in document.pipeline for key in stage.constant or ()]
-            where = next((key for key in constants if key == field), document.type)
-            self.found(where, f"the message cannot be written: {error}")
-
-    def found(self, where: SourceText, message: str) -> None:
-        """Note what is wrong at `where`."""
-        self.findings.append(Finding(where.place, message))
-
-    def variable(self, resource: str, name: SourceText, kind: Kind) -> VariableDeclaration | None:
-        """The variable of a stage, or a finding."""
-        variable = self.automaton.variables.get(f"{resource}.{name}")
-        if variable is None or variable.kind is not kind:
-            own = [v.name.removeprefix(f"{resource}.") for v in self.of(resource, kind)]
-            self.found(name, f"`{resource}` has no {kind} variable `{name}`{suggestion(name, own)}")
-            return None
-        return variable
-
-    def field(self, fields: dict[str, FieldType], name: SourceText) -> FieldType | None:
-        """The field of a stage, or a finding."""
-        if name not in fields:
-            self.found(name, f"the message has no field `{name}`{suggestion(name, fields)}")
-        return fields.get(name)
-
-    def of(self, resource: str, kind: Kind) -> Iterable[VariableDeclaration]:
-        """The variables of a resource and kind."""
-        return [v for v in self.automaton.variables.values() if v.resource == resource and v.kind is kind]
+            where = next((key for key in constants if key in (field, error.path)), document.type)
+            self.findings.add(where.place, f"the message cannot be written: {error}")
 
 
-class _TopicStages:
-    """The stages of one topic, collected by kind."""
-
-    def __init__(self, building: _Building, resource: str, fields: dict[str, FieldType], kind: Kind) -> None:
-        self._building = building
-        self._resource = resource
-        self._message = fields
-        self._kind = kind
-        self._used: set[str] = set()
-        self._fed: set[str] = set()
-        self._remembering: list[tuple[SourceText, RememberStage]] = []
-        self.fields: list[FieldStage] = []
-        self.discretised: list[DiscretiseStage] = []
-        self.remembered: list[RememberStage] = []
-        self.undiscretised: list[UndiscretiseStage] = []
-        self.constants: list[ConstantStage] = []
-
-    def add(self, stage: StageDocument, incoming: bool) -> None:
-        """Add one stage as written."""
-        building, resource = self._building, self._resource
-        if (discretise := stage.discretise) is not None:
-            if not incoming:
-                building.found(discretise.field, "`discretise` is for incoming topics; use `undiscretise` here")
-                return
-            variable = building.variable(resource, discretise.variable, Kind.MEASURED)
-            names = [*discretise.values, discretise.otherwise]
-            self._fed.add(f"{resource}.{discretise.variable}")
-            if variable and self._coordinates_fit(discretise.field, discretise.values, names, variable.type):
-                points = _coordinates(discretise.values)
-                otherwise, tolerance = str(discretise.otherwise), discretise.tolerance
-                self.discretised.append(
-                    DiscretiseStage(str(discretise.field), variable.name, points, tolerance, otherwise)
-                )
-        elif (undiscretise := stage.undiscretise) is not None:
-            if incoming:
-                building.found(undiscretise.field, "`undiscretise` is for outgoing topics; use `discretise` here")
-                return
-            variable = building.variable(resource, undiscretise.variable, Kind.OUTPUT)
-            names = list(undiscretise.values)
-            if variable and self._coordinates_fit(undiscretise.field, undiscretise.values, names, variable.type):
-                missing = sorted(set(map(str, variable.type.domain)) - set(map(str, names)))
-                if missing:
-                    building.found(undiscretise.variable, f"no coordinates for {', '.join(missing)}")
-                    return
-                points = _coordinates(undiscretise.values)
-                self.undiscretised.append(UndiscretiseStage(variable.name, str(undiscretise.field), points))
-        elif (remember := stage.remember) is not None:
-            of = building.variable(resource, remember.of, Kind.MEASURED)
-            variable = building.variable(resource, remember.variable, Kind.MEASURED)
-            if not incoming:
-                building.found(remember.variable, "`remember` is for incoming topics")
-            elif of and variable:
-                for value in remember.ignored:
-                    if value not in of.type.domain:
-                        near = suggestion(value, map(str, of.type.domain))
-                        building.found(value, f"`{value}` is no value of `{remember.of}`{near}")
-                ignored = frozenset(map(str, remember.ignored))
-                kept = set(of.type.domain) - ignored
-                if not kept <= set(variable.type.domain):
-                    extra = ", ".join(sorted(map(str, kept - set(variable.type.domain))))
-                    building.found(remember.variable, f"`{remember.variable}` cannot be {extra}: put it into `except`")
-                self.remembered.append(RememberStage(variable.name, of.name, ignored))
-                self._remembering.append((remember.of, self.remembered[-1]))
-        elif stage.constant is not None:
-            for name in stage.constant:
-                if incoming:
-                    building.found(name, "`constant` is for outgoing topics: an incoming message has its own values")
-                building.field(self._message, name)
-                self._used.add(name)
-            self.constants.append(ConstantStage({str(name): _plain(value) for name, value in stage.constant.items()}))
-        else:
-            for field, name in (stage.rename or {}).items():
-                variable = building.variable(self._resource, name, self._kind)
-                found = building.field(self._message, field)
-                if variable and found:
-                    self._map(field, str(field), variable, found)
-
-    def ignore(self, fields: Iterable[SourceText]) -> None:
-        """Leave these fields out: they are no variables."""
-        for field in fields:
-            if field in self._used:
-                self._building.found(field, f"`{field}` is used by a stage: it cannot be ignored as well")
-            self._building.field(self._message, field)
-            self._used.add(field)
-
-    def map_remaining_fields(self, topic: SourceText) -> None:
-        """Map each field that no stage uses to the variable of its name, if there is one."""
-        for field, type_ in self._message.items():
-            variable = self._building.automaton.variables.get(f"{self._resource}.{field}")
-            if field not in self._used and variable is not None and variable.kind is self._kind:
-                self._map(topic, field, variable, type_)
-
-    def check_remembered(self) -> None:
-        """Whether each variable that is remembered has its value from this very topic, by an earlier stage."""
-        for of, stage in self._remembering:
-            if stage.of not in self._fed:
-                self._building.found(of, f"`{of}` has no value yet: only what this topic has said can be remembered")
-            self._fed.add(stage.variable)
-
-    def _map(self, where: SourceText, field: str, variable: VariableDeclaration, type_: FieldType) -> None:
-        self._used.add(field)
-        self._fed.add(variable.name)
-        if not _corresponds(type_, variable.type):
-            self._building.found(
-                where, f"field `{field}` is a {type_}, and `{variable.name}` is {variable.type}: they do not correspond"
-            )
-            return
-        self.fields.append(FieldStage(field, variable.name, variable.type))
-
-    def _coordinates_fit(
-        self, name: SourceText, values: CoordinatesDocument, names: list[SourceText], type_: Type
-    ) -> bool:
-        """Whether points named `names` make sense for the variable, and their coordinates for the field."""
-        building = self._building
-        field = building.field(self._message, name)
-        self._used.add(name)
-        before = len(building.findings)
-        if not isinstance(type_, EnumerationType):
-            building.found(name, f"points have names, so the variable must be an enumeration and not {type_}")
-            return False
-        for point in names:
-            if point not in type_.values:
-                building.found(point, f"`{point}` is none of {type_}{suggestion(point, type_.values)}")
-        if field is None:
-            return False
-        if field.kind != "float" or field.array is None:
-            building.found(name, f"`{name}` must be an array of numbers")
-            return False
-        lengths = {len(point) for point in values.values()}
-        wanted = {field.array} if isinstance(field.array, int) else lengths
-        if len(lengths) != 1 or lengths != wanted:
-            building.found(name, f"all points need as many coordinates as `{name}` has: {field}")
-        first: dict[tuple[float, ...], SourceText] = {}
-        for point, numbers in values.items():
-            if (twin := first.setdefault(tuple(numbers), point)) is not point:
-                building.found(point, f"`{point}` is at the same coordinates as `{twin}`")
-        return len(building.findings) == before
-
-
-def _coordinates(values: CoordinatesDocument) -> Coordinates:
-    return Coordinates({str(name): tuple(point) for name, point in values.items()})
-
-
-def _plain(value: object) -> object:
-    """`value` without the places of its texts."""
-    match value:
-        case dict():
-            return {str(key): _plain(entry) for key, entry in value.items()}
-        case list():
-            return [_plain(entry) for entry in value]
-        case SourceText():
-            return str(value)
-    return value
-
-
-def _corresponds(field: FieldType, type_: Type) -> bool:
-    if field.array is not None:
-        return False
-    match type_:
-        case BooleanType():
-            return field.kind == "bool"
-        case EnumerationType():
-            return field.kind == "string"
-        case IntegerRange(minimum, maximum):
-            return field.range is not None and field.range[0] <= minimum and maximum <= field.range[1]
+def _quality(document: TopicDocument) -> QualityOfService:
+    """As the transports take it."""
+    written = document.quality
+    return QualityOfService.of(written if isinstance(written, str) else written.model_dump(exclude_none=True))

@@ -2,7 +2,7 @@
 
 A field of truth values, or of integers with few values, is a variable of its name (or of the one that `rename` gives
 it). What is written in the resource refines it: a narrower type, an initial value. A field of texts or of many numbers
-is a variable only where the resource says of which type.
+is a variable only where the resource says of which type, and one within another message only where `rename` says so.
 """
 
 from __future__ import annotations
@@ -11,11 +11,17 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 from sequence_planner.automaton.grounding.declarations import FLAGS
+from sequence_planner.expressions.types import BooleanType, IntegerRange
 from sequence_planner.model.documents import ResourceDocument, TopicDocument, VariableDocument
 from sequence_planner.model.loading import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
+from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.pipelines.client_parts import client_findings, parts
+from sequence_planner.pipelines.client_variables import with_client_variables, with_goal_states
+from sequence_planner.pipelines.message_types import message_fields
+from sequence_planner.pipelines.paths import NoFieldError, find_field
+from sequence_planner.pipelines.record import FieldType, RecordType
 from sequence_planner.ros.errors import UnknownMessageTypeError
-from sequence_planner.ros.fields import FieldType
 from sequence_planner.ros.messages import MessageRegistry
 
 MOST_VALUES = 256  # of an integer that becomes a variable by itself: those of eight bits
@@ -24,19 +30,21 @@ MOST_VALUES = 256  # of an integer that becomes a variable by itself: those of e
 def with_inferred_variables(station: Station, registry: MessageRegistry) -> Station:
     """`station` with its variables completed. Raises `ModelError` for topics of unknown message types."""
     findings: list[Finding] = []
+    for document in station.resources.values():
+        findings += client_findings(document, registry)
     resources = {name: _completed(document, registry, findings) for name, document in station.resources.items()}
     if findings:
         raise ModelError(findings)
-    return replace(station, resources=resources)
+    return with_goal_states(replace(station, resources=resources))
 
 
 def _completed(document: ResourceDocument, registry: MessageRegistry, findings: list[Finding]) -> ResourceDocument:
     sections = {"measured": dict(document.measured), "output": dict(document.output)}
-    for name, topic in document.topics.items():
+    for name, topic in (*document.topics.items(), *parts(document, registry).items()):
         kind, other = ("measured", "output") if topic.direction == "in" else ("output", "measured")
         section = sections[kind]
         try:
-            fields = registry.fields(topic.type)
+            fields = message_fields(registry, topic.type)
         except UnknownMessageTypeError as error:
             near = f"; did you mean `{error.suggestion}`?" if error.suggestion else ""
             findings.append(Finding(topic.type.place, f"no message type `{topic.type}` is known{near}"))
@@ -56,7 +64,7 @@ def _completed(document: ResourceDocument, registry: MessageRegistry, findings: 
                     findings.append(Finding(variable.place, message))
                 else:
                     section[variable] = VariableDocument(type=text)
-    return document.model_copy(update=sections)
+    return with_client_variables(document.model_copy(update=sections))
 
 
 def _clash(document: ResourceDocument, name: SourceText, other: Mapping[SourceText, VariableDocument]) -> str | None:
@@ -69,26 +77,44 @@ def _clash(document: ResourceDocument, name: SourceText, other: Mapping[SourceTe
 
 
 def _mapped(
-    topic: SourceText, document: TopicDocument, fields: Mapping[str, FieldType]
+    topic: SourceText, document: TopicDocument, fields: RecordType
 ) -> Iterator[tuple[str, SourceText, FieldType]]:
-    """The fields that no stage uses and none is to be ignored, each with the name of its variable."""
-    names: dict[str, SourceText] = {}
-    used = set(map(str, document.ignore))
+    """The fields that no stage uses up and none is to be ignored, each with the name of its variable."""
+    renamed = {field: name for stage in document.pipeline for field, name in (stage.rename or {}).items()}
+    used = {*map(str, document.ignore), *map(str, renamed)}
     for stage in document.pipeline:
-        names |= {str(field): variable for field, variable in (stage.rename or {}).items()}
-        used |= set(map(str, stage.constant or ()))
-        used |= {str(each.field) for each in (stage.discretise, stage.undiscretise) if each is not None}
-    for field, type_ in fields.items():
-        if field not in used:
-            yield field, names.get(field) or SourceText(field, topic.place, field), type_
+        used |= _used(stage)
+    for field, variable in renamed.items():
+        try:
+            yield str(field), variable, find_field(fields, field)[1]
+        except NoFieldError:
+            continue  # the stage says so
+    for name, type_ in fields.items():
+        if name not in used:
+            yield name, SourceText(name, topic.place, name), type_
+
+
+def _used(stage: StageDocument) -> set[str]:
+    """The fields and variables of a stage that are one thing before it and another behind it."""
+    used: set[str] = set(map(str, (*(stage.constant or ()), *(stage.expression or ()))))
+    for single in (stage.discretise, stage.undiscretise, stage.map, stage.match, stage.member):
+        if single is not None:
+            used |= {str(single.field), str(single.variable)}
+    if stage.table is not None:
+        used |= set(map(str, (*stage.table.fields, *stage.table.variables)))
+    if stage.remember is not None:
+        used.add(str(stage.remember.variable))
+    if stage.python is not None:
+        used |= set(map(str, stage.python.gives))
+    return used
 
 
 def _type(field: FieldType, variable: SourceText) -> SourceText | None:
     """The type of a variable for `field`, written at the place of `variable`."""
     text = None
-    if field.array is None and field.kind == "bool":
-        text = "bool"
-    elif field.array is None and field.range is not None:
-        low, high = field.range
-        text = f"{low}..{high}" if high - low < MOST_VALUES else None
+    match field:
+        case BooleanType():
+            text = "bool"
+        case IntegerRange(low, high) if high - low < MOST_VALUES:
+            text = f"{low}..{high}"
     return None if text is None else SourceText(text, variable.place, text)

@@ -1,0 +1,34 @@
+"""What all documents have in common: parts with nothing beside what is declared, and the values they share."""
+
+from __future__ import annotations
+
+from typing import Annotated, TypeVar
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field
+
+from sequence_planner.model.source import SourceText
+
+
+class DocumentPart(BaseModel):
+    """Base of all parts: nothing beside what is declared."""
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", allow_inf_nan=False, strict=True, use_attribute_docstrings=True
+    )
+
+
+T = TypeVar("T")
+
+
+def _given(value: object) -> object:
+    if value is None:
+        raise ValueError("there is nothing here: write a value, or leave the key out")
+    return value
+
+
+# What may be left out, and is not left empty: a key without a value says nothing.
+Given = Annotated[T | None, BeforeValidator(_given)]
+
+# A predicate is a text of the guard language; YAML itself reads a bare `true` as a truth value.
+Predicate = SourceText | bool
+Seconds = Annotated[float, Field(ge=0, le=86_400)]

@@ -1,0 +1,192 @@
+"""Chains from documents: each stage checked against the record before it, and every finding with its stage."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from pydantic import BaseModel
+
+from sequence_planner.expressions.place import Place
+from sequence_planner.expressions.types import EnumerationType
+from sequence_planner.model.source import Finding, SourceText
+from sequence_planner.model.stage_documents import MapDocument, Scalar, StageDocument
+from sequence_planner.pipelines.context import Context
+from sequence_planner.pipelines.graph import Chain
+from sequence_planner.pipelines.paths import NoFieldError, find_field
+from sequence_planner.pipelines.record import FieldType, RecordType
+from sequence_planner.pipelines.stage import Stage
+from sequence_planner.pipelines.stages.building import build_stage
+
+# Stages that give the fields which they read, each from itself alone.
+_PASSING = frozenset({"fold", "debounce", "timeout", "override"})
+
+
+@dataclass
+class Findings:
+    """What is wrong with the pipelines, all of it."""
+
+    found: list[Finding] = field(default_factory=list)
+
+    def add(self, place: Place, message: str) -> None:
+        """Note what is wrong at a place."""
+        self.found.append(Finding(place, message))
+
+
+@dataclass
+class ChainBuilding:
+    """A chain in the making: `name` is what findings call it, `wanted` what there is a use for at its end."""
+
+    name: SourceText
+    is_incoming: bool
+    wanted: RecordType
+    folder: Path
+    findings: Findings
+    fields: list[RecordType]
+    stages: list[Stage] = field(default_factory=list)
+    documents: list[StageDocument] = field(default_factory=list)
+    is_sound: bool = True
+
+    def add(self, documents: Iterable[StageDocument]) -> None:
+        """Add stages as written. What comes behind one that is not sound is not looked at: it would only follow."""
+        for document in documents:
+            if self.is_sound:
+                self._add(document)
+
+    def _add(self, document: StageDocument) -> None:
+        number = len(self.stages) + 1
+        before = len(self.findings.found)
+
+        def found(place: Place, message: str) -> None:
+            self.findings.add(place, f"`{self.name}` → stage {number} `{document.kind}`: {message}")
+
+        fields = self.fields[-1]
+        context = Context(self.is_incoming, fields, self.wanted, self.folder, document.place, found)
+        stage = build_stage(document, context)
+        if stage is None or len(self.findings.found) > before:
+            self.is_sound = False
+            return
+        self.stages.append(stage)
+        self.documents.append(document)
+        self.fields.append({**fields, **stage.gives})
+
+    def map_constants(self, field: str, variable: str, values: Mapping[str, object], place: Place) -> None:
+        """Add the stage that maps numbers to the names which a message declares for them."""
+
+        def text(word: str) -> SourceText:
+            return SourceText(word, place, word)
+
+        pairs: dict[SourceText, Scalar] = {}
+        for name, number in values.items():
+            assert isinstance(number, int)
+            if self.is_incoming:
+                pairs[text(str(number))] = text(name)
+            else:
+                pairs[text(name)] = number
+        self._add(StageDocument(map=MapDocument(field=text(field), variable=text(variable), values=pairs)))
+
+    @property
+    def chain(self) -> Chain:
+        """What has been made."""
+        return Chain(tuple(self.stages), tuple(self.fields))
+
+    @property
+    def given(self) -> dict[str, int]:
+        """The names that stages have given, each with the index of the last one that did."""
+        return {name: index for index, stage in enumerate(self.stages) for name in stage.gives}
+
+    @property
+    def between(self) -> dict[str, str]:
+        """The values that discretised names have between their points."""
+        made = (document.discretise for document in self.documents)
+        return {str(each.variable): str(each.otherwise) for each in made if each and each.otherwise is not None}
+
+    def place_of(self, name: str) -> Place:
+        """Where a name that a stage has given is written, or the pipeline itself."""
+        index = self.given.get(name)
+        if index is None:
+            return self.name.place
+        document = self.documents[index]
+        return next((text.place for text in _texts(document) if text == name), document.place)
+
+    def edge(self, index: int) -> str:
+        """A stage, as findings name it."""
+        return f"`{self.name}` → stage {index + 1} `{self.documents[index].kind}`"
+
+    def origin(self, name: str) -> str:
+        """The stage that has given a name, as it stands before a finding; nothing where none has."""
+        index = self.given.get(name)
+        return "" if index is None else f"{self.edge(index)}: "
+
+    def unread(self, read_behind: frozenset[str]) -> Iterator[tuple[str, str]]:
+        """The names given for which there is no use, each with its stage: not wanted, and read by nothing later."""
+        for name, index in self.given.items():
+            later = frozenset().union(*(self.keys_read(i) for i in range(index + 1, len(self.stages))))
+            if name not in later | read_behind and not is_field(self.wanted, name):
+                yield name, self.edge(index)
+
+    def keys_read(self, index: int) -> frozenset[str]:
+        """The keys of the record before a stage that it reads."""
+        fields = self.fields[index]
+        keys = set()
+        for path in self.stages[index].reads:
+            try:
+                keys.add(find_field(fields, path)[0].key)
+            except NoFieldError:
+                keys.add(path)
+        return frozenset(keys)
+
+    def origins(self, names: Iterable[str]) -> dict[str, frozenset[str]]:
+        """Of each key at the end, the keys at the beginning from which it comes; `names` are those there."""
+        come = {name: frozenset({name}) for name in names}
+        for index, stage in enumerate(self.stages):
+            read = self.keys_read(index)
+            together = frozenset().union(*(come.get(key, frozenset()) for key in read))
+            for name in stage.gives:
+                own = stage.kind in _PASSING and name in come
+                come[name] = come[name] if own else together
+        return come
+
+
+def used_up(stage: StageDocument) -> frozenset[str]:
+    """The fields of an incoming message that a stage makes something else of: they are no variables themselves."""
+    single = (stage.discretise, stage.map, stage.match, stage.member)
+    renamed = () if stage.rename is None else stage.rename
+    return frozenset(map(str, (*renamed, *(each.field for each in single if each is not None))))
+
+
+def is_field(fields: RecordType, name: str) -> bool:
+    """Whether there is such a field, by its path."""
+    try:
+        find_field(fields, name)
+    except NoFieldError:
+        return False
+    return True
+
+
+def names_of_constants(constants: Mapping[str, object], variable: FieldType) -> dict[str, object] | None:
+    """The numbers of an enumeration whose values are names of constants in lower case; None where it is none such."""
+    if not isinstance(variable, EnumerationType):
+        return None
+    named = {name.lower(): value for name, value in constants.items()}
+    if not all(type(named.get(value)) is int for value in variable.values):
+        return None
+    numbers = {value: named[value] for value in variable.values}
+    return numbers if len(set(numbers.values())) == len(numbers) else None
+
+
+def _texts(part: object) -> Iterator[SourceText]:
+    """The texts of a document, in order."""
+    if isinstance(part, SourceText):
+        yield part
+    elif isinstance(part, BaseModel):
+        for name in part.model_fields_set:
+            yield from _texts(getattr(part, name))
+    elif isinstance(part, Mapping):
+        for key, value in part.items():
+            yield from _texts(key)
+            yield from _texts(value)
+    elif isinstance(part, list | tuple):
+        for each in part:
+            yield from _texts(each)

@@ -1,0 +1,224 @@
+"""The pipelines of a station as checked: a graph of topics, flows and variables, joined by chains of stages.
+
+Everything here is immutable and shared; what changes while the station runs is in `running`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from sequence_planner.expressions.types import Type
+from sequence_planner.pipelines.record import RecordType
+from sequence_planner.pipelines.stage import Stage
+from sequence_planner.ros.transport import QualityOfService
+
+# Stages that look at the time, or ask something that may answer otherwise: the same record again is news to them.
+_TIMED = frozenset({"debounce", "limit", "tick", "override", "timeout", "python"})
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic as the station uses it."""
+
+    name: str
+    type_name: str
+    resource: str
+    quality: QualityOfService
+
+
+@dataclass(frozen=True)
+class Chain:
+    """Stages, one after the other, and the fields of a record before the first and after each."""
+
+    stages: tuple[Stage, ...]
+    fields: tuple[RecordType, ...]
+
+    @property
+    def end(self) -> RecordType:
+        """The fields of a record that has passed all stages."""
+        return self.fields[-1]
+
+    @property
+    def is_timed(self) -> bool:
+        """Whether a record that says the same as the one before can make a difference."""
+        return any(stage.kind in _TIMED for stage in self.stages)
+
+
+@dataclass(frozen=True)
+class Writing:
+    """A field that is a variable at the end of a chain. `between` is what a discretised one is between its points."""
+
+    field: str
+    variable: str
+    type: Type
+    between: str | None = None
+
+
+@dataclass(frozen=True)
+class IncomingPipeline:
+    """From messages to measured variables. Without a message for `deadline` seconds they are unknown."""
+
+    topic: Topic
+    deadline: float | None
+    chain: Chain
+    writings: tuple[Writing, ...] = ()
+
+    @property
+    def name(self) -> str:
+        """The name of the topic."""
+        return self.topic.name
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """The variables that this topic feeds by itself."""
+        return tuple(writing.variable for writing in self.writings)
+
+
+class Joining(StrEnum):
+    """How a flow comes of its sources."""
+
+    BRANCH = "branch"  # the records of one source, a second time
+    INTERLEAVE = "interleave"  # the records of several, in the order of arrival
+    MERGE = "merge"  # the latest record of each, as one
+
+
+@dataclass(frozen=True)
+class Flow:
+    """A chain behind topics or other flows. `sources` has them by alias, which outside a merge is their own name."""
+
+    name: str
+    resource: str
+    joining: Joining
+    sources: Mapping[str, str]
+    chain: Chain
+    writings: tuple[Writing, ...] = ()
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """The variables that this flow feeds by itself."""
+        return tuple(writing.variable for writing in self.writings)
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A field of an outgoing message and the field of the last record that it takes; `depends` are its variables."""
+
+    field: str
+    depends: frozenset[str]
+
+
+@dataclass(frozen=True)
+class OutgoingPipeline:
+    """From variables to messages, repeated `every` so many seconds.
+
+    `read` has the variables of the resource by their names without it, as they stand in the first record.
+    """
+
+    topic: Topic
+    every: float | None
+    chain: Chain
+    settings: tuple[Setting, ...]
+    read: Mapping[str, str]
+    depends: frozenset[str]
+
+    @property
+    def variables(self) -> tuple[str, ...]:
+        """The variables whose change makes a new message, in the order of their declaration."""
+        return tuple(variable for variable in self.read.values() if variable in self.depends)
+
+
+@dataclass(frozen=True)
+class ServiceUse:
+    """A service that the station calls when the output `when` rises, every so many seconds, or both."""
+
+    name: str
+    type_name: str
+    when: str | None
+    every: float | None
+    deadline: float
+    request: OutgoingPipeline
+    response: IncomingPipeline
+
+
+@dataclass(frozen=True)
+class ActionUse:
+    """An action that is sent a goal when the output `when` rises, which is cancelled when that falls."""
+
+    name: str
+    type_name: str
+    when: str
+    deadline: float
+    goal: OutgoingPipeline
+    feedback: IncomingPipeline
+    result: IncomingPipeline
+    status: IncomingPipeline
+
+
+@dataclass(frozen=True)
+class StationPipelines:
+    """All pipelines of a station, by topic, and the flows in an order in which each stands behind its sources.
+
+    Those of `services` and `actions` are called after their part, such as `/mir/state response`.
+    """
+
+    incoming: Mapping[str, IncomingPipeline]
+    outgoing: Mapping[str, OutgoingPipeline]
+    flows: Mapping[str, Flow] = field(default_factory=dict)
+    services: Mapping[str, ServiceUse] = field(default_factory=dict)
+    actions: Mapping[str, ActionUse] = field(default_factory=dict)
+
+    @property
+    def answers(self) -> Mapping[str, IncomingPipeline]:
+        """What services and actions answer."""
+        responses = [use.response for use in self.services.values()]
+        told = [part for use in self.actions.values() for part in (use.feedback, use.result, use.status)]
+        return {part.name: part for part in (*responses, *told)}
+
+    @property
+    def requests(self) -> Mapping[str, OutgoingPipeline]:
+        """What services and actions are asked."""
+        asked = (*(use.request for use in self.services.values()), *(use.goal for use in self.actions.values()))
+        return {part.topic.name: part for part in asked}
+
+    @property
+    def sources(self) -> Mapping[str, IncomingPipeline]:
+        """Everything from which measured variables come: topics, and answers of services and actions."""
+        return {**self.incoming, **self.answers}
+
+    @property
+    def carried(self) -> frozenset[str]:
+        """The variables of which devices hear."""
+        said = (name for part in (*self.outgoing.values(), *self.requests.values()) for name in part.variables)
+        heeded = (use.when for use in (*self.services.values(), *self.actions.values()) if use.when is not None)
+        return frozenset((*said, *heeded))
+
+    @property
+    def feeds(self) -> Mapping[str, str]:
+        """The topic, or the flow, that feeds each measured variable."""
+        return {variable: node.name for node in self.nodes for variable in node.variables}
+
+    @property
+    def heard_on(self) -> Mapping[str, str]:
+        """The topics from which each measured variable comes, in words."""
+        return {variable: " and ".join(sorted(self.topics_of(name))) for variable, name in self.feeds.items()}
+
+    @property
+    def nodes(self) -> tuple[IncomingPipeline | Flow, ...]:
+        """The incoming topics and the flows, each behind its sources; answers are like topics."""
+        return (*self.sources.values(), *self.flows.values())
+
+    def node(self, name: str) -> IncomingPipeline | Flow:
+        """An incoming topic or a flow by its name. Raises KeyError."""
+        return self.flows.get(name) or self.sources[name]
+
+    def topics_of(self, name: str) -> frozenset[str]:
+        """The topics from which a flow comes; a topic comes from itself."""
+        if name not in self.flows:
+            return frozenset({name})
+        return frozenset().union(*(self.topics_of(source) for source in self.flows[name].sources.values()))
+
+    def readers(self, name: str) -> list[Flow]:
+        """The flows that read a topic or a flow directly."""
+        return [flow for flow in self.flows.values() if name in flow.sources.values()]

@@ -1,0 +1,1 @@
+"""The stages, one module for each family: their descriptions, their courses and how they are made from documents."""

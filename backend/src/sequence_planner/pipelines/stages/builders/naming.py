@@ -1,0 +1,51 @@
+"""`rename` and `constant` from documents."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.model.source import SourceText
+from sequence_planner.pipelines.context import Context
+from sequence_planner.pipelines.record import FieldType
+from sequence_planner.pipelines.stages.builders.common import plain, wanted_type
+from sequence_planner.pipelines.stages.naming import ConstantStage, RenameStage, Renaming
+from sequence_planner.pipelines.stages.values import common_type, fits, shown
+
+
+def build_rename(names: Mapping[SourceText, SourceText], context: Context) -> RenameStage | None:
+    """`{field: variable}`: the variable is given for incoming topics, and read for outgoing ones."""
+    pairs = [(field, variable) if context.is_incoming else (variable, field) for field, variable in names.items()]
+    seen: set[str] = set()
+    for _, target in pairs:
+        if target in seen:
+            context.found(target.place, f"`{target}` is given twice here")
+        seen.add(target)
+    found = [(context.field(source), target) for source, target in pairs]
+    renamings = [Renaming(field[0], str(target), field[1]) for field, target in found if field is not None]
+    complete = len(renamings) == len(seen) == len(pairs)
+    return RenameStage(context.place, tuple(renamings)) if complete else None
+
+
+def build_constant(fields: Mapping[SourceText, object], context: Context) -> ConstantStage | None:
+    """Fixed values, each of the type of its field in the message."""
+    if context.is_incoming:
+        for name in fields:
+            context.found(name.place, "`constant` is for outgoing topics: an incoming message has its own values")
+        return None
+    types = {str(name): _type(context, name, plain(value)) for name, value in fields.items()}
+    known = {name: type_ for name, type_ in types.items() if type_ is not None}
+    values = {str(name): plain(value) for name, value in fields.items()}
+    return ConstantStage(context.place, values, known) if len(known) == len(types) else None
+
+
+def _type(context: Context, name: SourceText, value: object) -> FieldType | None:
+    type_ = wanted_type(context, name)
+    if type_ is None:
+        type_ = None if isinstance(value, list | dict) else common_type([value])
+        if type_ is None:
+            context.found(name.place, f"the message has no field `{name}`{suggestion(name, context.wanted)}")
+    elif not fits(type_, value):
+        context.found(name.place, f"`{name}` is {type_}, and {shown(value)} is no value of that type")
+        return None
+    return type_

@@ -1,0 +1,222 @@
+"""Parts of an expression over records: each has a type, and says its value for a record."""
+
+from __future__ import annotations
+
+import math
+import operator
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from sequence_planner.expressions.evaluation import RELATIONS
+from sequence_planner.expressions.syntax import ExpressionError, Span
+from sequence_planner.expressions.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange
+from sequence_planner.pipelines.paths import FieldPath
+from sequence_planner.pipelines.record import FieldType, ListType, RealType, TextType
+from sequence_planner.pipelines.stages.values import REAL, is_numeric, is_textual, shown
+
+Values = Mapping[str, object]
+
+#: The value of a term for the values of a record, None when it is unknown. What makes no sense is added to the list.
+Reader = Callable[[Values, list[str]], object]
+
+_OPERATIONS: Mapping[str, Callable[[Any, Any], Any]] = {
+    "+": operator.add,
+    "-": operator.sub,
+    "*": operator.mul,
+    "/": operator.truediv,
+}
+
+
+@dataclass(frozen=True)
+class Term:
+    """A part of an expression. `word` is the single word it is written as, which may also be a value's name."""
+
+    type: FieldType
+    read: Reader
+    span: Span
+    word: str | None = None
+
+
+@dataclass(frozen=True)
+class UnknownWord:
+    """A word that is no field: it may be a value of the enumeration beside which it stands. `error` if it is not."""
+
+    word: str
+    span: Span
+    error: ExpressionError
+
+
+Operand = Term | UnknownWord
+
+
+def describe(type_: FieldType) -> str:
+    """A type, for people."""
+    match type_:
+        case BooleanType():
+            return "a truth value"
+        case IntegerRange(minimum, maximum):
+            return f"the integer {minimum}" if minimum == maximum else f"an integer in {type_}"
+        case EnumerationType((single,)):
+            return f"the value `{single}`"
+        case EnumerationType():
+            return f"one of {type_}"
+        case RealType():
+            return "a real number"
+        case TextType():
+            return "a text"
+    return f"a {type_}"
+
+
+def known(operand: Operand) -> Term:
+    """`operand` as a term. Raises `ExpressionError` for a word that is no field."""
+    if isinstance(operand, UnknownWord):
+        raise operand.error
+    return operand
+
+
+def constant(value: object, type_: FieldType, span: Span) -> Term:
+    """A value written in the expression."""
+    return Term(type_, lambda values, troubles: value, span)
+
+
+def field_term(path: FieldPath, type_: FieldType, span: Span) -> Term:
+    """A field of the record; a real one that is no finite number is unknown."""
+    get = path.get
+
+    def read_real(values: Values, troubles: list[str]) -> object:
+        value = get(values)
+        if isinstance(value, float) and not math.isfinite(value):
+            troubles.append(f"{path} is {value}")
+            return None
+        return value
+
+    is_word = "." not in path.text and "[" not in path.text
+    reader: Reader = read_real if isinstance(type_, RealType) else lambda values, troubles: get(values)
+    return Term(type_, reader, span, path.text if is_word else None)
+
+
+def item_term(items: Term, index: Term, span: Span, text: str) -> Term:
+    """An item of a list at a computed place; beyond its end it is unknown, and that is a trouble."""
+    if not isinstance(items.type, ListType):
+        raise ExpressionError(f"only lists have items, and this is {describe(items.type)}", items.span)
+    if not isinstance(index.type, IntegerRange):
+        raise ExpressionError(f"the place in a list is an integer, found {describe(index.type)}", index.span)
+
+    def read(values: Values, troubles: list[str]) -> object:
+        found, place = items.read(values, troubles), index.read(values, troubles)
+        if not isinstance(found, list) or not isinstance(place, int):
+            return None
+        value = found[place] if 0 <= place < len(found) else None
+        if value is None or (isinstance(value, float) and not math.isfinite(value)):
+            troubles.append(f"{text} is {shown(value)}" if value is not None else f"{text} has no item {place}")
+            return None
+        return value
+
+    return Term(items.type.element, read, span)
+
+
+def arithmetic(sign: str, left: Term, right: Term, span: Span, text: str) -> Term:
+    """`+ - * /` of two numbers: an integer of integers, but for `/`, whose result is real."""
+    for side in (left, right):
+        if not is_numeric(side.type):
+            raise ExpressionError(f"`{sign}` needs numbers, found {describe(side.type)}", side.span)
+    operation, read_left, read_right = _OPERATIONS[sign], left.read, right.read
+
+    def read(values: Values, troubles: list[str]) -> object:
+        a, b = read_left(values, troubles), read_right(values, troubles)
+        if a is None or b is None:
+            return None
+        try:
+            result = operation(a, b)
+        except ZeroDivisionError:
+            troubles.append(f"{text} divides by zero")
+            return None
+        except OverflowError:
+            result = math.inf
+        if isinstance(result, float) and not math.isfinite(result):
+            troubles.append(f"{text} is too large a number")
+            return None
+        return result
+
+    return Term(_result(sign, left.type, right.type), read, span)
+
+
+def _result(sign: str, left: FieldType, right: FieldType) -> FieldType:
+    if sign == "/" or not isinstance(left, IntegerRange) or not isinstance(right, IntegerRange):
+        return REAL
+    ends = [_OPERATIONS[sign](a, b) for a in (left.minimum, left.maximum) for b in (right.minimum, right.maximum)]
+    return IntegerRange(min(ends), max(ends))
+
+
+def comparison(sign: str, left: Operand, right: Operand, span: Span) -> Term:
+    """`== != < <= > >=`; both sides must have a value in common, and an order where it is asked for."""
+    first, second = beside(left, right), beside(right, left)
+    _check_comparable(first, second)
+    if sign not in ("==", "!=") and not is_numeric(first.type):
+        raise ExpressionError(f"`{sign}` compares numbers, not {describe(first.type)}", span)
+    relation, read_first, read_second = RELATIONS[sign], first.read, second.read
+
+    def read(values: Values, troubles: list[str]) -> object:
+        a, b = read_first(values, troubles), read_second(values, troubles)
+        return None if a is None or b is None else relation(a, b)
+
+    return Term(BOOLEAN, read, span)
+
+
+def beside(operand: Operand, other: Operand) -> Term:
+    """`operand` where it stands beside `other`: a word there may be a value of the other's enumeration."""
+    type_ = other.type if isinstance(other, Term) else None
+    if operand.word is None or not isinstance(type_, EnumerationType) or operand.word not in type_.values:
+        return known(operand)
+    if isinstance(operand, Term) and is_textual(operand.type):
+        message = f"`{operand.word}` is both a value and a field here: put the value into single quotes"
+        raise ExpressionError(message, operand.span)
+    return constant(operand.word, EnumerationType((operand.word,)), operand.span)
+
+
+def _check_comparable(left: Term, right: Term) -> None:
+    a, b = left.type, right.type
+    if isinstance(a, IntegerRange) and isinstance(b, IntegerRange):
+        fits = a.minimum <= b.maximum and b.minimum <= a.maximum
+    elif isinstance(a, EnumerationType) and isinstance(b, EnumerationType):
+        fits = not set(a.values).isdisjoint(b.values)
+    else:
+        fits = (is_numeric(a) and is_numeric(b)) or (is_textual(a) and is_textual(b)) or a == b == BOOLEAN
+    if not fits:
+        raise ExpressionError(f"cannot compare {describe(a)} with {describe(b)}", right.span)
+
+
+def truth(operand: Operand) -> Term:
+    """`operand` as a truth value. Raises `ExpressionError` when it is none."""
+    term = known(operand)
+    if not isinstance(term.type, BooleanType):
+        raise ExpressionError(f"expected a truth value, found {describe(term.type)}", term.span)
+    return term
+
+
+def negation(operand: Term, span: Span) -> Term:
+    """`not`."""
+    inner = operand.read
+
+    def read(values: Values, troubles: list[str]) -> object:
+        value = inner(values, troubles)
+        return None if value is None else not value
+
+    return Term(BOOLEAN, read, span)
+
+
+def junction(parts: list[Term], decisive: bool, span: Span) -> Term:
+    """Several truth values, of which a `decisive` one decides: false with `and`, true with `or`."""
+    readers = [part.read for part in parts]
+
+    def read(values: Values, troubles: list[str]) -> object:
+        unknown = False
+        for reader in readers:
+            value = reader(values, troubles)
+            if value is decisive:
+                return decisive
+            unknown = unknown or value is None
+        return None if unknown else not decisive
+
+    return Term(BOOLEAN, read, span)

@@ -1,0 +1,149 @@
+"""`match` and `member`: texts that are recognised, and lists that contain something."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.pipelines.paths import FieldPath
+from sequence_planner.pipelines.record import FieldType, ListType, Record
+from sequence_planner.pipelines.stages.immediate import ImmediateStage
+from sequence_planner.pipelines.stages.inversion import candidates, solve
+from sequence_planner.pipelines.stages.mapping import is_same
+from sequence_planner.pipelines.stages.values import TEXT, shown
+
+Way = Literal["contains", "begins", "ends", "equals"]
+
+_RECOGNISES: Mapping[Way, Callable[[str, str], bool]] = {
+    "contains": str.__contains__,
+    "begins": str.startswith,
+    "ends": str.endswith,
+    "equals": str.__eq__,
+}
+
+
+@dataclass(frozen=True)
+class MatchStage(ImmediateStage):
+    """Whether a text contains, begins with, ends with or equals another; letters count as written."""
+
+    field: FieldPath
+    variable: str
+    way: Way
+    text: str
+    kind: ClassVar[str] = "match"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The text."""
+        return frozenset({self.field.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """Whether it is recognised."""
+        return {self.variable: BOOLEAN}
+
+    def apply(self, record: Record) -> None:
+        """Give whether the text is recognised."""
+        record.values[self.variable] = self._recognises(self.field.get(record.values))
+
+    def _recognises(self, text: object) -> bool | None:
+        return _RECOGNISES[self.way](text, self.text) if isinstance(text, str) else None
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The text itself, or another one."""
+        wanted = values.get(self.variable)
+        if wanted is None:
+            return
+        tried = {self.field.text: candidates(TEXT, [self.text])}
+        complaint = f"no text of `{self.field}` makes `{self.variable}` {shown(wanted)} together with what it says else"
+        solve(tried, lambda given: self._recognises(given[self.field.text]) is wanted, values, self.gives, complaint)
+
+
+@dataclass(frozen=True)
+class MatchNamesStage(ImmediateStage):
+    """Texts become the name under which they are listed, all others `otherwise`, without that they are unknown."""
+
+    field: FieldPath
+    variable: str
+    type: FieldType
+    names: Mapping[str, object]
+    otherwise: object
+    kind: ClassVar[str] = "match"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The text."""
+        return frozenset({self.field.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """The name."""
+        return {self.variable: self.type}
+
+    def apply(self, record: Record) -> None:
+        """Give the name of the text."""
+        text = self.field.get(record.values)
+        name = self.names.get(text, self.otherwise) if isinstance(text, str) else None
+        record.values[self.variable] = name
+        if text is not None and name is None:
+            record.troubles.append(f"{self.field} is {shown(text)}, which is no value of {self.variable}")
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The first text with that name, or one that is not listed."""
+        wanted = values.get(self.variable)
+        if wanted is None:
+            return
+        tried = {self.field.text: candidates(TEXT, self.names)}
+
+        def agrees(given: Mapping[str, object]) -> bool:
+            return is_same(self.names.get(str(given[self.field.text]), self.otherwise), wanted)
+
+        solve(
+            tried, agrees, values, self.gives, f"no text of `{self.field}` means {shown(wanted)}: add one to `values`"
+        )
+
+
+@dataclass(frozen=True)
+class MemberStage(ImmediateStage):
+    """Whether a list contains an item."""
+
+    field: FieldPath
+    type: ListType
+    item: object
+    variable: str
+    kind: ClassVar[str] = "member"
+
+    @property
+    def reads(self) -> frozenset[str]:
+        """The list."""
+        return frozenset({self.field.text})
+
+    @property
+    def gives(self) -> Mapping[str, FieldType]:
+        """Whether it contains the item."""
+        return {self.variable: BOOLEAN}
+
+    def apply(self, record: Record) -> None:
+        """Give whether the item is there."""
+        items = self.field.get(record.values)
+        record.values[self.variable] = self._contains(items) if isinstance(items, list) else None
+
+    def _contains(self, items: list[object]) -> bool:
+        return any(is_same(item, self.item) for item in items)
+
+    def backwards(self, values: dict[str, object]) -> None:
+        """The list that there is, with the item or without it; one of a fixed length has nothing else in it."""
+        wanted, items = values.get(self.variable), values.get(self.field.text)
+        if wanted is None:
+            return
+        known = list(items) if isinstance(items, list) else []
+        if self._contains(known) is not wanted or self.type.length not in (None, len(known)):
+            others = [item for item in candidates(self.type.element, [self.item]) if not is_same(item, self.item)]
+            filling = self.item if wanted is True else next(iter(others), None)
+            if self.type.length is not None:
+                known = [filling] * self.type.length
+            else:
+                known = [item for item in known if not is_same(item, self.item)] + [self.item] * (wanted is True)
+        values[self.field.text] = known

@@ -1,0 +1,75 @@
+"""What the page about pipelines shows is tried: its station loads, its examples hold, and every key is described."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from sequence_planner.model.document_part import DocumentPart
+from sequence_planner.model.flow_documents import ExampleDocument, ExampleStepDocument, FlowDocument
+from sequence_planner.model.stage_documents import (
+    BoundsDocument,
+    DiscretiseDocument,
+    MapDocument,
+    MatchDocument,
+    MemberDocument,
+    OverrideDocument,
+    PythonDocument,
+    RememberDocument,
+    StageDocument,
+    TableDocument,
+    TableRowDocument,
+    TimeoutDocument,
+    UndiscretiseDocument,
+)
+from sequence_planner.testing import Example, examples
+
+TEXT = (Path(__file__).parents[2] / "docs" / "pipelines.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```\w+ (\S+)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> list[Example]:
+    """The examples of the page's station."""
+    folder = tmp_path_factory.mktemp("station")
+    for name, content in BLOCKS:
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(content, encoding="utf-8")
+    return examples(folder)
+
+
+def test_the_examples_of_the_page_hold(made: list[Example]) -> None:
+    assert len(made) == 6
+    for example in made:
+        example.check()
+
+
+@pytest.mark.parametrize(
+    "part",
+    [
+        FlowDocument,
+        ExampleDocument,
+        ExampleStepDocument,
+        StageDocument,
+        BoundsDocument,
+        DiscretiseDocument,
+        MapDocument,
+        MatchDocument,
+        MemberDocument,
+        OverrideDocument,
+        PythonDocument,
+        RememberDocument,
+        TableDocument,
+        TableRowDocument,
+        TimeoutDocument,
+        UndiscretiseDocument,
+    ],
+    ids=lambda part: part.__name__,
+)
+def test_every_key_is_described(part: type[DocumentPart]) -> None:
+    for name, field in part.model_fields.items():
+        key = field.alias or name
+        assert re.search(rf"[`{{ ,]{key}[`:,}} ]", TEXT), f"{key} of {part.__name__} is not described"
