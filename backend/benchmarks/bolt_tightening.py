@@ -23,7 +23,7 @@ from sequence_planner.planning.sat.sweep import sweep_order
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervision import synthesise
 
-MODEL = Path(__file__).parents[2] / "models" / "truck_engine_station"
+MODEL = Path(__file__).parents[2] / "models" / "bolt_tightening"
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")
 REPEATS = 9
 

@@ -33,7 +33,7 @@ PEERS = (("cudd", "saturation"), ("cudd", "chaining"), ("cudd", "breadth-first")
 KNOWN: Mapping[str, float | None] = {
     "philosophers-60": 1.5,
     "transfer-lines-12": 1.5,
-    str(MODELS / "truck_engine_station"): 0.2,
+    str(MODELS / "bolt_tightening"): 0.2,
     str(MODELS / "robots_with_buffer"): None,
     str(MODELS / "docking_agv"): None,
     str(BACKEND / "tests" / "stations" / "worked_example"): None,

@@ -13,7 +13,7 @@ from typer.testing import CliRunner
 from sequence_planner.cli import app
 
 CELL = Path(__file__).parent / "stations" / "cell"
-TRUCK = Path(__file__).parents[2] / "models" / "truck_engine_station"
+TRUCK = Path(__file__).parents[2] / "models" / "bolt_tightening"
 
 
 def check(model: Path, verb: str = "check", *options: str) -> tuple[int, str, str]:
@@ -37,7 +37,7 @@ def edit(file: Path, old: str, new: str) -> None:
 def test_a_good_station_is_said_to_be_one() -> None:
     code, out, err = check(TRUCK)
     assert (code, err) == (0, "")
-    assert out.startswith("Truck engine station: 16 variables, 13 abilities, 8 operations;")
+    assert out.startswith("Bolt tightening station: 16 variables, 13 abilities, 8 operations;")
 
 
 def test_the_program_itself(cell: Path) -> None:

@@ -13,7 +13,7 @@ from sequence_planner.cli import app
 TESTS = Path(__file__).parents[1]
 CELL = TESTS / "stations" / "cell"
 EXAMPLE = TESTS / "stations" / "worked_example"
-TRUCK = TESTS.parents[1] / "models" / "truck_engine_station"
+TRUCK = TESTS.parents[1] / "models" / "bolt_tightening"
 
 PLAIN = """
 {"name": "two-users", "variables": {"user": ["idle", "waits", "has"], "free": "bool"},

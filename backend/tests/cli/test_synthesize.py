@@ -66,7 +66,7 @@ def test_for_programs() -> None:
     assert (document["findings"], document["unfinished"]) == ([], None)
 
 
-def test_the_truck_engine_station() -> None:
+def test_the_bolt_tightening_station() -> None:
     _, document = as_json("synthesize", TRUCK)
     restricted = {name: guard for name, guard in document["guards"].items() if guard != "true"}
     expected = {}

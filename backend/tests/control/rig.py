@@ -26,7 +26,7 @@ from sequence_planner.planning.planner import Planner
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervision import synthesise
 
-TRUCK_ENGINE = Path(__file__).parents[3] / "models" / "truck_engine_station"
+TRUCK_ENGINE = Path(__file__).parents[3] / "models" / "bolt_tightening"
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")
 
 

@@ -15,7 +15,7 @@ from sequence_planner.pipelines.running_outgoing import first_message
 from sequence_planner.station import prepare_station
 
 CELL = prepare_station(Path(__file__).parents[1] / "stations" / "cell")
-TRUCK = prepare_station(Path(__file__).parents[3] / "models" / "truck_engine_station")
+TRUCK = prepare_station(Path(__file__).parents[3] / "models" / "bolt_tightening")
 HOME, OUT = (0.0, 0.0), (1.0, 0.5)
 STEP = 0.02
 

@@ -9,13 +9,13 @@ from sequence_planner.automaton.tick import initial_state
 from sequence_planner.expressions.printing import print_assignment, print_expression
 from sequence_planner.station import prepare_station
 
-STATION = prepare_station(Path(__file__).parents[3] / "models" / "truck_engine_station")
+STATION = prepare_station(Path(__file__).parents[3] / "models" / "bolt_tightening")
 PAIRS = ("bolt_pair_1", "bolt_pair_2", "bolt_pair_3")
 
 
 def test_names_of_what_there_is() -> None:
     automaton = STATION.automaton
-    assert automaton.title == "Truck engine station"
+    assert automaton.title == "Bolt tightening station"
     assert list(automaton.resources) == ["engine", "nutrunner", "operator", "robot"]
     assert automaton.names(Kind.ESTIMATED) == tuple(f"bolts[{pair}]" for pair in PAIRS)
     assert {f"robot.move_to_position({pose})" for pose in ("home", "above_engine", *PAIRS)} < automaton.abilities.keys()

@@ -11,7 +11,7 @@ from sequence_planner.model.editing import Content, insert, move, remove, rename
 from sequence_planner.model.paths import EditError, parse_path, shown_path
 from sequence_planner.model.reading import EntryPath, read_text
 
-STATION = Path(__file__).parents[3] / "models" / "truck_engine_station"
+STATION = Path(__file__).parents[3] / "models" / "bolt_tightening"
 TEXTS = {path.name: path.read_text(encoding="utf-8") for path in sorted(STATION.glob("**/*.yaml"))}
 KEYS_OF_GUARDS = ("enabled", "executing", "when", "precondition", "goal", "forbidden", "rest")
 

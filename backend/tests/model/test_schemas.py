@@ -45,7 +45,7 @@ def test_every_document_of_the_page_too(file: str) -> None:
 
 
 def test_the_documents_name_their_schemas() -> None:
-    truck = REPOSITORY / "models" / "truck_engine_station"
+    truck = REPOSITORY / "models" / "bolt_tightening"
     for path in (*truck.glob("*.yaml"), *truck.glob("resources/*.yaml")):
         named = re.match(r"# yaml-language-server: \$schema=(\S+)\n", path.read_text(encoding="utf-8"))
         assert named, path

@@ -16,7 +16,7 @@ from sequence_planner.station import ReadyStation, prepare_station
 
 from .station_writing import CELL, Heard, station_with
 
-TRUCK = Path(__file__).parents[3] / "models" / "truck_engine_station"
+TRUCK = Path(__file__).parents[3] / "models" / "bolt_tightening"
 STATION = prepare_station(CELL)
 TRUCK_STATION = prepare_station(TRUCK)
 COMMAND = STATION.pipelines.outgoing["/arm/command"]
@@ -130,7 +130,7 @@ READERS = {n: CommandReader(p, TRUCK_STATION.automaton) for n, p in TRUCK_STATIO
 
 
 @given(st.data())
-def test_every_message_of_the_truck_engine_station_is_read_as_it_was_written(data: st.DataObject) -> None:
+def test_every_message_of_the_bolt_tightening_is_read_as_it_was_written(data: st.DataObject) -> None:
     registry, pipelines = TRUCK_STATION.registry, TRUCK_STATION.pipelines
     state: dict[str, Value | None] = {
         name: data.draw(st.sampled_from(variable.type.domain), name)

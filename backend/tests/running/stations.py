@@ -22,7 +22,7 @@ from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import Transport
 
 REPOSITORY = Path(__file__).parents[3]
-MODEL = Path("models") / "truck_engine_station"
+MODEL = Path("models") / "bolt_tightening"
 # Of DDS: stations of other runs on this machine, and the networks of other tests, are elsewhere. Above 100 its ports
 # are those that the system hands out to anybody.
 DOMAIN = 1 + (os.getpid() + 50) % 100

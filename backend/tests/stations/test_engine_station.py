@@ -1,0 +1,133 @@
+"""The model of the truck engine station of eight nodes: what it says, and that it can be planned with."""
+
+from __future__ import annotations
+
+import time
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Kind, State
+from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.emulation.truck_station.node import NODE_TYPES, PACKAGE, PREFIX
+from sequence_planner.emulation.truck_station.poses import PAIRS, POSES
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.plan import Contract, PlanAnswer, PlanRequest, Verdict, goal_of
+from sequence_planner.planning.planner import Planner
+from sequence_planner.station import ReadyStation, prepare_station
+from sequence_planner.synthesis.supervision import synthesise
+
+MODEL = Path(__file__).parents[3] / "models" / "truck_engine_station"
+LONGEST_SYNTHESIS, LONGEST_PLAN = 10.0, 1.0  # seconds of CPU time, on a busy machine
+
+EMPTY: dict[str, Value] = {f"bolts[{pair}]": "empty" for pair in PAIRS}
+PLACED: dict[str, Value] = {f"bolts[{pair}]": "placed" for pair in PAIRS}
+TIGHT: dict[str, Value] = {f"bolts[{pair}]": "tightened" for pair in PAIRS}
+KIT: dict[str, Value] = {"engine.tag_is_read": True, "agv.act_pos": "station", "agv.ref_pos": "station"}
+MOUNTED: dict[str, Value] = {"engine.tag_is_read": True, "ladder_frame": "on_engine"}
+
+
+def holding(tool: str) -> dict[str, Value]:
+    """The robot at home with a tool."""
+    return {
+        "end_effector.tool": tool,
+        "end_effector.rsp_is_locked": True,
+        "end_effector.gripper_is_closed": tool != "LFTOOL",
+        "scene.attached": tool,
+        "scene.wanted": tool,
+        "nutrunner.activate_lift": tool != "ATLASTOOL",
+        "nutrunner.positioned_at_home_station": tool != "ATLASTOOL",
+        "dock.lf_tool_home": tool != "LFTOOL",
+        "dock.filter_tool_home": tool != "OFTOOL",
+    }
+
+
+SITUATIONS: dict[str, dict[str, Value]] = {
+    "identify_engine": {},
+    "bring_kit": {"engine.tag_is_read": True},
+    "return_kit": KIT | MOUNTED | PLACED,
+    "take_lf_tool": KIT | {"ladder_frame": "in_kit"} | holding("OFTOOL"),
+    "mount_ladder_frame": KIT | {"ladder_frame": "in_kit"} | holding("LFTOOL"),
+    "place_bolt_pair(AtBoltPair3TCPPose)": KIT | MOUNTED | EMPTY | holding("LFTOOL"),
+    "take_nutrunner": KIT | MOUNTED | PLACED | holding("LFTOOL"),
+    "tighten_bolt_pair(AtBoltPair1TCPPose)": KIT | MOUNTED | PLACED | holding("ATLASTOOL"),
+    "take_filter_tool": MOUNTED | TIGHT | holding("ATLASTOOL"),
+    "tighten_oil_filter": MOUNTED | TIGHT | holding("OFTOOL"),
+    "release_engine": MOUNTED | TIGHT | holding("OFTOOL") | {"oil_filter_is_tight": True},
+}
+
+
+@cache
+def ready() -> tuple[ReadyStation, Supervisor, Planner, float]:
+    """The station with its supervisor and a planner, and the seconds of CPU time that the safe states took."""
+    station = prepare_station(MODEL)
+    began = time.process_time()
+    supervisor = synthesise(station.automaton)
+    seconds = time.process_time() - began
+    return station, supervisor, Planner(station.automaton, supervisor), seconds
+
+
+def planned(operation: str, state: State) -> PlanAnswer:
+    """A first plan for an operation in a state."""
+    station, _, planner, _ = ready()
+    goal = goal_of(station.automaton.operations[operation])
+    return planner.answer(PlanRequest(state, (goal,), 20.0, 60, Contract.FAST))
+
+
+def situation(values: dict[str, Value]) -> State:
+    """The initial state but for some values."""
+    automaton = ready()[0].automaton
+    return synchronise(automaton, {**initial_state(automaton), **values})
+
+
+def test_the_safe_states_are_computed_in_seconds() -> None:
+    assert ready()[3] < LONGEST_SYNTHESIS
+
+
+@pytest.mark.parametrize("operation", SITUATIONS)
+def test_every_operation_is_planned_from_its_precondition(operation: str) -> None:
+    station, supervisor, _, _ = ready()
+    state = situation(SITUATIONS[operation])
+    assert holds(station.automaton.operations[operation].precondition, state)
+    assert supervisor.safe.includes(state)
+    began = time.process_time()
+    answer = planned(operation, state)
+    assert answer.verdict is Verdict.FOUND
+    assert time.process_time() - began < LONGEST_PLAN
+
+
+def test_the_robot_goes_down_to_placed_bolts_only_once_the_tool_was_told_to_turn() -> None:
+    answer = planned(
+        "tighten_bolt_pair(AtBoltPair1TCPPose)", situation(SITUATIONS["tighten_bolt_pair(AtBoltPair1TCPPose)"])
+    )
+    assert answer.plan is not None
+    starts = [name for tick in answer.plan.ticks for name in tick.starts]
+    down = starts.index("robot.move_to_position(AtBoltPair1TCPPose)")
+    assert "nutrunner.run_nut" in starts[:down]
+
+
+def test_a_person_who_takes_over_is_asked_to_tighten_by_hand() -> None:
+    by_hand = KIT | MOUNTED | PLACED | {"operator.takes_over": True}
+    answer = planned("tighten_bolt_pair(AtBoltPair1TCPPose)", situation(by_hand))
+    assert answer.plan is not None
+    starts = [name for tick in answer.plan.ticks for name in tick.starts]
+    assert starts == ["nutrunner.float", "operator.guide_nutrunner(AtBoltPair1TCPPose)"]
+
+
+def test_what_is_measured_is_fed_and_what_is_commanded_leaves() -> None:
+    station = ready()[0]
+    automaton, pipelines = station.automaton, station.pipelines
+    assert set(automaton.names(Kind.MEASURED)) <= set(pipelines.feeds)
+    assert {name for outgoing in pipelines.outgoing.values() for name in outgoing.variables} >= automaton.outputs
+
+
+def test_the_model_and_the_nodes_in_the_hall_mean_the_same_topics_and_poses() -> None:
+    station = ready()[0]
+    says = {f"{PREFIX}/{t}": f"{PACKAGE}/{m}" for t, m in (kind.says for kind in NODE_TYPES.values())}
+    hears = {f"{PREFIX}/{k.hears[0]}": f"{PACKAGE}/{k.hears[1]}" for k in NODE_TYPES.values() if k.hears is not None}
+    assert {p.topic.name: p.topic.type_name for p in station.pipelines.incoming.values()} == says
+    assert {p.topic.name: p.topic.type_name for p in station.pipelines.outgoing.values()} == hears
+    assert set(station.automaton.variables["robot.target_pose"].type.domain) == set(POSES)
