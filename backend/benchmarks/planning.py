@@ -44,6 +44,8 @@ LIMIT = 60.0  # seconds for one question
 ONE_PLAN = Path(__file__).parent / "compared" / "one_plan.py"
 REPLANS = (("part", Contract.FAST), ("part", Contract.MINIMAL), ("several", Contract.FAST))
 
+UNTRANSLATED: set[str] = set()  # problems of which it is known that Fast Downward cannot translate them in time
+
 
 def main() -> None:
     """Measure and print."""
@@ -106,17 +108,16 @@ def replan(problem: Problem, question: str, contract: Contract, folder: Path, st
 def fresh_peers(problem: Problem, question: str, states: list[State], folder: Path) -> Iterable[tuple[str, float]]:
     """What the peers take for the same, each state in a fresh process."""
     peers: dict[str, list[float]] = {}
-    translates = True
     for each in states:
         goals = missing(problem.questions[question], each)
         from_here = replace(problem, state=each, questions={question: goals})
-        if translates and fast_downward.programs() is not None:
+        if problem.name not in UNTRANSLATED and fast_downward.programs() is not None:
             text = pddl_text(sequential(problem.automaton, problem.supervisor, each, goals))
             try:
                 found = fast_downward.search(text, fast_downward.translated(text, folder), LIMIT)
             except fast_downward.TranslationError as error:
                 print(f"  Fast Downward cannot translate {problem.name}: {error}")
-                translates = False
+                UNTRANSLATED.add(problem.name)
                 continue
             if found.plan is not None:
                 require_replay(from_here, question, found.plan)

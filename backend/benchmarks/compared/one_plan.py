@@ -8,12 +8,14 @@ from __future__ import annotations
 import pickle
 import sys
 
+from sequence_planner.collection import collection_seldom
 from sequence_planner.planning.plan import Contract, PlanRequest
 from sequence_planner.planning.planner import Planner
 
 
+@collection_seldom()
 def main() -> None:
-    """Plan and print."""
+    """Plan and print, as the command `plan` does."""
     automaton, supervisor, state, goals = pickle.load(sys.stdin.buffer)
     request = PlanRequest(state, goals, deadline=120, contract=Contract(sys.argv[1]))
     answer = Planner(automaton, supervisor).answer(request)

@@ -6,6 +6,8 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
+_MUCH = 500_000  # objects that others can refer to, some hundred MB at most
+
 
 @contextmanager
 def collection_put_off() -> Iterator[None]:
@@ -17,6 +19,18 @@ def collection_put_off() -> Iterator[None]:
     finally:
         if enabled:
             gc.enable()
+
+
+@contextmanager
+def collection_seldom() -> Iterator[None]:
+    """For a command that answers one question and ends: collect only when there is much; what is left ends with it."""
+    usual = gc.get_threshold()
+    gc.set_threshold(_MUCH, *usual[1:])
+    try:
+        yield
+    finally:
+        gc.freeze()
+        gc.set_threshold(*usual)
 
 
 def keep_everything() -> None:

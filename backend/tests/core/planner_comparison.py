@@ -11,6 +11,7 @@ from sequence_planner.planning.heuristic.best_first import HeuristicSearch
 from sequence_planner.planning.heuristic.breadth_first import ShortestSearch
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.plan import Contract
+from sequence_planner.planning.relaxed.goal_by_goal import GoalByGoal
 from sequence_planner.planning.relaxed.projection import Projection
 from sequence_planner.planning.replaying.replay import Replay, missing
 from sequence_planner.planning.sat.bounded import BoundedModelChecking
@@ -50,6 +51,7 @@ def engines(given: Problem) -> tuple[Engine, ...]:
         BoundedModelChecking(given.automaton, given.supervisor),
         PartialSight(given.automaton, given.supervisor, most=1.0),
         Projection(given.automaton, given.supervisor),
+        GoalByGoal(given.automaton, given.supervisor),
         HeuristicSearch(given.automaton, given.supervisor),
         ShortestSearch(given.automaton, given.supervisor),
         Reachability(given.automaton, given.supervisor),

@@ -5,24 +5,28 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 from random import Random
 
 from hypothesis import given
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import apply_effects, finish, synchronise
+from sequence_planner.expressions.types import EnumerationType
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import Contract, Plan, PlanRequest
+from sequence_planner.planning.plan import ORDINARY, Contract, Plan, PlanRequest, PlanTick
 from sequence_planner.planning.planner import Planner
 from sequence_planner.planning.recollection import Recollection
 from sequence_planner.planning.repair import NAME, Repair
 from sequence_planner.planning.replaying.acceptance import Acceptance
 from sequence_planner.planning.replaying.replay import Replay, missing
 from sequence_planner.planning.sat.bounded import BoundedModelChecking
+from sequence_planner.synthesis.supervision import synthesise
 
 from .breadth_first import Shortest, shortest
 from .budget import examples
+from .building import Does, automaton
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 from .random_stations import state_of
@@ -79,10 +83,27 @@ def judge(given_: Problem, repair: Repair, task: Task) -> Plan | None:
         if plan.minimal_starts:
             assert best == Shortest(len(plan.ticks), len(plan.starts))
     assert minimal is None or (minimal.plan is not None and minimal.plan.minimal_starts)
-    return None if fast is None else fast.plan
+    if fast is None or fast.plan is None:
+        return None
+    assert not any(replay.exactly(task.state, task.state, task.goals, (), each) for each in with_less(fast.plan))
+    return fast.plan
 
 
-@examples(150)
+def with_less(plan: Plan) -> Iterator[tuple[PlanTick, ...]]:
+    """`plan` without one of its starts, and perhaps one effect, while all else stays in its tick."""
+    for number, index in (
+        (number, index) for number, tick in enumerate(plan.ticks) for index in range(len(tick.starts))
+    ):
+        for effect in (None, *dict.fromkeys(effect for tick in plan.ticks for effect in tick.effects)):
+            ticks = [
+                PlanTick(tuple(each for each in tick.effects if each != effect), tick.starts) for tick in plan.ticks
+            ]
+            starts = ticks[number].starts
+            ticks[number] = PlanTick(ticks[number].effects, starts[:index] + starts[index + 1 :])
+            yield tuple(ticks)
+
+
+@examples(100)
 @given(made_by(any_problem))
 def test_starts_that_were_held_back_are_made_up_for(given_: Problem) -> None:
     found = followed(given_)
@@ -93,6 +114,37 @@ def test_starts_that_were_held_back_are_made_up_for(given_: Problem) -> None:
             task = Task(dict(point.run.values), point.run.goals, given_.circumstances, longest=LONGEST)
             plan = judge(given_, found.repair, task)
             assert plan is None or len(plan.ticks) <= len(found.plan.ticks) - point.tick
+
+
+def errand(choices: Choices) -> Problem:
+    """A carrier that has to come by some places, in any order or in one, on its way to the last."""
+    places = ("home", *(f"p{number}" for number in range(choices.number(1, 3))), "out")
+    asked = [f"F at == {place}" for place in places[1:-1] if choices.chance(2)] or ["true"]
+    station = automaton(
+        {
+            f"to_{place}": Does(start=(f"target := {place}",), enabled=f"at == target and at != {place}")
+            for place in places
+        },
+        measured={"at": (EnumerationType(places), "home")},
+        output={"target": (EnumerationType(places), "home")},
+        effects={f"at_{place}": (f"target == {place} and at != {place}", (f"at := {place}",)) for place in places},
+        goals={"deliver": "at == out"},
+        local={"deliver": f" {choices.pick(('and', 'or'))} ".join(asked)},
+    )
+    return Problem(station, synthesise(station), synchronise(station, station.initial_valuation), ORDINARY)
+
+
+@examples(60)
+@given(made_by(lambda choices: errand(choices) if choices.chance(2) else problem(choices, demanding=True)))
+def test_what_formulas_have_seen_already_is_not_done_again(given_: Problem) -> None:
+    """Their automata have come further than they had when the plan was there, or not as far."""
+    found = followed(given_)
+    way = () if found is None else [point for point in found.way if point.run.goals]
+    for here, elsewhere in product(way, way):
+        assert found is not None
+        goals = missing(elsewhere.run.goals, here.run.values)
+        if goals:
+            judge(given_, found.repair, Task(dict(here.run.values), goals, given_.circumstances, longest=LONGEST))
 
 
 def disturbed(given_: Problem, plan: Plan, choices: Choices) -> Iterator[State]:

@@ -94,23 +94,21 @@ def test_runs_of_three_ticks_lead_where_the_reference_leads(given_: Problem) -> 
 
 
 def numbers(choices: Choices) -> tuple[list[bool], int]:
-    """Some truth values, and up to how many of them to count."""
-    return [choices.chance(2) for _ in range(choices.number(1, 9))], choices.number(1, 9)
+    """Some truth values, and how many of them are not too many."""
+    return [choices.chance(2) for _ in range(choices.number(1, 9))], choices.number(0, 9)
 
 
 @examples(100)
 @given(made_by(numbers))
-def test_a_counter_counts(given_: tuple[list[bool], int]) -> None:
+def test_a_counter_says_when_there_are_too_many(given_: tuple[list[bool], int]) -> None:
     values, most = given_
     solver = Solver()
     circuit = Circuit(solver)
     literals = [circuit.fresh() for _ in values]
-    counted = circuit.counted(literals, most)
-    assert len(counted) == min(most, len(values))
+    too_many = circuit.exceeding(literals, most)
     assumed = [literal if value else -literal for literal, value in zip(literals, values, strict=True)]
-    assert solver.solve(assumed, Budget.seconds(60))
-    true = {*solver.model()}
-    assert [literal in true for literal in counted] == [sum(values) >= n for n in range(1, len(counted) + 1)]
+    assert solver.solve([*assumed, too_many], Budget.seconds(60)) is (len(values) > most)
+    assert solver.solve([*assumed, -too_many], Budget.seconds(60)) is (sum(values) <= most)
     solver.close()
 
 
@@ -123,4 +121,38 @@ def test_at_most_one_is_at_most_one(values: list[bool]) -> None:
     circuit.at_most_one(literals)
     assumed = [literal if value else -literal for literal, value in zip(literals, values, strict=True)]
     assert solver.solve(assumed, Budget.seconds(60)) is (sum(values) <= 1)
+    solver.close()
+
+
+def gates(choices: Choices) -> tuple[list[tuple[int, ...]], list[bool]]:
+    """Gates over inputs and gates before them, by their places counted from 1, and the values of the inputs."""
+    values = [choices.chance(2) for _ in range(choices.number(1, 4))]
+    made: list[tuple[int, ...]] = []
+    for top in range(len(values), len(values) + choices.number(1, 8)):
+        parts = [choices.number(1, top) for _ in range(choices.number(2, 3))]
+        made.append(tuple(-part if choices.chance(2) else part for part in parts))
+    return made, values
+
+
+@examples(100)
+@given(made_by(gates))
+def test_literals_that_are_defined_later_can_be_true_exactly_where_they_are(
+    given_: tuple[list[tuple[int, ...]], list[bool]],
+) -> None:
+    made, values = given_
+    solver = Solver()
+    circuit = Circuit(solver, later=True)
+    literals = [circuit.fresh() for _ in values]
+    inputs, truths = circuit.top, list(values)
+
+    def at(place: int) -> int:
+        return literals[place - 1] if place > 0 else -literals[-place - 1]
+
+    for parts in made:
+        literals.append(circuit.conjunction(map(at, parts)))
+        truths.append(all(truths[abs(part) - 1] is (part > 0) for part in parts))
+    assumed = [literal if value else -literal for literal, value in zip(literals, values, strict=False)]
+    for asked, truth in ((literals[-1], truths[-1]), (-literals[-1], not truths[-1])):
+        solver.add_clauses(circuit.definitions([asked], inputs))
+        assert solver.solve([*assumed, asked], Budget.seconds(60)) is truth
     solver.close()

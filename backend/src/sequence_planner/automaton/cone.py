@@ -13,8 +13,11 @@ from sequence_planner.expressions.types import Value
 
 def read_variables(automaton: Automaton, expressions: Iterable[Expression]) -> frozenset[str]:
     """The variables that `expressions` read, with each flag replaced by what its predicate reads."""
-    found: set[str] = set()
     pending = [name for expression in expressions for name in variables(expression)]
+    found = set(pending)
+    if found <= automaton.variables.keys():
+        return frozenset(found)
+    found.clear()
     seen: set[str] = set()
     while pending:
         name = pending.pop()

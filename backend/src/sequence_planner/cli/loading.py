@@ -25,12 +25,11 @@ class Model:
 
     @property
     def connections(self) -> Connections | None:
-        """What topics feed and carry."""
+        """What topics, services and actions feed and carry."""
         if self.station is None:
             return None
         pipelines = self.station.pipelines
-        carried = (name for outgoing in pipelines.outgoing.values() for name in outgoing.variables)
-        return Connections(frozenset(pipelines.feeds), frozenset(carried))
+        return Connections(frozenset(pipelines.feeds), pipelines.carried)
 
 
 def load_model(path: Path) -> Model:

@@ -19,6 +19,7 @@ from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.moments import Moment, StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
 from sequence_planner.cli.plan_answers import because, document, plain_document, said, said_of_plain
+from sequence_planner.collection import collection_seldom
 from sequence_planner.exporting.sequential import ExportError
 from sequence_planner.exporting.ticks import sequential
 from sequence_planner.exporting.unified import UnifiedPlanning, planners
@@ -70,6 +71,7 @@ With = Annotated[
 Expected = Annotated[bool, typer.Option("--expected", help="Show what devices and people are expected to do, too.")]
 
 
+@collection_seldom()
 def plan(
     model: AnyModel,
     operations: Operations = None,

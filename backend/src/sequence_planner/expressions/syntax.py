@@ -6,7 +6,6 @@ source text and take no part in comparison, so that equal expressions written at
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
 from typing import NamedTuple
 
@@ -202,25 +201,26 @@ def children(expression: Expression) -> tuple[Expression, ...]:
 _JUNCTIONS = (And, Or)
 
 
-def occurrences(expression: Expression) -> Iterator[Variable]:
+def occurrences(expression: Expression) -> list[Variable]:
     """Each place where a resolved expression reads a variable, left to right."""
+    found: list[Variable] = []
     pending = [expression]
     while pending:
         part = pending.pop()
         if isinstance(part, Variable):
-            yield part
+            found.append(part)
         elif isinstance(part, Comparison):  # most are comparisons, or these
             pending += (part.right, part.left)
         elif isinstance(part, _JUNCTIONS):
             pending += reversed(part.operands)
         elif not isinstance(part, Constant):
             pending += reversed(children(part))
+    return found
 
 
-def variables(expression: Expression) -> Iterator[str]:
+def variables(expression: Expression) -> list[str]:
     """Full names of the variables a resolved expression reads, with repetitions."""
-    for variable in occurrences(expression):
-        yield variable.name
+    return [variable.name for variable in occurrences(expression)]
 
 
 def first_temporal(expression: Expression) -> UnaryTemporal | BinaryTemporal | None:

@@ -16,7 +16,7 @@ from sequence_planner.planning.plan import Contract
 
 # Seconds; each further turn is twice as long, so that no engine costs another much more than its own time.
 FIRST_TURN = 0.1
-LONG_FIRST_TURNS = {"partial sight": 2.0, "projection": 2.0, "search": 0.5, "bmc": 1.5}
+LONG_FIRST_TURNS = {"partial sight": 2.0, "goal by goal": 2.0, "projection": 2.0, "search": 0.5, "bmc": 1.5}
 
 Factory = Callable[[Automaton, Supervisor], Engine]
 
@@ -59,6 +59,7 @@ class Maker(Immutable):
 FACTORIES: Mapping[str, Factory] = {
     "bmc": Maker("sat.bounded", "BoundedModelChecking"),
     "partial sight": Maker("sat.seen", "PartialSight"),
+    "goal by goal": Maker("relaxed.goal_by_goal", "GoalByGoal"),
     "projection": Maker("relaxed.projection", "Projection"),
     "search": Maker("heuristic.best_first", "HeuristicSearch"),
     "breadth-first": Maker("heuristic.breadth_first", "ShortestSearch"),
@@ -69,7 +70,7 @@ FACTORIES: Mapping[str, Factory] = {
 
 # Racing, in processes of their own.
 LANES = (
-    Lane("sat", {Contract.MINIMAL: ("partial sight", "bmc"), Contract.FAST: ("projection", "bmc")}),
+    Lane("sat", {Contract.MINIMAL: ("partial sight", "bmc"), Contract.FAST: ("goal by goal", "projection", "bmc")}),
     Lane("search", {Contract.MINIMAL: ("breadth-first", "search"), Contract.FAST: ("search",)}),
     Lane("proof", dict.fromkeys(Contract, ("relaxation", "pdr")), niceness=10),
 )
@@ -79,7 +80,7 @@ ALONE = Lane(
     "alone",
     {
         Contract.MINIMAL: ("first sight", "partial sight", "bmc", "relaxation", "pdr", "breadth-first"),
-        Contract.FAST: ("first sight", "projection", "search", "relaxation", "bmc", "pdr"),
+        Contract.FAST: ("first sight", "goal by goal", "projection", "search", "relaxation", "bmc", "pdr"),
     },
 )
 

@@ -79,7 +79,6 @@ class Repair:
         ways = [way for way in ways if _asked(way.task) >= _asked(task)]
         if ways and task.contract is Contract.FAST:
             begin = self._acceptance.begin(task)
-            begin.look_ahead()
             for place in self._nearest(ways, begin):
                 found = self._led_slowly(task, place, begin)
                 if found is not None and not any(_needless(found, begin, tick) for tick in (0, 1)):

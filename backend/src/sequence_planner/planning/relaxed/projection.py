@@ -6,7 +6,7 @@ it does not, or there is none, more variables are let loose, and in the end othe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence, Set
+from collections.abc import Iterable, Iterator, Sequence, Set
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
@@ -70,6 +70,13 @@ class Projection:
         self._work = None
         return Finding(plan)
 
+    def outline(self, task: Task) -> tuple[frozenset[str], int] | None:
+        """The variables that a relaxed plan of `task` writes, and its layers; None if there is none, or this is no
+        engine for the task.
+        """
+        found = self._relaxed_plan(task) if self._reacts else None
+        return None if found is None else (self._written(found[0]), found[1])
+
     def _begun(self, task: Task) -> _Work | None:
         found = self._relaxed_plan(task)
         if found is None:
@@ -130,13 +137,16 @@ class Projection:
         First those that the relaxed plan writes, then those that it reads, and at last all that transitions touch which
         write one of these, and all that keeps starts of these.
         """
-        written = frozenset(name for move in relaxed for name in (*move.writes, *self._ending(move)))
+        written = self._written(relaxed)
         yield written
         loose = written | read_variables(self._automaton, _asked(task))
         yield loose.union(*map(self._touched, relaxed))
         while True:
             loose = self._widened(loose)
             yield loose
+
+    def _written(self, relaxed: Iterable[Transition]) -> frozenset[str]:
+        return frozenset(name for move in relaxed for name in (*move.writes, *self._ending(move)))
 
     def _touched(self, move: Transition) -> frozenset[str]:
         values = (action.value for action in move.actions)

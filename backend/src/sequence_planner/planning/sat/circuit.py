@@ -1,12 +1,12 @@
 """Boolean circuits on a SAT solver: each gate is a literal, equal gates are one literal, constants are folded.
 
 Literals are non-zero integers, negated by sign. Gates are encoded in both directions (Tseitin 1968), so that a literal
-can be assumed either way.
+can be assumed either way, or later only in those that are needed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Protocol
 
 
@@ -23,8 +23,10 @@ class Circuit:
     TRUE = 1
     FALSE = -1
 
-    def __init__(self, sink: ClauseSink) -> None:
+    def __init__(self, sink: ClauseSink, later: bool = False) -> None:
+        """With `later`, gates mean nothing to `sink` before it is given their `definitions`."""
         self._add = sink.add_clause
+        self._later = later
         self._top = 1
         self._gates: dict[tuple[int, ...], int] = {}
         self._add([self.TRUE])
@@ -88,10 +90,28 @@ class Circuit:
         if gate is None:
             self._top = gate = self._top + 1
             self._gates[parts] = gate
-            for part in parts:
-                self._add([-gate, part])
-            self._add([gate, *[-part for part in parts]])
+            if not self._later:
+                for part in parts:
+                    self._add([-gate, part])
+                self._add([gate, *[-part for part in parts]])
         return gate
+
+    def definitions(self, literals: Iterable[int], above: int) -> Iterator[list[int]]:
+        """Clauses by which `literals`, where true, imply all that they stand for (Plaisted and Greenbaum 1986).
+
+        Gates up to the variable `above` are taken for inputs.
+        """
+        needed = set(literals)
+        for parts, gate in reversed(self._gates.items()):
+            if gate <= above:
+                return
+            if gate in needed:
+                needed.update(parts)
+                yield from ([-gate, part] for part in parts)
+            if -gate in needed:
+                negated = [-part for part in parts]
+                needed.update(negated)
+                yield [gate, *negated]
 
     def at_most_one(self, literals: Sequence[int]) -> None:
         """Demand that no two of `literals` are true: each tells the next that one was (Sinz 2005)."""
@@ -100,21 +120,22 @@ class Circuit:
             self.require(-before, -literal)
             before = -self.both(-before, -literal)
 
-    def counted(self, literals: Sequence[int], most: int) -> list[int]:
-        """For each number from 1 to `most`, the literal that says that at least so many of `literals` are true.
-
-        A tree of sums (Bailleux and Boufkhad 2003).
-        """
-        if len(literals) <= 1:
-            return list(literals[:most])
-        if most == 1:
-            return [self.disjunction(literals)]
-        middle = len(literals) // 2
-        one, other = self.counted(literals[:middle], most), self.counted(literals[middle:], most)
-        return [
-            self.disjunction(
-                self.both((one[i - 1] if i else self.TRUE), (other[total - i - 1] if total > i else self.TRUE))
-                for i in range(max(total - len(other), 0), min(total, len(one)) + 1)
-            )
-            for total in range(1, min(len(one) + len(other), most) + 1)
-        ]
+    def exceeding(self, literals: Sequence[int], number: int) -> int:
+        """A literal that is true wherever more than `number` of `literals` are, and may be elsewhere (Sinz 2005)."""
+        if number >= len(literals):
+            return self.FALSE
+        more = self.fresh()
+        before: list[int] = []  # that at least 1, 2 and so on of those so far are true, up to `number`
+        for literal in literals:
+            if number == 0:
+                self.require(-literal, more)
+                continue
+            if len(before) == number:
+                self.require(-before[-1], -literal, more)
+            after = [self.fresh() for _ in range(min(len(before) + 1, number))]
+            for one, same in zip(before, after, strict=False):
+                self.require(-one, same)
+            for fewer, one in zip((self.TRUE, *before), after, strict=False):
+                self.require(-fewer, -literal, one)
+            before = after
+        return more

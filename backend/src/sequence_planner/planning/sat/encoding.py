@@ -190,7 +190,7 @@ class Encoding:
             self._circuit.require(
                 -choices[one], -choices[other], -self._writing.conflict(taken[one][1], taken[other][1])
             )
-        return choices, self._writing.applied(state, self._writing.merged(taken.values()))
+        return choices, self._writing.together(state, taken.values())
 
     def _finish(self, state: SymbolicState) -> tuple[dict[str, int], SymbolicState]:
         candidates: dict[str, tuple[int, Writes]] = {}
@@ -211,7 +211,7 @@ class Encoding:
             for name, (holds, writes) in candidates.items()
         }
         finishes = {name: holds for name, (holds, _) in applied.items()}
-        return finishes, self._writing.applied(state, self._writing.merged(applied.values()))
+        return finishes, self._writing.together(state, applied.values())
 
     def _synchronise(self, state: SymbolicState, flags: Iterable[Flag]) -> SymbolicState:
         if self._lazily:

@@ -8,14 +8,18 @@ plan that it can do without are left out. Starts of one ability are counted toge
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Contract, Plan
+from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.unrolling import Unrolling
 
 # Of the time that is left, what it may cost to look for fewer starts of a fast plan.
 _SHARE = 0.02
 _PROVING = 0.8  # and of a minimal one, first without needless starts and then with the fewest
+
+Counter = Callable[[int], int]  # for a number, a literal that is true where there are more
 
 
 class Fewest:
@@ -31,9 +35,9 @@ class Fewest:
         self._starting = starting
         self._model = unrolling.solver.model()
         self._demanded = 0  # starts that every plan has
-        self._counters: dict[int, tuple[Sequence[int], int]] = {}  # by what is assumed: that no more of these are true
-        for choices in unrolling.starts_by_ability(starting):
-            self._assume(choices, 0)
+        self._counters: dict[int, tuple[Counter, int]] = {}  # by what is assumed: that there are no more than so many
+        for ability in unrolling.places:
+            self._assume(partial(unrolling.starting_more, ability, starting), 0)
 
     def plan(self, contract: Contract, promising: Callable[[Plan], bool], budget: Budget) -> Plan:
         """The one with the fewest starts.
@@ -87,13 +91,13 @@ class Fewest:
             core = [literal for literal in solver.core() if literal in self._counters]
             self._demanded += 1
             for literal in core:
-                choices, number = self._counters.pop(literal)
-                self._assume(choices, number + 1)
-            self._assume([-literal for literal in core], 1)
+                counter, number = self._counters.pop(literal)
+                self._assume(counter, number + 1)
+            self._assume(partial(self._unrolling.circuit.exceeding, [-literal for literal in core]), 1)
         return True
 
-    def _assume(self, choices: Sequence[int], number: int) -> None:
-        """Assume from now on that no more of `choices` are true."""
-        if number < len(choices):
-            more = self._unrolling.circuit.counted(choices, number + 1)[number]
-            self._counters[-more] = choices, number
+    def _assume(self, counter: Counter, number: int) -> None:
+        """Assume from now on that there are no more than `number`."""
+        more = counter(number)
+        if more != Circuit.FALSE:
+            self._counters[-more] = counter, number

@@ -2,8 +2,8 @@
 
 Several abilities can start in one tick, in any order. One fixed order suffices as long as each pair whose order matters
 stands in it the right way round: adjacent starts that commute can be exchanged until the fixed order is reached. Pairs
-are told apart by what they write and ask for; where these demand a circle, the solver is asked of each pair in it, over
-all safe states, whether its order matters indeed. The members of a circle that is left are repeated.
+are told apart by what they write and ask for; where these demand a large circle, the solver is asked of each pair in
+it, over all safe states, whether its order matters indeed. The members of a circle that is left are repeated.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from sequence_planner.planning.sat.demands import Demands
 from sequence_planner.planning.sat.pairs import Pairs
 
 _AS_LONG_AS_IT_TAKES = 1e7  # seconds
+_FEW = 4  # members of a circle that are sooner repeated than asked about
 
 Order = tuple[Ability, ...]
 
@@ -61,7 +62,7 @@ class Sweep:
     def _open(self, before: Before, circle: tuple[str, ...], seen: Set[str], budget: Budget) -> None:
         """Take out of `before` the pairs in a circle whose order does not matter."""
         members = frozenset(circle)
-        for other in circle if len(circle) > 1 else ():
+        for other in circle if len(circle) > _FEW else ():
             for one in [name for name in before[other] if name in members]:
                 if one in seen and other in seen:
                     continue

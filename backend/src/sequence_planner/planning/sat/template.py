@@ -60,7 +60,7 @@ class Template:
         pause: Callable[[], object],
     ) -> None:
         recorder = _Recorder()
-        circuit = Circuit(recorder)
+        circuit = Circuit(recorder, later=True)
         blind = unknown & automaton.variables.keys()
         self._predicates = automaton.flag_predicates
         self._encoding = Encoding(automaton, supervisor, circuit, blind, inside, lazily=not unknown)
@@ -79,6 +79,7 @@ class Template:
             recorder.add_clauses(_one_value(symbol))
         self._tick = self._encoding.tick(self.start | anew, order, pause)
         self._carried = self._carry(anew.values())
+        recorder.add_clauses(list(circuit.definitions(self._read(recorder.literals.values()), self._inputs)))
         self._clauses = recorder.literals
         self.top = circuit.top
 
@@ -117,6 +118,17 @@ class Template:
             renamed(tick.synchronised),
             [(renaming[choice], renamed(state)) for choice, state in tick.positions],
         )
+
+    def _read(self, clauses: Iterable[Iterable[int]]) -> Iterator[int]:
+        """The literals that anybody may ask to be true: those of `clauses`, and both of what is known of a state."""
+        for literals in clauses:
+            yield from literals
+        states = (self._tick.synchronised, *(state for _, state in self._tick.positions))
+        symbols = {id(symbol): symbol for state in states for symbol in state.values()}
+        asked = (literal for symbol in symbols.values() for literal in (*symbol.literals.values(), symbol.known))
+        for literal in (*asked, *self._tick.finishes.values(), *self._carried):
+            yield literal
+            yield -literal
 
     def _carry(self, anew: Iterable[Symbol]) -> list[int]:
         """For each literal of the state before, in order, the one that says the same at the end."""

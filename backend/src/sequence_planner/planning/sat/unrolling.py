@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Sequence
+from functools import cached_property
 
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
@@ -48,6 +49,7 @@ class Unrolling:
         self._tracker = Tracker(self.circuit)
         self._progress: dict[Goal, list[Progress]] = {}
         self._avoided: dict[Expression, list[int]] = {}
+        self._counted: dict[tuple[str, int], tuple[int, int]] = {}  # by ability and number: in how many ticks, and how
 
     def extend(self, length: int, budget: Budget) -> None:
         """So many ticks at least. Raises `SpentError` when the budget is spent meanwhile."""
@@ -100,13 +102,27 @@ class Unrolling:
         """The literals that say a start is taken in one of the first `length` ticks."""
         return [choice for tick in self.ticks[:length] for _, choice in tick.starts]
 
-    def starts_by_ability(self, length: int) -> list[list[int]]:
-        """The same, for each ability."""
-        choices: dict[str, list[int]] = defaultdict(list)
-        for tick in self.ticks[:length]:
-            for name, choice in tick.starts:
-                choices[name].append(choice)
-        return list(choices.values())
+    @cached_property
+    def places(self) -> dict[str, list[int]]:
+        """By ability, its places in the order of starts, which is the same in all ticks, one of which there must be."""
+        places: dict[str, list[int]] = defaultdict(list)
+        for place, (name, _) in enumerate(self.ticks[0].starts):
+            places[name].append(place)
+        return places
+
+    def starting_more(self, ability: str, length: int, number: int) -> int:
+        """A literal that is true wherever more than `number` starts of `ability` are taken in the first `length` ticks.
+
+        It may be elsewhere. Where it was asked of more ticks before, it says the same of those: a run to be looked for
+        in the first ticks goes on without starts just as well.
+        """
+        counted, literal = self._counted.get((ability, number), (0, Circuit.FALSE))
+        if counted < length:
+            places = self.places[ability]
+            choices = [tick.starts[place][1] for tick in self.ticks[:length] for place in places]
+            literal = self.circuit.exceeding(choices, number)
+            self._counted[ability, number] = length, literal
+        return literal
 
     def read(self, length: int, starting: int, model: Sequence[int]) -> tuple[PlanTick, ...]:
         """The run of a model of the solver; only the first `starting` ticks have starts."""

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
 from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.expressions.syntax import Assignment
+from sequence_planner.expressions.types import Value
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicState
 
@@ -56,19 +58,28 @@ class Writing:
             after[name] = self._reading.chosen(write.where, write.value, state[name])
         return after
 
-    def merged(self, taken: Iterable[tuple[int, Writes]]) -> Writes:
-        """All writes of what is taken, none of which conflict."""
-        merged: Writes = {}
+    def together(self, state: SymbolicState, taken: Iterable[tuple[int, Writes]]) -> SymbolicState:
+        """The state after all writes of what is taken, none of which conflict."""
+        all_writes: dict[str, list[Write]] = defaultdict(list)
         for choice, writes in taken:
             for name, write in writes.items():
-                where = self._circuit.both(choice, write.where)
-                if name in merged:
-                    before = merged[name]
-                    value = self._reading.chosen(where, write.value, before.value)
-                    merged[name] = Write(self._circuit.disjunction((where, before.where)), value)
-                else:
-                    merged[name] = Write(where, write.value)
-        return merged
+                all_writes[name].append(Write(self._circuit.both(choice, write.where), write.value))
+        return {**state, **{name: self._written(state[name], writes) for name, writes in all_writes.items()}}
+
+    def _written(self, before: Symbol, writes: list[Write]) -> Symbol:
+        """The value after `writes`, of which any two that are taken write the same."""
+        circuit = self._circuit
+        values = dict.fromkeys(value for symbol in (before, *(w.value for w in writes)) for value in symbol.literals)
+        kept = circuit.conjunction(-write.where for write in writes)
+
+        def after(value: Value) -> int:
+            old = circuit.both(kept, before.literal(value))
+            return circuit.disjunction((old, *(circuit.both(w.where, w.value.literal(value)) for w in writes)))
+
+        if set(values) == {False, True} and before.known == circuit.TRUE:
+            literal = after(True)
+            return Symbol({False: -literal, True: literal})
+        return Symbol({value: after(value) for value in values}, circuit.disjunction((before.known, -kept)))
 
     def conflict(self, first: Writes, second: Writes) -> int:
         """The literal that says that the two write different values to a variable."""
