@@ -89,7 +89,7 @@ class Planner:
     def __init__(self, automaton: Automaton, supervisor: Supervisor, solvers: Solvers | None = None) -> None:
         self._automaton = automaton
         self._supervisor = supervisor
-        self._acceptance = Acceptance(automaton, supervisor)
+        self._acceptance = Acceptance.of(automaton, supervisor)
         self._recollection = Recollection(automaton)
         self._repair = Repair(automaton, self._acceptance, self._recollection)
         self._solvers = solvers or InTurn(Engines(automaton, supervisor, ALONE))

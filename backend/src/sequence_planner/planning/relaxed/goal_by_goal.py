@@ -74,7 +74,7 @@ class GoalByGoal:
 
     @cached_property
     def _acceptance(self) -> Acceptance:
-        return Acceptance(self._automaton, self._supervisor)
+        return Acceptance.of(self._automaton, self._supervisor)
 
     def _ordered(self, task: Task) -> Goals | None:
         """The goals, first those that seem to take longest; None if they have too much in common, as far as is seen."""

@@ -50,7 +50,7 @@ class Projection:
         self._automaton = automaton
         self._supervisor = supervisor
         self._relevance = Relevance(automaton)
-        self._acceptance = Acceptance(automaton, supervisor)
+        self._acceptance = Acceptance.of(automaton, supervisor)
         # Where nothing happens by itself, a search is sooner done.
         self._reacts = any(not effect.fault for effect in automaton.effects) or any(
             ability.finish_guard is not None for ability in automaton.abilities.values()

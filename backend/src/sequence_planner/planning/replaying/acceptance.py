@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections import Counter
 from functools import cached_property
+from typing import ClassVar
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
@@ -41,20 +42,37 @@ class Course(Immutable):
 class Acceptance:
     """Accepts plans of one automaton under one supervisor."""
 
+    _last: ClassVar[tuple[Automaton, Supervisor, Acceptance] | None] = None
+
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self._automaton = automaton
         self._tick = ReferenceTick(automaton, supervisor)
         self._begun: tuple[Task, ReferenceRun] | None = None  # the last one, which others may begin from too
+        self._accepted: tuple[Task, Course] | None = None
+
+    @classmethod
+    def of(cls, automaton: Automaton, supervisor: Supervisor) -> Acceptance:
+        """The one shared by all in this process who plan for these: an engine's plan need not be replayed twice."""
+        last = cls._last
+        if last is None or last[0] is not automaton or last[1] is not supervisor:
+            last = cls._last = automaton, supervisor, cls(automaton, supervisor)
+        return last[2]
 
     def accepts(self, task: Task, plan: Plan) -> bool:
         """Whether the ticks of `plan`, exactly as they are written, are a run that the task asks for."""
-        if not self._may_be(task, plan):
-            return False
-        run = self.begin(task)
-        return all(run.take(tick.effects, tick.starts) for tick in plan.ticks) and not run.goals
+        return self.course(task, plan) is not None
 
     def course(self, task: Task, plan: Plan) -> Course | None:
         """All that `plan` leads through; None if it is not accepted."""
+        accepted = self._accepted
+        if accepted is not None and accepted[0] is task and accepted[1].plan is plan:
+            return accepted[1]
+        course = self._replayed(task, plan)
+        if course is not None:
+            self._accepted = task, course
+        return course
+
+    def _replayed(self, task: Task, plan: Plan) -> Course | None:
         if not self._may_be(task, plan):
             return None
         run = self.begin(task)

@@ -80,7 +80,7 @@ class PartialSight:
         self._most = most * len(automaton.variables)
         self._automaton = automaton
         self._supervisor = supervisor
-        self._acceptance = Acceptance(automaton, supervisor)
+        self._acceptance = Acceptance.of(automaton, supervisor)
         self._relevance = Relevance(automaton)
         self._effects = frozenset(effect.name for effect in automaton.effects)
         self._moves: dict[str, list[Transition]] = defaultdict(list)  # by ability or effect
