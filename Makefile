@@ -5,7 +5,7 @@ PYTHON ?= $(shell for p in python3 python3.13 python3.12 python3.11; do \
 NO_PYTHON = Python 3.11, 3.12 or 3.13 with venv is needed. On Debian and Ubuntu: sudo apt-get install python3-venv
 VENV := backend/.venv
 BIN := $(VENV)/bin
-STATION ?= models/truck_engine_station
+STATION ?= models/bolt_tightening
 FAST_DDS := /usr/include/fastdds/dds/topic/TopicDataType.hpp
 FAST_DDS_PACKAGES := g++ libfastrtps-dev libfoonathan-memory-dev
 PAGE_SOURCES := $(shell find frontend/src frontend/static -type f 2>/dev/null) $(wildcard frontend/*.ts frontend/*.js frontend/*.json)
@@ -25,6 +25,9 @@ run: install page ## Start the station with emulated devices and its page at htt
 
 emulator: install ## Start the emulated devices again
 	$(BIN)/sequence-planner emulate $(STATION)
+
+hall: install ## The eight nodes of the truck engine station and the world they stand in, for `run` without --emulator
+	$(BIN)/python -m sequence_planner.emulation.truck_station all --messages models/truck_engine_station/messages
 
 test: lint typecheck pytest svelte-check vitest e2e ## Run every check
 
@@ -133,4 +136,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign chromium
+.PHONY: help run emulator hall test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign chromium

@@ -1,4 +1,4 @@
-"""`python -m sequence_planner.emulation.truck_station world|<node>`: one process of the station."""
+"""`python -m sequence_planner.emulation.truck_station world|<node>|all`: one process of the station, or all of them."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import argparse
 import asyncio
 import contextlib
 import signal
+import sys
 from pathlib import Path
 
 from sequence_planner.emulation.truck_station.node import NODE_TYPES, live
@@ -19,9 +20,9 @@ PORT, MIR_PORT = 8700, 8701
 
 
 def main() -> None:
-    """Run the world, or one node of it, until a signal ends it."""
+    """Run the world, one node of it, or all of them as processes of their own, until a signal ends it."""
     parser = argparse.ArgumentParser(prog="truck_station", description=__doc__)
-    parser.add_argument("what", choices=("world", *NODE_TYPES))
+    parser.add_argument("what", choices=("world", *NODE_TYPES, "all"))
     parser.add_argument("--port", type=int, default=PORT, help="of the world, on the loopback")
     parser.add_argument("--mir-port", type=int, default=MIR_PORT, help="of the AGV's own interface")
     parser.add_argument("--messages", type=Path, help="folder of the message definitions; needed for a node")
@@ -42,12 +43,33 @@ async def _run(given: argparse.Namespace) -> None:
     if given.what == "world":
         await WorldServer(World(given.seed), given.speed).serve(given.port, given.mir_port)
         return
+    if given.what == "all":
+        await _run_all(given)
+        return
     registry = MessageRegistry.from_folder(given.messages)
 
     def connect(name: str) -> Transport:
         return open_transport("auto", registry, name, loop)
 
     await live(given.what, given.port, given.mir_port, registry, connect)
+
+
+async def _run_all(given: argparse.Namespace) -> None:
+    """The world and its nodes, until this one ends, or one of them does."""
+    common = ("--port", str(given.port), "--mir-port", str(given.mir_port), "--messages", str(given.messages))
+    world = ("--speed", str(given.speed), "--seed", str(given.seed))
+    module = ("-m", "sequence_planner.emulation.truck_station")
+    processes = []
+    for what in ("world", *NODE_TYPES):
+        arguments = (*module, what, *common, *(world if what == "world" else ()))
+        processes.append(await asyncio.create_subprocess_exec(sys.executable, *arguments))
+    try:
+        await asyncio.wait({asyncio.create_task(each.wait()) for each in processes}, return_when="FIRST_COMPLETED")
+    finally:
+        for each in processes:
+            with contextlib.suppress(ProcessLookupError):
+                each.terminate()
+        await asyncio.gather(*(each.wait() for each in processes))
 
 
 if __name__ == "__main__":

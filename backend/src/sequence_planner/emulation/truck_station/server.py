@@ -64,6 +64,8 @@ class WorldServer:
                 await writer.drain()
         except (ConnectionError, ValueError):
             return  # whoever spoke is gone, or does not speak this language
+        except asyncio.CancelledError:
+            return  # the world ends, and with it this task
         finally:
             writer.close()
 
