@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from sequence_planner.model.client_documents import ActionDocument, ServiceDocument
 from sequence_planner.model.document_part import DocumentPart
 from sequence_planner.model.flow_documents import ExampleDocument, ExampleStepDocument, FlowDocument
 from sequence_planner.model.stage_documents import (
@@ -50,6 +51,8 @@ def test_the_examples_of_the_page_hold(made: list[Example]) -> None:
 @pytest.mark.parametrize(
     "part",
     [
+        ServiceDocument,
+        ActionDocument,
         FlowDocument,
         ExampleDocument,
         ExampleStepDocument,

@@ -141,7 +141,8 @@ class _Launcher:
         address = ["--host", request.host, "--port", str(request.port)]
         speed = ["--speed", str(request.emulator_speed)]
         self._controller = Part("controller", _command("controller", *controller))
-        self._server = Part("server", _command("server", "--socket", str(socket), "--page", str(PAGE), *address))
+        server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
+        self._server = Part("server", _command("server", *server, *address))
         self._emulator = Part("emulated devices", _command("emulate", model, *speed, *transport))
 
     def run(self) -> int:

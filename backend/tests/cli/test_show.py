@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from cli.commands import EXAMPLE, TRUCK, as_json, command, plain
+from cli.commands import CELL, EXAMPLE, TRUCK, as_json, command, plain
 
 
 def test_one_ability_and_its_effects() -> None:
@@ -86,3 +86,25 @@ uncontrollable ask
     set         user := waits
 """
     )
+
+
+def test_pipelines_are_shown_with_the_types_on_their_edges() -> None:
+    code, out, _ = command("show", CELL, "--pipelines", "/arm/state")
+    place = CELL / "resources" / "arm.yaml"
+    assert code == 0
+    assert out.splitlines() == [
+        "/arm/state  incoming, arm: cell_msgs/msg/ArmState",
+        "  edge  joints: real[2], moving: bool",
+        f"  1 discretise  joints → pose  ({place}:8)",
+        "  new   pose: {unknown, home, out}",
+        f"  2 remember  pose → last  ({place}:16)",
+        "  new   last: {home, out}",
+        "  writes  arm.pose: {unknown, home, out} from pose",
+        "  writes  arm.last: {home, out} from last",
+        "  writes  arm.moving: bool from moving",
+    ]
+    code, found = as_json("show", CELL, "--pipelines", "arm")
+    assert (code, set(found["pipelines"])) == (0, {"/arm/state", "/arm/command"})
+    assert found["pipelines"]["/arm/command"]["sources"] == {"goto": "arm.goto"}
+    code, _, err = command("show", CELL, "--pipelines", "/arm/stat")
+    assert (code, "did you mean `/arm/state`?" in err) == (2, True)

@@ -315,7 +315,7 @@ def test_an_integer_is_overridden_by_integers_only(value: object, allowed: bool)
     if allowed:
         course.set_override({"count": value}, 0.0, "eva")
     else:
-        with pytest.raises(ValueError, match="it is a number from 0"):
+        with pytest.raises(ValueError, match="it is an integer from 0 to 2"):
             course.set_override({"count": value}, 0.0, "eva")
 
 

@@ -39,6 +39,7 @@ def holding(tool: str) -> dict[str, Value]:
         "scene.attached": tool,
         "scene.wanted": tool,
         "nutrunner.activate_lift": tool != "ATLASTOOL",
+        "nutrunner.lift_state": "floats" if tool == "ATLASTOOL" else "holds",
         "nutrunner.positioned_at_home_station": tool != "ATLASTOOL",
         "dock.lf_tool_home": tool != "LFTOOL",
         "dock.filter_tool_home": tool != "OFTOOL",

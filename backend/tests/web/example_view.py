@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from sequence_planner.control.override_view import OverrideFieldView, OverrideView
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
@@ -138,6 +139,16 @@ def example_view(**changes: object) -> StationView:
                 fresh=True,
                 peers=1,
                 trouble=None,
+            )
+        },
+        overrides={
+            "robot.speed": OverrideView(
+                pipeline="/robot/command",
+                resource="robot",
+                expires=60.0,
+                fields={"speed": OverrideFieldView(type="real", between=(0.05, 0.5), among=None, value=0.1)},
+                actor="local",
+                until=1030.0,
             )
         },
         alarms={"slow": AlarmView(priority=Priority.LOW, text="The robot is slow", action="Look at it", since=998.0)},

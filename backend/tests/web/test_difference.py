@@ -9,6 +9,7 @@ from typing import Any, cast, get_type_hints
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sequence_planner.control.override_view import OverrideFieldView
 from sequence_planner.control.view import Mode, Production, StationView, VariableView
 from sequence_planner.web.difference import MAPS, difference
 from sequence_planner.web.stream_messages import Delta, StationChange
@@ -19,6 +20,13 @@ EXAMPLE = example_view()
 NAMES = st.sampled_from(["a", "b", "c", 'quote"', "", "é"])
 VALUES = st.one_of(st.booleans(), st.integers(0, 2), st.sampled_from(["", "1", "true"]))
 TIMES = st.floats(0, 1e10)
+FIELDS = st.builds(
+    OverrideFieldView,
+    type=st.just("real"),
+    between=st.none(),
+    among=st.none() | st.lists(VALUES, max_size=2),
+    value=st.none() | VALUES,
+)
 
 
 def apply(document: dict[str, Any], changed: dict[str, Any], removed: dict[str, list[str]]) -> dict[str, Any]:
@@ -41,6 +49,7 @@ def entries(name: str) -> st.SearchStrategy[dict[str, Any]]:
         "operations": st.fixed_dictionaries({"completed": st.integers(0, 2)}),
         "tasks": st.fixed_dictionaries({"revision": st.integers(0, 2)}),
         "topics": st.fixed_dictionaries({"messages": st.integers(0, 2), "last": st.none() | TIMES}),
+        "overrides": st.fixed_dictionaries({"fields": st.dictionaries(NAMES, FIELDS, max_size=2)}),
         "alarms": st.fixed_dictionaries({"text": NAMES}),
     }[name]
     return st.dictionaries(NAMES, member.map(lambda update: entry.model_copy(update=update)))

@@ -7,7 +7,7 @@ import pytest
 
 from .running import Controller, Server, until
 
-PARTS = ["resources", "operations", "abilities", "plan", "tasks", "topics", "alarms"]
+PARTS = ["resources", "operations", "abilities", "plan", "tasks", "topics", "overrides", "alarms"]
 
 
 @pytest.mark.parametrize("part", PARTS)

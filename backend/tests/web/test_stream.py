@@ -42,12 +42,12 @@ def stream(server: Server) -> Iterator[ClientConnection]:
         yield stream
 
 
-def slow_client(server: Server) -> ClientConnection:
+def slow_client(server: Server, address: str | None = None) -> ClientConnection:
     """A client with little room for what it does not read: as soon as that is full, the server has to wait."""
     sock = socket.socket()
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 16 * 1024)
     sock.connect(("127.0.0.1", server.settings.port))
-    return connect(server.stream, sock=sock, max_queue=1, max_size=None, close_timeout=1)
+    return connect(address or server.stream, sock=sock, max_queue=1, max_size=None, close_timeout=1)
 
 
 def test_a_snapshot_and_its_deltas_are_the_view(stream: ClientConnection, controller: Controller) -> None:

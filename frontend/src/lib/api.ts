@@ -104,6 +104,92 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/overrides": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Overrides
+         * @description What a person may set within which bounds, what is set, and when it expires.
+         */
+        get: operations["overrides_api_v1_overrides_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/overrides/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Set Override
+         * @description Set fields of an override, such as `ur10.speed`, within the bounds of the model; they expire as it says.
+         *
+         *     422 `out-of-bounds` names the field and what is allowed; nothing has changed then.
+         */
+        put: operations["set_override_api_v1_overrides__name__put"];
+        post?: never;
+        /**
+         * Clear Override
+         * @description Take back what is set, if anything is.
+         */
+        delete: operations["clear_override_api_v1_overrides__name__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/pipelines": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Pipelines
+         * @description The typed graph: topics and flows with their stages, the fields on each edge, and what they become.
+         */
+        get: operations["pipelines_api_v1_pipelines_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/pipelines/edges": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Edges
+         * @description What has passed each edge: counts, rates, drops and the last record. Rates come with the second look.
+         */
+        get: operations["edges_api_v1_pipelines_edges_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/plan": {
         parameters: {
             query?: never;
@@ -156,6 +242,48 @@ export interface paths {
          * @description Every resource, whether it is online, and which topics are awaited.
          */
         get: operations["resources_api_v1_resources_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/ros/attachments": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Attach
+         * @description Enter a topic that is on the network into the station's model; what runs does not change before a restart.
+         */
+        post: operations["attach_api_v1_ros_attachments_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/ros/graph": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Graph
+         * @description All nodes, topics, services and actions that the station's transport knows, and how the station meets them.
+         *
+         *     503 until the station is prepared and has joined the network.
+         */
+        get: operations["graph_api_v1_ros_graph_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -394,6 +522,62 @@ export interface components {
             supervised_states: number | null;
         };
         /**
+         * AttachmentAnswer
+         * @description What was changed, as `diff -u` shows it, or would be; and what `check` finds then.
+         *
+         *     `made` is false for a dry run, and when one of the findings is an error: the model could not be used afterwards.
+         */
+        AttachmentAnswer: {
+            /** Difference */
+            difference: string;
+            /**
+             * Direction
+             * @enum {string}
+             */
+            direction: "in" | "out";
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Made */
+            made: boolean;
+            /** Resource */
+            resource: string;
+            /** Topic */
+            topic: string;
+            /** Type */
+            type: string;
+        };
+        /**
+         * AttachmentBody
+         * @description A topic, and the resource that gets it, which may be a new one. Without a direction the network tells it.
+         *
+         *     With `dry_run` nothing is changed.
+         */
+        AttachmentBody: {
+            /** Direction */
+            direction?: ("in" | "out") | null;
+            /**
+             * Dry Run
+             * @default false
+             */
+            dry_run: boolean;
+            /** Resource */
+            resource: string;
+            /** Topic */
+            topic: string;
+        };
+        /**
+         * CallView
+         * @description A service or an action: who answers it and who asks, by node; null stands for one that does not tell its name.
+         */
+        CallView: {
+            /** Clients */
+            clients: (string | null)[];
+            /** Servers */
+            servers: (string | null)[];
+            /** Types */
+            types: string[];
+        };
+        /**
          * ClientMessage
          * @description Any message from a client.
          */
@@ -453,6 +637,63 @@ export interface components {
             safe: boolean | number | string;
         };
         /**
+         * EdgeFlowView
+         * @description What has passed an edge since the controller began.
+         *
+         *     `held` records were dropped by the stage, held back, or made one of several. `rate` is in records per second over
+         *     the last seconds, and null before it is known. `last` is the last record, with long lists and texts cut short, `at`
+         *     when it passed (seconds since the epoch).
+         */
+        EdgeFlowView: {
+            /** At */
+            at: number | null;
+            /** Held */
+            held: number;
+            /** Last */
+            last: {
+                [key: string]: components["schemas"]["JsonValue"];
+            } | null;
+            /** Rate */
+            rate: number | null;
+            /** Records */
+            records: number;
+            /** To */
+            to: string;
+            /** Troubles */
+            troubles: string[];
+        };
+        /**
+         * EndView
+         * @description What a field becomes at the end: a variable of the station, or a field of the outgoing message.
+         */
+        EndView: {
+            /** Becomes */
+            becomes: string;
+            /** Field */
+            field: string;
+            /** Type */
+            type: string;
+        };
+        /**
+         * EndpointView
+         * @description A publisher or subscriber. `node`, `type_hash` and `vendor` (of its middleware) are null where it does not tell.
+         *
+         *     `own` is true of this station's controller.
+         */
+        EndpointView: {
+            /** Node */
+            node: string | null;
+            /** Own */
+            own: boolean;
+            quality: components["schemas"]["QualityView"];
+            /** Type */
+            type: string;
+            /** Type Hash */
+            type_hash: string | null;
+            /** Vendor */
+            vendor: string | null;
+        };
+        /**
          * FieldError
          * @description One place in a request that is not as it must be, e.g. `body.mode`, and what was expected there.
          */
@@ -480,6 +721,48 @@ export interface components {
             /** Severity */
             severity: string;
             trace: components["schemas"]["TraceDocument"] | null;
+        };
+        /**
+         * FlowsSnapshot
+         * @description What has passed the pipelines by now.
+         */
+        FlowsSnapshot: {
+            flows: components["schemas"]["FlowsView"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "flows";
+        };
+        /**
+         * FlowsStreamMessage
+         * @description Any message of `/api/v1/pipelines/stream`.
+         */
+        FlowsStreamMessage: components["schemas"]["FlowsSnapshot"] | components["schemas"]["Silence"] | components["schemas"]["StreamError"];
+        /**
+         * FlowsView
+         * @description What has passed all pipelines, by topic or flow, at `time` (seconds since the epoch).
+         */
+        FlowsView: {
+            /** Pipelines */
+            pipelines: {
+                [key: string]: components["schemas"]["PipelineFlowView"];
+            };
+            /** Time */
+            time: number;
+        };
+        /**
+         * GraphTopicView
+         * @description A topic; `station` is null where the model does not use it.
+         */
+        GraphTopicView: {
+            /** Publishers */
+            publishers: components["schemas"]["EndpointView"][];
+            station: components["schemas"]["StationUseView"] | null;
+            /** Subscribers */
+            subscribers: components["schemas"]["EndpointView"][];
+            /** Types */
+            types: string[];
         };
         /**
          * GuardDocument
@@ -512,6 +795,7 @@ export interface components {
              */
             status: "alive";
         };
+        JsonValue: unknown;
         /**
          * Link
          * @description The controller fell silent, or is back; then a snapshot follows.
@@ -527,6 +811,31 @@ export interface components {
             sequence: number;
         };
         /**
+         * MismatchView
+         * @description Why the station and an endpoint do not understand one another, or would fight.
+         *
+         *     `type`: it uses another type under this name. `definition`: another definition of the type (`ours` and `theirs` are
+         *     hashes). `quality`: `policy` is not agreed on, and nothing passes between the two. `rival`: it publishes what the
+         *     station commands. `text` says it in words.
+         */
+        MismatchView: {
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "type" | "definition" | "quality" | "rival";
+            /** Node */
+            node: string | null;
+            /** Ours */
+            ours: string;
+            /** Policy */
+            policy: ("reliability" | "durability" | "deadline" | "liveliness") | null;
+            /** Text */
+            text: string;
+            /** Theirs */
+            theirs: string;
+        };
+        /**
          * Mode
          * @description How the station executes (see `docs/semantics.md`).
          * @enum {string}
@@ -538,6 +847,65 @@ export interface components {
          */
         ModeBody: {
             mode: components["schemas"]["Mode"];
+        };
+        /**
+         * NetworkSnapshot
+         * @description The ROS graph as it is now.
+         */
+        NetworkSnapshot: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "network";
+            network: components["schemas"]["NetworkView"];
+        };
+        /**
+         * NetworkStreamMessage
+         * @description Any message of `/api/v1/ros/stream`.
+         */
+        NetworkStreamMessage: components["schemas"]["NetworkSnapshot"] | components["schemas"]["Silence"] | components["schemas"]["StreamError"];
+        /**
+         * NetworkView
+         * @description The whole graph. Where `services_known` is false, the transport cannot tell services, and they are left out.
+         */
+        NetworkView: {
+            /** Actions */
+            actions: {
+                [key: string]: components["schemas"]["CallView"];
+            };
+            /** Nodes */
+            nodes: {
+                [key: string]: components["schemas"]["NodeView"];
+            };
+            /** Services */
+            services: {
+                [key: string]: components["schemas"]["CallView"];
+            };
+            /** Services Known */
+            services_known: boolean;
+            /** Topics */
+            topics: {
+                [key: string]: components["schemas"]["GraphTopicView"];
+            };
+        };
+        /**
+         * NodeView
+         * @description A node, and the names of what it uses and serves.
+         */
+        NodeView: {
+            /** Actions */
+            actions: string[];
+            /** Own */
+            own: boolean;
+            /** Publishes */
+            publishes: string[];
+            /** Services */
+            services: string[];
+            /** Subscribes */
+            subscribes: string[];
+            /** Vendor */
+            vendor: string | null;
         };
         /**
          * OperationView
@@ -572,6 +940,125 @@ export interface components {
             tick: number;
             /** Time */
             time: number;
+        };
+        /**
+         * OverrideBody
+         * @description The values of the fields that are to be set; others are as they come.
+         */
+        OverrideBody: {
+            /** Fields */
+            fields: {
+                [key: string]: boolean | number | string;
+            };
+        };
+        /**
+         * OverrideFieldView
+         * @description A field that may be set to a number `between` two, or to one of `among`; the other of the two is null.
+         *
+         *     `value` is what is set now, null when nothing is.
+         */
+        OverrideFieldView: {
+            /** Among */
+            among: (boolean | number | string)[] | null;
+            /** Between */
+            between: [
+                number,
+                number
+            ] | null;
+            /** Type */
+            type: string;
+            /** Value */
+            value: boolean | number | string | null;
+        };
+        /**
+         * OverrideView
+         * @description An override of the model, in the pipeline of a topic or flow. What is set is gone after `expires` seconds.
+         *
+         *     `actor` has set what is set, until `until` (seconds since the epoch); both are null when nothing is.
+         */
+        OverrideView: {
+            /** Actor */
+            actor: string | null;
+            /** Expires */
+            expires: number;
+            /** Fields */
+            fields: {
+                [key: string]: components["schemas"]["OverrideFieldView"];
+            };
+            /** Pipeline */
+            pipeline: string;
+            /** Resource */
+            resource: string;
+            /** Until */
+            until: number | null;
+        };
+        /**
+         * OverridesAnswer
+         * @description What a person may set, and what is set.
+         */
+        OverridesAnswer: {
+            /** Overrides */
+            overrides: {
+                [key: string]: components["schemas"]["OverrideView"];
+            };
+            /** Tick */
+            tick: number;
+            /** Time */
+            time: number;
+        };
+        /**
+         * PipelineFlowView
+         * @description What has passed a pipeline. `repeated` messages said nothing new and went no further; `rate` counts them too.
+         */
+        PipelineFlowView: {
+            /** Edges */
+            edges: components["schemas"]["EdgeFlowView"][];
+            /** Rate */
+            rate: number | null;
+            /** Repeated */
+            repeated: number;
+        };
+        /**
+         * PipelineGraphView
+         * @description The pipeline of one topic or flow.
+         *
+         *     `sources` are a flow's topics and flows by alias; without a merge each is its own alias. An incoming topic has
+         *     none, and those of an outgoing topic are variables. There is one edge more than stages. `readers` are flows.
+         */
+        PipelineGraphView: {
+            /** Edges */
+            edges: components["schemas"]["TypedEdgeView"][];
+            /** Ends */
+            ends: components["schemas"]["EndView"][];
+            /** Joining */
+            joining: ("branch" | "interleave" | "merge") | null;
+            /** Message */
+            message: string | null;
+            /** Readers */
+            readers: string[];
+            /** Resource */
+            resource: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "incoming" | "flow" | "outgoing";
+            /** Sources */
+            sources: {
+                [key: string]: string;
+            };
+            /** Stages */
+            stages: components["schemas"]["StageView"][];
+        };
+        /**
+         * PipelinesView
+         * @description All pipelines of a station, by topic or flow; each flow stands behind its sources.
+         */
+        PipelinesView: {
+            /** Pipelines */
+            pipelines: {
+                [key: string]: components["schemas"]["PipelineGraphView"];
+            };
         };
         /**
          * PlanAnswer
@@ -667,6 +1154,26 @@ export interface components {
          */
         Production: "preparing" | "waiting" | "started";
         /**
+         * QualityView
+         * @description What an endpoint offers or wants, in ROS 2's words; `deadline` and `liveliness` are seconds, or null for none.
+         */
+        QualityView: {
+            /** Deadline */
+            deadline: number | null;
+            /**
+             * Durability
+             * @enum {string}
+             */
+            durability: "volatile" | "transient_local";
+            /** Liveliness */
+            liveliness: number | null;
+            /**
+             * Reliability
+             * @enum {string}
+             */
+            reliability: "reliable" | "best_effort";
+        };
+        /**
          * ResourceView
          * @description A resource and whether all its topics speak.
          */
@@ -704,6 +1211,18 @@ export interface components {
             kind: "resync";
         };
         /**
+         * Silence
+         * @description There is nothing to show: the controller is not heard, or is still preparing the station.
+         */
+        Silence: {
+            controller: components["schemas"]["ControllerState"];
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "link";
+        };
+        /**
          * Snapshot
          * @description The whole view.
          */
@@ -726,6 +1245,28 @@ export interface components {
             name: string;
             /** Title */
             title: string;
+        };
+        /**
+         * StageView
+         * @description A stage: its kind, what it makes of what in short, and where it was written.
+         */
+        StageView: {
+            /** Column */
+            column: number;
+            /** File */
+            file: string;
+            /** Gives */
+            gives: {
+                [key: string]: string;
+            };
+            /** Kind */
+            kind: string;
+            /** Line */
+            line: number;
+            /** Reads */
+            reads: string[];
+            /** Summary */
+            summary: string;
         };
         /**
          * StartBody
@@ -777,6 +1318,10 @@ export interface components {
             /** Operations */
             operations?: {
                 [key: string]: components["schemas"]["OperationView"];
+            };
+            /** Overrides */
+            overrides?: {
+                [key: string]: components["schemas"]["OverrideView"];
             };
             plan?: components["schemas"]["PlanView"];
             production?: components["schemas"]["Production"];
@@ -830,6 +1375,8 @@ export interface components {
             alarms?: string[];
             /** Operations */
             operations?: string[];
+            /** Overrides */
+            overrides?: string[];
             /** Resources */
             resources?: string[];
             /** Tasks */
@@ -838,6 +1385,28 @@ export interface components {
             topics?: string[];
             /** Variables */
             variables?: string[];
+        };
+        /**
+         * StationUseView
+         * @description A topic of the station's model, and how many endpoints there are with which it is understood.
+         */
+        StationUseView: {
+            /**
+             * Direction
+             * @enum {string}
+             */
+            direction: "in" | "out";
+            /** Mismatches */
+            mismatches: components["schemas"]["MismatchView"][];
+            /** Peers */
+            peers: number;
+            quality: components["schemas"]["QualityView"];
+            /** Resource */
+            resource: string;
+            /** Type */
+            type: string;
+            /** Type Hash */
+            type_hash: string;
         };
         /**
          * StationView
@@ -857,6 +1426,10 @@ export interface components {
             /** Operations */
             operations: {
                 [key: string]: components["schemas"]["OperationView"];
+            };
+            /** Overrides */
+            overrides: {
+                [key: string]: components["schemas"]["OverrideView"];
             };
             plan: components["schemas"]["PlanView"];
             production: components["schemas"]["Production"];
@@ -1009,6 +1582,18 @@ export interface components {
             };
             /** Steps */
             steps: components["schemas"]["StepDocument"][];
+        };
+        /**
+         * TypedEdgeView
+         * @description An edge: the stage it leads to (`3 discretise`) or what stands at the end, and the types of a record's fields.
+         */
+        TypedEdgeView: {
+            /** Fields */
+            fields: {
+                [key: string]: string;
+            };
+            /** To */
+            to: string;
         };
         /**
          * VariableKind
@@ -1273,6 +1858,200 @@ export interface operations {
             };
         };
     };
+    overrides_api_v1_overrides_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OverridesAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_override_api_v1_overrides__name__put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OverrideBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    clear_override_api_v1_overrides__name__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    pipelines_api_v1_pipelines_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PipelinesView"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    edges_api_v1_pipelines_edges_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FlowsView"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     plan_api_v1_plan_get: {
         parameters: {
             query?: never;
@@ -1367,6 +2146,86 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["ResourcesAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    attach_api_v1_ros_attachments_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AttachmentBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AttachmentAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    graph_api_v1_ros_graph_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NetworkView"];
                 };
             };
             /** @description A problem */

@@ -15,7 +15,7 @@ from sequence_planner.expressions.syntax import variables
 
 @dataclass(frozen=True)
 class Connections:
-    """The measured variables that topics feed, and the outputs that topics carry."""
+    """The measured variables that topics feed, and the variables of any kind that outgoing messages depend on."""
 
     fed: frozenset[str]
     carried: frozenset[str]
@@ -42,7 +42,7 @@ def check_connections(automaton: Automaton, connections: Connections) -> Iterato
                 yield ModelWarning(where, "carried-nowhere", _uncarried(family))
             case Kind.OUTPUT | Kind.ESTIMATED if none(written) and not none(read):
                 yield ModelWarning(where, "never-written", _unwritten(family, variable))
-        if variable.kind in (Kind.MEASURED, Kind.ESTIMATED) and none(read):
+        if variable.kind in (Kind.MEASURED, Kind.ESTIMATED) and none(read | connections.carried):
             idle[where].append(family)
     for where, names in idle.items():
         yield ModelWarning(where, "never-read", _unread(names))

@@ -11,6 +11,7 @@ import sys
 import typer
 
 from sequence_planner.cli import running
+from sequence_planner.cli.attach import attach
 from sequence_planner.cli.check import check
 from sequence_planner.cli.edit import edit
 from sequence_planner.cli.export import export
@@ -19,13 +20,15 @@ from sequence_planner.cli.plan import plan
 from sequence_planner.cli.show import show
 from sequence_planner.cli.synthesize import synthesize
 from sequence_planner.cli.tick import tick
+from sequence_planner.cli.topics import topics
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, help="Model and control automation stations on ROS 2.")
 
-for command in (new, check, synthesize, show, edit, tick, plan, export, running.run, running.messages):
+for command in (new, check, synthesize, show, edit, tick, plan, export, running.run, running.messages, topics, attach):
     app.command()(command)
 app.command("emulate")(running.emulate_command)
 app.command("by-hand")(running.by_hand)
+app.command("fault")(running.fault)
 app.command(hidden=True)(running.controller)
 app.command(hidden=True)(running.server)
 

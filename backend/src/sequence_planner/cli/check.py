@@ -39,13 +39,10 @@ def check(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = F
     {initial, forbidden_by, steps: [{kind, names, finished, changes, forbidden_by, text}]}, or null.
     """
     try:
-        loaded = load_model(model)
-        if loaded.station is not None and (failed := _failures(loaded.station)):
-            raise ModelError(failed)
-        checked = _checked(loaded, deadline)
+        checked = check_model(load_model(model), deadline)
     except ModelError as error:
         if json:
-            findings = [_unusable(each) for each in error.findings]
+            findings = [unusable(each) for each in error.findings]
             print_json({"model": str(model), "findings": findings, "summary": None})
         else:
             typer.echo(str(error), err=True)
@@ -64,8 +61,10 @@ def _failures(station: ReadyStation) -> list[Finding]:
     return loading_failures(station.pipelines) or failures(station.examples)
 
 
-def _checked(model: Model, deadline: float) -> Checked:
-    """All that can be found in a model that can be used."""
+def check_model(model: Model, deadline: float) -> Checked:
+    """All that can be found in a model that can be used. Raises `ModelError` for pipelines that fail as they run."""
+    if model.station is not None and (failed := _failures(model.station)):
+        raise ModelError(failed)
     automaton = model.automaton
     with collection_put_off():
         warnings = check_automaton(automaton, model.connections)
@@ -82,7 +81,8 @@ def _say(checked: Checked) -> None:
     typer.echo("\n".join([*lines, _summary_line(checked)]))
 
 
-def _unusable(finding: Finding) -> dict[str, object]:
+def unusable(finding: Finding) -> dict[str, object]:
+    """A finding that makes a model unusable, as a document."""
     return FindingDocument(
         severity="error",
         kind="unusable",

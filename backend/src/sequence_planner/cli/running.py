@@ -6,17 +6,21 @@ import asyncio
 import contextlib
 import signal
 from collections.abc import Awaitable, Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from sequence_planner.analysis.process import SynthesisEndedError
+from sequence_planner.cli.emulated import say
 from sequence_planner.cli.options import StationFolder, refuse
 from sequence_planner.control.unix_socket import SocketTakenError
+from sequence_planner.emulation.fault_script import read_script
+from sequence_planner.emulation.live import BY_HAND_TOPIC, FAULTS_TOPIC
 from sequence_planner.emulation.possible import emulation_findings
-from sequence_planner.emulation.process import BY_HAND_TOPIC, BY_HAND_TYPE, Emulation, emulate
+from sequence_planner.emulation.process import Emulation, emulate
+from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.launcher import Launch, launch
 from sequence_planner.lifeline import end_with_launcher
 from sequence_planner.logs import configure_logs
@@ -25,10 +29,8 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.pipelines.building import load_messages
 from sequence_planner.ros.ament import write_ament_package
 from sequence_planner.ros.choice import TransportChoice, open_transport
-from sequence_planner.ros.exclusivity import DISCOVERY
-from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.routing import ROSBRIDGE, open_routed
-from sequence_planner.ros.transport import QualityOfService, Transport, TransportError
+from sequence_planner.ros.transport import Transport, TransportError
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.web.settings import Settings, SettingsError
 
@@ -74,7 +76,12 @@ def emulate_command(
     transport: TransportOption = "auto",
     rosbridge: RosbridgeOption = None,
     speed: Annotated[float, typer.Option(min=0.1, max=100, help="Go so much faster than real devices.")] = 1.0,
-    seed: Annotated[int, typer.Option(help="Draws the delays.")] = 0,
+    seed: Annotated[int, typer.Option(help="Draws all that is random.")] = 0,
+    jitter: Annotated[float, typer.Option(min=0, max=60, help="Effects and reports come up to so many s late.")] = 0.0,
+    resource: Annotated[
+        list[str] | None, typer.Option(help="Emulate this resource's devices, and no others; can be repeated.")
+    ] = None,
+    faults: Annotated[Path | None, typer.Option(help="A file of faults and when they begin.")] = None,
     launched: Launched = False,
 ) -> None:
     """Run emulated devices for a station, in place of real ones."""
@@ -82,15 +89,35 @@ def emulate_command(
     station = _prepare(model)
     if findings := emulation_findings(station):
         refuse("\n".join(map(str, findings)))
+    emulation = Emulation(station, speed, seed, jitter, frozenset(resource) if resource else None)
+    there = Emulation(station).emulated
+    for name in resource or ():
+        if name not in there:
+            refuse(
+                f"`{name}` has no devices here{suggestion(name, there)}; there are those of {', '.join(sorted(there))}"
+            )
+    if faults is not None:
+        try:
+            emulation = replace(emulation, script=read_script(faults, emulation.reader()))
+        except ModelError as error:
+            refuse(str(error))
     network = _Network(station, transport, rosbridge)
-    _until_interrupted(lambda connect: emulate(Emulation(station, speed, seed), connect), network)
+    _until_interrupted(lambda connect: emulate(emulation, connect), network)
 
 
 def by_hand(
     change: Annotated[str, typer.Argument(help='Such as "robot.pose := home".')], transport: TransportOption = "auto"
 ) -> None:
     """Move an emulated device by hand, as somebody might move a real one."""
-    asyncio.run(_send_by_hand(change, transport))
+    say(BY_HAND_TOPIC, change, transport)
+
+
+def fault(
+    fault: Annotated[str, typer.Argument(help='Such as "robot silent for 5 s", or "clear".')],
+    transport: TransportOption = "auto",
+) -> None:
+    """Let an emulated device have a fault, or end faults."""
+    say(FAULTS_TOPIC, fault, transport)
 
 
 def messages(
@@ -132,6 +159,8 @@ def controller(
 def server(
     socket: Socket,
     page: Annotated[Path, typer.Option()],
+    model: Annotated[Path | None, typer.Option()] = None,
+    transport: TransportOption = "auto",
     host: Annotated[str, typer.Option()] = "127.0.0.1",
     port: Annotated[int, typer.Option()] = 8000,
     launched: Launched = False,
@@ -140,7 +169,7 @@ def server(
     from sequence_planner.web.server import serve  # noqa: PLC0415
 
     _begin(launched)
-    serve(Settings(controller_socket=socket, page=page, host=host, port=port))
+    serve(Settings(socket, page, host, port, model, transport))
 
 
 def _begin(launched: bool, folder: Path | None = None) -> None:
@@ -193,20 +222,3 @@ def _until_interrupted(life: Callable[[Callable[[str], Transport]], Awaitable[No
         asyncio.run(live())
     except (TransportError, SynthesisEndedError, SocketTakenError) as error:
         refuse(str(error))
-
-
-async def _send_by_hand(change: str, choice: TransportChoice) -> None:
-    registry = MessageRegistry.from_folder(None)
-    try:
-        transport = open_transport(choice, registry, "by_hand", asyncio.get_running_loop())
-    except TransportError as error:
-        refuse(str(error))
-    try:
-        transport.advertise(BY_HAND_TOPIC, BY_HAND_TYPE, QualityOfService.RELIABLE)
-        await asyncio.sleep(DISCOVERY)
-        if not any(e.topic == BY_HAND_TOPIC and e.direction == "subscriber" and not e.own for e in transport.graph()):
-            refuse("no emulated devices are running: start them with `sequence-planner emulate MODEL`")
-        transport.publish(BY_HAND_TOPIC, BY_HAND_TYPE, registry.encode(BY_HAND_TYPE, {"data": change}))
-        await asyncio.sleep(0.5)
-    finally:
-        transport.close()

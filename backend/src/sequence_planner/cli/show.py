@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -11,8 +12,10 @@ from sequence_planner.analysis.document import GuardDocument
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, Operation, VariableDeclaration
 from sequence_planner.cli.analysing import Deadline, analysed
 from sequence_planner.cli.describing import described_automaton
-from sequence_planner.cli.loading import usable_model
+from sequence_planner.cli.loading import Model, usable_model
 from sequence_planner.cli.options import AnyModel, AsJson, print_json, refuse
+from sequence_planner.cli.pipelines import chosen, pipeline_lines
+from sequence_planner.control.pipeline_graph import pipelines_view
 from sequence_planner.expressions.printing import print_assignment, print_expression, print_value
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.syntax import FALSE, TRUE, Assignment, Expression
@@ -29,6 +32,7 @@ def show(
         list[str] | None,
         typer.Argument(metavar="[NAME]...", help="Show these only: a resource, variable, ability, operation, ..."),
     ] = None,
+    pipelines: Annotated[bool, typer.Option("--pipelines", help="Show the pipelines of topics and flows.")] = False,
     deadline: Deadline = LONGEST,
     json: AsJson = False,
 ) -> None:
@@ -37,9 +41,15 @@ def show(
     A NAME shows what bears it and what begins with it: `robot` is all of the robot, `robot.move` all its instances.
     The guard that the supervisor adds to a start stands apart from those that are written, with where it comes from.
     With --json also the transitions of each phase of the tick, with what they read and write.
+    With --pipelines instead the typed graph of each topic and flow, of which a NAME is also one: the fields on each
+    edge, where a stage adds or changes some, and what becomes of them.
     """
-    automaton = usable_model(model).automaton
+    usable = usable_model(model)
     wanted = list(names or ())
+    if pipelines:
+        _show_pipelines(model, usable, wanted, json)
+        return
+    automaton = usable.automaton
     known = _names(automaton)
     for name in wanted:
         if not any(_bears(each, name) for each in known):
@@ -49,6 +59,21 @@ def show(
         print_json(described_automaton(automaton, guards, lambda name: _chosen(name, wanted)))
         return
     typer.echo("\n".join(_lines(automaton, guards, wanted)).strip("\n"))
+
+
+def _show_pipelines(path: Path, model: Model, wanted: list[str], json: bool) -> None:
+    if model.station is None:
+        refuse(f"{path}: a plain automaton has no pipelines")
+    view = pipelines_view(model.station.pipelines)
+    known = [*view.pipelines, *(each.resource for each in view.pipelines.values())]
+    for name in wanted:
+        if name not in known:
+            refuse(f"{path}: no topic, flow or resource with one is called `{name}`{suggestion(name, known)}")
+    view = chosen(view, wanted)
+    if json:
+        print_json(view.model_dump(mode="json"))
+    else:
+        typer.echo("\n".join(pipeline_lines(view)))
 
 
 def _guards(automaton: Automaton, wanted: list[str], deadline: float) -> Guards:

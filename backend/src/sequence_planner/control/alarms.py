@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -60,6 +61,7 @@ class Alarms:
                 self._controller(),
                 self._state(),
                 _topics(self._feeds, moment.monotonic),
+                _reports(self._feeds, moment),
                 _network(self._network, self._commander),
                 _plan(self._execution, planner_trouble),
                 _overdue(self._execution, self._reacted, moment.monotonic),
@@ -115,16 +117,23 @@ def _topics(feeds: Feeds, monotonic: float) -> Iterator[Cause]:
         resource = feed.pipeline.topic.resource
         if not feed.fresh(monotonic):
             silence = "No message yet" if feed.last is None else "No message any more"
+            why = f" ({feed.why})" if feed.abandoned and feed.why else ""
             yield Cause(
                 f"silent:{name}",
                 Priority.MEDIUM,
-                f"{silence} on {name}: the values of {resource} are unknown",
+                f"{silence} on {name}{why}: the values of {resource} are unknown",
                 f"Check that the node of {resource} runs and is reachable.",
             )
-        elif feed.trouble is not None:
-            yield Cause(
-                f"message:{name}", Priority.MEDIUM, f"{name}: {feed.trouble}", "Check the node that publishes it."
-            )
+
+
+def _reports(feeds: Feeds, moment: Moment) -> Iterator[Cause]:
+    for place, cause, report in feeds.reports.current(moment.monotonic):
+        text = f"{place}: {report.text}"
+        if report.count > 1:
+            first, last = (time.localtime(moment.epoch_of(each)) for each in (report.first, report.last))
+            when = f"first at {time.strftime('%H:%M:%S', first)}, last at {time.strftime('%H:%M:%S', last)}"
+            text += f" ({report.count} times, {when})"
+        yield Cause(f"message:{place}:{cause}", Priority.MEDIUM, text, "Check the node that sends it.")
 
 
 def _network(network: NetworkWatch, commander: Commander) -> Iterator[Cause]:

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
+from sequence_planner.control.override_view import FieldValue
 from sequence_planner.control.view import Mode
 
 
@@ -37,7 +38,24 @@ class AcknowledgeTask(CommandBase):
     revision: int
 
 
-Command = Annotated[SetMode | StartProduction | AcknowledgeTask, Field(discriminator="kind")]
+class SetOverride(CommandBase):
+    """A person sets fields of an override, such as `ur10.speed`; fields that are not named are as they come."""
+
+    kind: Literal["set-override"] = "set-override"
+    name: str
+    fields: dict[str, FieldValue]
+
+
+class ClearOverride(CommandBase):
+    """A person takes back what was set."""
+
+    kind: Literal["clear-override"] = "clear-override"
+    name: str
+
+
+Command = Annotated[
+    SetMode | StartProduction | AcknowledgeTask | SetOverride | ClearOverride, Field(discriminator="kind")
+]
 COMMAND: TypeAdapter[Command] = TypeAdapter(Command)
 
 

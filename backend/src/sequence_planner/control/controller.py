@@ -73,7 +73,7 @@ class Controller:
         self.execution = Execution(automaton, supervisor)
         self.execution.production = Production.WAITING
         self.desk = TaskDesk(automaton, pipelines.feeds)
-        self.feeds = Feeds(pipelines, registry)
+        self.feeds = Feeds(pipelines, registry, automaton.initial_valuation)
         self.network = NetworkWatch(pipelines, registry)
         self._transport = transport
         transport.watch(self._hear_quality)
@@ -81,7 +81,7 @@ class Controller:
         self._wake = asyncio.Event()
         self._clients = Clients(pipelines, registry, transport, self.feeds, self._hear)
         self._commander = Commander(pipelines.outgoing, registry, transport)
-        self._overrides = Overrides(pipelines, self.feeds, self._commander)
+        self._overrides = Overrides(pipelines, self.feeds, self._commander, self._clients)
         self._observing = Observing()
         self._pipelines = pipelines
         self._outside = Outside(self.execution)
@@ -145,7 +145,8 @@ class Controller:
         """What is told only when somebody asks for it."""
         if about == "pipelines":
             return pipelines_view(self._pipelines)
-        return self._observing.view(self.feeds.observed() | self._commander.observed(), Moment.now())
+        outgoing = self._commander.observed() | self._clients.observed()
+        return self._observing.view(self.feeds.observed() | outgoing, Moment.now())
 
     def know(self, analysis: AnalysisDocument, guards: Mapping[str, Guard] | None) -> None:
         """Take note of what synthesis has found beside the supervisor, to be shown."""
@@ -197,7 +198,8 @@ class Controller:
         graph = self._transport.graph()
         ends = self._transport.services() if isinstance(self._transport, TellsServices) else None
         for topic in self.network.look(graph, ends):
-            self.feeds.abandon(topic)
+            if topic in self.feeds.topics:
+                self.feeds.abandon(topic)
         self._clients.look(graph)
 
     def _step(self, moment: Moment) -> None:

@@ -5,7 +5,7 @@ What services and actions answer is taken as a topic's messages are, under the n
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from sequence_planner.control.bad_input import Reports
@@ -31,6 +31,7 @@ class Feed:
     messages: int = 0
     abandoned: bool = False  # what it said counts no more, since before the next message
     why: str = ""  # it was abandoned
+    is_silent: bool = True  # nothing has come since the beginning, or since it was begun anew
     since: float = float("-inf")  # what was received before counts no more
     data: bytes | None = None  # of the last message, if it could be read; None also once it counts no more
 
@@ -48,14 +49,19 @@ class Feed:
 class Feeds:
     """All incoming topics of a station, and what becomes of their messages."""
 
-    def __init__(self, pipelines: StationPipelines, registry: MessageRegistry) -> None:
+    def __init__(
+        self, pipelines: StationPipelines, registry: MessageRegistry, initial: Mapping[str, Value | None] | None = None
+    ) -> None:
+        """`initial` has what the variables say that come of requests, as long as nothing is asked."""
         self.running = RunningPipelines(pipelines)
         self.topics = {name: Feed(pipeline, self.running) for name, pipeline in pipelines.incoming.items()}
         self.answers = {name: Feed(pipeline, self.running) for name, pipeline in pipelines.answers.items()}
         self.reports = Reports()
         self._all = self.topics | self.answers
+        self._initial = initial or {}
         polled = {use.response.name for use in pipelines.services.values() if use.every is not None}
         self._expected = {name: feed for name, feed in self._all.items() if name in self.topics or name in polled}
+        self._asked = [feed for name, feed in self.answers.items() if name not in polled]
         self.heard_on = pipelines.heard_on
         self._registry = registry
         self._forgotten: set[str] = set(self._all)  # topics of which nothing is remembered
@@ -73,9 +79,9 @@ class Feeds:
                 self.reports.settle(sample.topic)
 
     def begin_anew(self, name: str, now: float) -> None:
-        """What the topic, the service or the action has said until now counts no more."""
+        """What a service or an action has answered counts no more: its variables are as before any request."""
         feed = self._all[name]
-        feed.abandoned, feed.since = True, now
+        feed.is_silent, feed.abandoned, feed.since = True, True, now
         self._forget(name)
 
     def _take(self, feed: Feed, sample: Sample) -> None:
@@ -83,7 +89,7 @@ class Feeds:
         if not feed.fresh(sample.received):
             self._forget(sample.topic)  # also when nobody looked while it was silent
         feed.last = sample.received
-        feed.abandoned = False
+        feed.abandoned = feed.is_silent = False
         feed.messages += 1
         if sample.data == feed.data and self.running.repeats[sample.topic]:
             self.running.repeat(sample.topic)
@@ -107,7 +113,8 @@ class Feeds:
         """Let time pass in the pipelines; `due` says when it next makes a difference."""
         due = self.running.due
         if due is not None and due <= now:
-            self.running.wake(now)
+            for name, trouble in self.running.wake(now).items():
+                self.reports.note(name, trouble, now)
 
     def observed(self) -> dict[str, PipelineView]:
         """What has passed each edge of each pipeline."""
@@ -129,7 +136,11 @@ class Feeds:
         for name, is_fresh in fresh.items():
             if not is_fresh:
                 self._forget(name)
-        return self.running.values(fresh)
+        values = self.running.values(fresh)
+        for feed in self._asked:
+            if feed.is_silent:
+                values.update((name, self._initial.get(name)) for name in feed.pipeline.variables)
+        return values
 
     def awaited(self, now: float) -> list[str]:
         """The topics that are not fresh, and the services called every so often that do not answer."""

@@ -26,13 +26,21 @@ from pydantic import ValidationError
 from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.lines import read_lines
 from sequence_planner.control.link_messages import (
+    FROM_SERVER,
     LONGEST_COMMAND,
-    CommandMessage,
+    About,
+    AskMessage,
+    FlowsAnswer,
+    LinkMessage,
+    NetworkMessage,
+    PipelinesAnswer,
     Refusal,
     Reply,
     ViewMessage,
     encode,
 )
+from sequence_planner.control.network_view import NetworkView
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.unix_socket import listen_on
 from sequence_planner.control.view import StationView
 
@@ -42,29 +50,36 @@ MOST_PEERS = 8
 MOST_COMMANDS = 32  # of one peer, being carried out at the same time
 
 Handle = Callable[[Command], Awaitable[None]]
+Answer = Callable[[About], PipelinesView | FlowsView]
 
 
 @dataclass(eq=False)
 class _Peer:
-    """A connection: what it still has to be shown, and how many more commands it may give."""
+    """A connection: what it was shown last of each kind, and how many more commands it may give."""
 
     reader: asyncio.StreamReader
     writer: asyncio.StreamWriter
+    shown: dict[str, bytes] = field(default_factory=dict)
     fresh: asyncio.Event = field(default_factory=asyncio.Event)
     slots: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_COMMANDS))
 
 
-class ControllerLink:
-    """Shows views to every peer and passes their commands to `handle`, which raises `CommandRefused` to refuse.
+def _nothing_to_tell(about: About) -> PipelinesView | FlowsView:
+    raise CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
 
-    Used from one event loop, as `async with ControllerLink(path, handle) as link`.
+
+class ControllerLink:
+    """Shows views to every peer and passes their commands to `handle`, what they ask to `answer`.
+
+    Both raise `CommandRefused` to refuse. Used from one event loop, as `async with ControllerLink(...) as link`.
     """
 
-    def __init__(self, path: Path, handle: Handle) -> None:
+    def __init__(self, path: Path, handle: Handle, answer: Answer = _nothing_to_tell) -> None:
         self.path = path
         self._handle = handle
-        self._view: StationView | None = None
-        self._line: bytes | None = None  # the view, encoded once for all peers
+        self._answer_to = answer
+        self._newest: dict[str, LinkMessage] = {}  # by kind
+        self._lines: dict[str, bytes] = {}  # the same, encoded once for all peers
         self._peers: set[_Peer] = set()
         self._connections: set[asyncio.Task[None]] = set()
         self._commands: set[asyncio.Task[None]] = set()
@@ -90,7 +105,15 @@ class ControllerLink:
 
     def publish(self, view: StationView) -> None:
         """Make `view` the one that is shown. Never blocks, whatever the peers do."""
-        self._view, self._line = view, None
+        self._publish("view", ViewMessage(view=view))
+
+    def publish_network(self, network: NetworkView) -> None:
+        """Make `network` the one that is shown; see `publish`."""
+        self._publish("network", NetworkMessage(network=network))
+
+    def _publish(self, kind: str, message: LinkMessage) -> None:
+        self._newest[kind] = message
+        self._lines.pop(kind, None)
         for peer in self._peers:
             peer.fresh.set()
 
@@ -105,7 +128,7 @@ class ControllerLink:
         writer.transport.set_write_buffer_limits(high=0)
         self._peers.add(peer)
         self._connections.add(task)
-        if self._view is not None:
+        if self._newest:
             peer.fresh.set()
         showing = asyncio.create_task(self._show(peer))
         try:
@@ -121,21 +144,24 @@ class ControllerLink:
             writer.transport.abort()
 
     async def _show(self, peer: _Peer) -> None:
-        """Send the newest view whenever there is one and the peer takes it."""
+        """Send the newest of each kind whenever there is one and the peer takes it."""
         with contextlib.suppress(ConnectionError):
             while True:
                 await peer.fresh.wait()
                 peer.fresh.clear()
-                peer.writer.write(self._encoded())
-                await peer.writer.drain()
+                for kind in list(self._newest):
+                    line = self._encoded(kind)
+                    if line is not peer.shown.get(kind):
+                        peer.shown[kind] = line
+                        peer.writer.write(line)
+                        await peer.writer.drain()
                 await asyncio.sleep(SHORTEST_INTERVAL)
 
-    def _encoded(self) -> bytes:
-        if self._line is None:
-            if self._view is None:
-                raise RuntimeError("a peer was told of a view before there was one")
-            self._line = encode(ViewMessage(view=self._view))
-        return self._line
+    def _encoded(self, kind: str) -> bytes:
+        line = self._lines.get(kind)
+        if line is None:
+            line = self._lines[kind] = encode(self._newest[kind])
+        return line
 
     async def _listen(self, peer: _Peer) -> None:
         """Start a task for each command; when the peer has too many under way, it is not read further."""
@@ -155,14 +181,16 @@ class ControllerLink:
         finally:
             peer.slots.release()
 
-    async def _carry_out(self, line: bytes | None) -> Reply:
+    async def _carry_out(self, line: bytes | None) -> LinkMessage:
         if line is None:
             return _refused(None, _malformed(f"The line is longer than {LONGEST_COMMAND} bytes."))
         try:
-            message = CommandMessage.model_validate_json(line)
+            message = FROM_SERVER.validate_json(line)
         except ValidationError as error:
             places = ", ".join(".".join(map(str, each["loc"])) or "the line" for each in error.errors()[:5])
             return _refused(_id_in(line), _malformed(f"Not a command of this controller: see {places}."))
+        if isinstance(message, AskMessage):
+            return self._told(message)
         if message.expires is not None and time.monotonic() > message.expires:
             detail = "It came too late and was not carried out. Look at the station, then try again."
             return _refused(message.id, CommandRefused("command-expired", "The command came too late", detail))
@@ -172,9 +200,25 @@ class ControllerLink:
             return _refused(message.id, refused)
         except Exception:
             LOG.exception("a command failed", command=message.command.kind)
-            detail = "The controller met an error of its own; it is written in the controller's log."
-            return _refused(message.id, CommandRefused("controller-error", "The command failed", detail, 500))
+            return _refused(message.id, _failed("The command failed"))
         return Reply(id=message.id, ok=True)
+
+    def _told(self, message: AskMessage) -> LinkMessage:
+        try:
+            view = self._answer_to(message.about)
+        except CommandRefused as refused:
+            return _refused(message.id, refused)
+        except Exception:
+            LOG.exception("a question failed", about=message.about)
+            return _refused(message.id, _failed("The question could not be answered"))
+        if isinstance(view, PipelinesView):
+            return PipelinesAnswer(id=message.id, view=view)
+        return FlowsAnswer(id=message.id, view=view)
+
+
+def _failed(title: str) -> CommandRefused:
+    detail = "The controller met an error of its own; it is written in the controller's log."
+    return CommandRefused("controller-error", title, detail, 500)
 
 
 def _malformed(detail: str) -> CommandRefused:

@@ -1,4 +1,4 @@
-"""What passes between the controller and the server: views one way, commands the other, and a reply to each command.
+"""What passes between the controller and the server: views one way, commands and wishes the other, with their replies.
 
 Each message is one line of JSON on a Unix domain socket. A command's `id` is chosen by the server and comes back in
 the reply; it is null in the reply to a line in which no id could be found.
@@ -11,7 +11,11 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from sequence_planner.control.commands import Command, CommandRefused
+from sequence_planner.control.network_view import NetworkView
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.view import StationView
+
+About = Literal["pipelines", "flows"]
 
 LONGEST_COMMAND = 64 * 1024  # bytes in a line from the server
 LONGEST_VIEW = 16 * 1024 * 1024  # bytes in a line from the controller
@@ -48,6 +52,29 @@ class ViewMessage(LinkMessage):
     view: StationView
 
 
+class NetworkMessage(LinkMessage):
+    """The ROS graph as it is now; sent when it has changed."""
+
+    kind: Literal["network"] = "network"
+    network: NetworkView
+
+
+class PipelinesAnswer(LinkMessage):
+    """The graph of the pipelines, to who asked for it."""
+
+    kind: Literal["pipelines"] = "pipelines"
+    id: int
+    view: PipelinesView
+
+
+class FlowsAnswer(LinkMessage):
+    """What has passed the pipelines, to who asked for it."""
+
+    kind: Literal["flows"] = "flows"
+    id: int
+    view: FlowsView
+
+
 class Reply(LinkMessage):
     """What became of a command; `problem` is there when `ok` is false."""
 
@@ -70,9 +97,18 @@ class CommandMessage(LinkMessage):
     expires: float | None = None
 
 
-FROM_CONTROLLER: TypeAdapter[ViewMessage | Reply] = TypeAdapter(
-    Annotated[ViewMessage | Reply, Field(discriminator="kind")]
-)
+class AskMessage(LinkMessage):
+    """A wish to be told what is not shown unasked, and the number under which the answer is awaited."""
+
+    kind: Literal["ask"] = "ask"
+    id: int = Field(ge=0)
+    about: About
+
+
+FromController = ViewMessage | NetworkMessage | Reply | PipelinesAnswer | FlowsAnswer
+FROM_CONTROLLER: TypeAdapter[FromController] = TypeAdapter(Annotated[FromController, Field(discriminator="kind")])
+FromServer = CommandMessage | AskMessage
+FROM_SERVER: TypeAdapter[FromServer] = TypeAdapter(Annotated[FromServer, Field(discriminator="kind")])
 
 
 def encode(message: LinkMessage) -> bytes:

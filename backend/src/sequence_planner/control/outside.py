@@ -50,7 +50,7 @@ class Outside:
     def __init__(self, execution: Execution) -> None:
         self._execution = execution
         self._deciding = deciding(execution.automaton, execution.supervisor.safe)
-        self._seen: tuple[State, Situation | None] | None = None
+        self._seen: tuple[tuple[Value | None, ...], Situation | None] | None = None
         self._asked: tuple[Value | None, ...] | None = None
         self._answer: tuple[tuple[Value | None, ...], WayBackAnswer | str] | None = None
 
@@ -58,8 +58,9 @@ class Outside:
     def situation(self) -> Situation | None:
         """What is wrong now; None in a state that counts as safe."""
         state = self._execution.state
-        if self._seen is None or self._seen[0] is not state:
-            self._seen = (state, None if self._execution.safe else self._look(state))
+        key = self._key(state)
+        if self._seen is None or self._seen[0] != key:
+            self._seen = (key, None if self._execution.safe else self._look(state))
         return self._seen[1]
 
     @property

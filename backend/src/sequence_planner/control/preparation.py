@@ -109,6 +109,7 @@ def preparing_view(
         plan=plan,
         tasks={},
         topics={},
+        overrides={},
         alarms=alarms,
         way_back=None,
         analysis=analysis,

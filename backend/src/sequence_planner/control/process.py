@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import time
-from collections.abc import AsyncIterator, Callable, Coroutine
+from collections.abc import AsyncIterator, Callable, Coroutine, Generator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,6 +16,11 @@ from sequence_planner.collection import keep_everything
 from sequence_planner.control.commands import Command, CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.link import ControllerLink
+from sequence_planner.control.link_messages import About
+from sequence_planner.control.network_graph import network_steps
+from sequence_planner.control.network_view import NetworkView
+from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.preparation import Preparation, analyse, preparing_view
 from sequence_planner.control.view import Production, StationIdentity
 from sequence_planner.emulation.process import NODE as EMULATED_DEVICES
@@ -57,8 +62,13 @@ async def control(running: Running) -> None:
             raise preparation.refusal()
         await preparation.controller.command(command)
 
+    def answer(about: About) -> PipelinesView | FlowsView:
+        if preparation.controller is None:
+            raise preparation.refusal()
+        return preparation.controller.answer(about)
+
     async with (
-        ControllerLink(running.socket, handle) as link,
+        ControllerLink(running.socket, handle, answer) as link,
         _beside(analyse(running.station.automaton, preparation)),
     ):
         async with _beside(_show_preparing(running, preparation, link)):
@@ -74,6 +84,7 @@ async def control(running: Running) -> None:
             preparation.give(controller)
             async with contextlib.AsyncExitStack() as stack:
                 await stack.enter_async_context(_beside(_show(controller, link)))
+                await stack.enter_async_context(_beside(show_network(controller.network, link)))
                 if running.start:
                     await stack.enter_async_context(_beside(start_when_alone(controller)))
                 await controller.run()
@@ -151,6 +162,26 @@ async def _show(controller: Controller, link: ControllerLink) -> None:
             if failed != (failed := repr(error)):
                 LOG.exception("the station cannot be shown")
         await asyncio.sleep(SHOW_EVERY)
+
+
+async def show_network(network: NetworkWatch, link: ControllerLink) -> None:
+    """Show the network whenever something has changed in it. The document is made in short steps between the ticks."""
+    shown: object = None
+    while True:
+        if network.seen != shown:
+            shown = network.seen
+            link.publish_network(await _in_steps(network_steps(*network.seen, network.uses)))
+        await asyncio.sleep(SHOW_EVERY)
+
+
+async def _in_steps(steps: Generator[None, None, NetworkView]) -> NetworkView:
+    while True:
+        try:
+            next(steps)
+        except StopIteration as done:
+            view: NetworkView = done.value
+            return view
+        await asyncio.sleep(0)
 
 
 async def _show_preparing(running: Running, preparation: Preparation, link: ControllerLink) -> None:

@@ -9,9 +9,9 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from pydantic import BaseModel, ConfigDict
-
 from sequence_planner.analysis.document import AnalysisDocument
+from sequence_planner.control.override_view import OverrideView
+from sequence_planner.control.view_part import View
 from sequence_planner.planning.plan import Contract
 
 Value = bool | int | str
@@ -65,12 +65,6 @@ class Priority(StrEnum):
     HIGH = "high"
     MEDIUM = "medium"
     LOW = "low"
-
-
-class View(BaseModel):
-    """Base of all parts of the document: immutable, and nothing beside what is declared."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
 
 
 class StationIdentity(View):
@@ -258,6 +252,7 @@ class StationView(View):
     plan: PlanView
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
+    overrides: dict[str, OverrideView]  # by resource and name, as in `ur10.speed`
     alarms: dict[str, AlarmView]
     way_back: WayBackView | None  # null while the state is safe
     analysis: AnalysisDocument | None  # what synthesis has found of the station, as far as it has got

@@ -16,8 +16,8 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.types import Value
 from sequence_planner.pipelines.graph import OutgoingPipeline, Setting
 from sequence_planner.pipelines.paths import FieldPath
-from sequence_planner.pipelines.running import shown
 from sequence_planner.pipelines.running_outgoing import first_message
+from sequence_planner.pipelines.stages.values import shown
 
 # Commands that a group of fields may have, so that all can be known beforehand.
 MOST_COMMANDS = 20_000

@@ -7,15 +7,15 @@ variable there are numbers, which glide to their next named point while the effe
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
 
-from sequence_planner.automaton.structure import Automaton, Kind, target
+from sequence_planner.automaton.structure import Automaton, Effect, Kind, target
 from sequence_planner.automaton.tick import effect_writes
 from sequence_planner.emulation.commanded import CommandReader
 from sequence_planner.emulation.spoken import Message, glided, spoken
 from sequence_planner.expressions.types import Value, contains
-from sequence_planner.pipelines.graph import StationPipelines
+from sequence_planner.pipelines.graph import Flow, StationPipelines
 
 
 @dataclass(frozen=True)
@@ -31,19 +31,37 @@ class _Underway:
 class EmulatedDevices:
     """The devices behind all topics of a station. Times are seconds on any clock that only goes forward.
 
-    `speed` divides all durations; `seed` draws them. Effects on variables that no topic feeds, such as a person's
-    acknowledgement, are nobody's here and never happen.
+    `speed` divides all durations; `seed` draws them, up to `jitter` seconds longer than the model has it. Effects on
+    variables that no topic feeds, such as a person's acknowledgement, are nobody's here and never happen. With
+    `resources` only the devices of these are emulated, and what the others say has to be told to `observe`.
     """
 
-    def __init__(self, automaton: Automaton, pipelines: StationPipelines, speed: float = 1.0, seed: int = 0) -> None:
+    def __init__(
+        self,
+        automaton: Automaton,
+        pipelines: StationPipelines,
+        speed: float = 1.0,
+        seed: int = 0,
+        *,
+        jitter: float = 0.0,
+        resources: Set[str] | None = None,
+    ) -> None:
         self._automaton = automaton
         self._pipelines = pipelines
         self._speed = speed
         self._random = random.Random(seed)
-        fed = pipelines.feeds
-        self._topics = {variable: sorted(pipelines.topics_of(name)) for variable, name in fed.items()}
+        self._jitter = jitter
+        self._resources = resources
+        self._slowness: Mapping[str, float] = {}
+        self._lost: dict[str, float] = {}  # seconds by which the clock of a device that was slow is behind
+        self._now: float | None = None
+        fed = {
+            variable: name for variable, name in pipelines.feeds.items() if self.emulates(resource_of(pipelines, name))
+        }
+        self.topics = {variable: sorted(pipelines.topics_of(name)) for variable, name in fed.items()}
         self._between = {each.variable: each.between for node in pipelines.nodes for each in node.writings}
-        self._readers = {name: CommandReader(each, automaton) for name, each in pipelines.outgoing.items()}
+        said = {**pipelines.outgoing, **pipelines.requests}
+        self._readers = {name: CommandReader(each, automaton) for name, each in said.items()}
         self._effects = [
             effect
             for effect in automaton.effects
@@ -52,13 +70,45 @@ class EmulatedDevices:
         # Nothing has been commanded yet, so the outputs are unknown until a message brings them.
         self.state: dict[str, Value | None] = dict(automaton.initial_valuation)
         self.state |= dict.fromkeys((*automaton.names(Kind.OUTPUT), *automaton.names(Kind.ESTIMATED)), None)
+        self.state |= dict.fromkeys(pipelines.heeded, False)
         self._messages: dict[str, Message] = {}
-        for topic in pipelines.incoming:
+        for topic in pipelines.sources:
             self._messages[topic] = spoken(pipelines, topic, self.state, {})
         self._underway: dict[str, _Underway] = {}
 
+    def emulates(self, resource: str) -> bool:
+        """Whether the devices of a resource are emulated here."""
+        return self._resources is None or resource in self._resources
+
+    def observe(self, values: Mapping[str, Value | None]) -> None:
+        """Take note of what the devices say that are not emulated here."""
+        self.state |= {name: value for name, value in values.items() if name not in self.topics}
+
+    def slow(self, slowness: Mapping[str, float]) -> None:
+        """From now on the devices of these resources need so many times as long, and all others as long as ever."""
+        self._slowness = dict(slowness)
+
+    def restart(self, resource: str) -> None:
+        """The devices of a resource are as at the beginning, and have heard no command."""
+        initial, pipelines = self._automaton.initial_valuation, self._pipelines
+        for name, source in pipelines.feeds.items():
+            if resource_of(pipelines, source) == resource:
+                self.state[name] = initial[name]
+        self.state |= dict.fromkeys(self._commanded(resource))
+        for topic, pipeline in pipelines.sources.items():
+            if pipeline.topic.resource == resource:
+                self._messages[topic] = spoken(pipelines, topic, self.state, {})
+        for effect in self._effects:
+            if effect.resource == resource:
+                self._underway.pop(effect.name, None)
+
+    def _commanded(self, resource: str) -> set[str]:
+        said = (*self._pipelines.outgoing.values(), *self._pipelines.requests.values())
+        names = {name for each in said if each.topic.resource == resource for name in each.variables}
+        return {name for name in names if self._automaton.variables[name].kind is Kind.OUTPUT} - self._pipelines.heeded
+
     def command(self, topic: str, message: Mapping[str, object]) -> list[str]:
-        """Take a message on an outgoing topic of the station; returns what in it made no sense."""
+        """Take a message on an outgoing topic of the station, or a request; returns what in it made no sense."""
         values, troubles = self._readers[topic].read(message)
         self.state |= {
             name: value for name, value in values.items() if self._automaton.variables[name].kind is Kind.OUTPUT
@@ -66,13 +116,21 @@ class EmulatedDevices:
         return troubles
 
     def report(self, topic: str) -> dict[str, object]:
-        """The message that the device behind an incoming topic would send now."""
+        """The message that the device behind an incoming topic, a service or an action would send now."""
         return self._messages[topic]
+
+    def want(self, output: str, is_wanted: bool) -> None:
+        """A request for which the station sets an output has come, or has been answered."""
+        self.state[output] = is_wanted
+
+    def is_underway(self, variables: Iterable[str]) -> bool:
+        """Whether an effect on one of these variables is on its way."""
+        return any(not each.writes.keys().isdisjoint(variables) for each in self._underway.values())
 
     def put(self, variable: str, value: Value) -> None:
         """Bring a measured variable to a value by hand. Raises ValueError for a variable or value that is none."""
-        if variable not in self._pipelines.feeds:
-            known = ", ".join(sorted(self._pipelines.feeds))
+        if variable not in self.topics:
+            known = ", ".join(sorted(self.topics))
             raise ValueError(f"no emulated device has `{variable}`; there are {known}")
         type_ = self._automaton.variables[variable].type
         if not contains(type_, value):
@@ -82,21 +140,29 @@ class EmulatedDevices:
 
     def advance(self, now: float) -> None:
         """Let everything happen that is due at `now`, and set out on what has become possible."""
+        passed = 0.0 if self._now is None else now - self._now
+        self._now = now
+        for resource, times in self._slowness.items():
+            self._lost[resource] = self._lost.get(resource, 0.0) + passed * (1 - 1 / times)
         for effect in self._effects:
-            writes = effect_writes(effect, self.state)
-            if not writes:
-                self._underway.pop(effect.name, None)
-                continue
-            underway = self._underway.get(effect.name)
-            if underway is None or underway.writes != writes:  # a new destination is a new journey
-                seconds = self._random.uniform(effect.shortest, effect.longest) / self._speed
-                underway = _Underway(now, now + seconds, writes, dict(self._messages))
-                self._underway[effect.name] = underway
-            if now >= underway.due:
-                self._set(writes)
-                del self._underway[effect.name]
-            else:
-                self._glide(writes, underway, now)
+            self._advance(effect, now - self._lost.get(effect.resource, 0.0))
+
+    def _advance(self, effect: Effect, now: float) -> None:
+        """One effect, on the clock of its device."""
+        writes = effect_writes(effect, self.state)
+        if not writes:
+            self._underway.pop(effect.name, None)
+            return
+        underway = self._underway.get(effect.name)
+        if underway is None or underway.writes != writes:  # a new destination is a new journey
+            seconds = self._random.uniform(effect.shortest, effect.longest + self._jitter) / self._speed
+            underway = _Underway(now, now + seconds, writes, dict(self._messages))
+            self._underway[effect.name] = underway
+        if now >= underway.due:
+            self._set(writes)
+            del self._underway[effect.name]
+        else:
+            self._glide(writes, underway, now)
 
     def _set(self, writes: Mapping[str, Value]) -> None:
         self.state |= writes
@@ -104,7 +170,7 @@ class EmulatedDevices:
             self._messages[topic] = spoken(self._pipelines, topic, self.state, self._messages[topic])
 
     def _spoken_on(self, variables: Iterable[str]) -> set[str]:
-        return {topic for variable in variables for topic in self._topics[variable]}
+        return {topic for variable in variables for topic in self.topics[variable]}
 
     def _glide(self, writes: Mapping[str, Value], underway: _Underway, now: float) -> None:
         """Numbers go steadily to where they will be, but for those of a device that only leaves a point."""
@@ -114,3 +180,9 @@ class EmulatedDevices:
             now_said = self._messages[topic]
             goal = spoken(self._pipelines, topic, {**self.state, **going}, now_said)
             self._messages[topic] = glided(now_said, underway.origin[topic], goal, share)
+
+
+def resource_of(pipelines: StationPipelines, name: str) -> str:
+    """The resource of a topic or flow that feeds variables."""
+    node = pipelines.node(name)
+    return node.resource if isinstance(node, Flow) else node.topic.resource

@@ -28,7 +28,7 @@ def _unspoken(station: ReadyStation) -> Iterator[Finding]:
 
 
 def _not_understood(station: ReadyStation) -> Iterator[Finding]:
-    for name, pipeline in station.pipelines.outgoing.items():
+    for name, pipeline in {**station.pipelines.outgoing, **station.pipelines.requests}.items():
         try:
             CommandReader(pipeline, station.automaton)
         except NotUnderstoodError as error:

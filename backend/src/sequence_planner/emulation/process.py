@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import random
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,12 +11,18 @@ from dataclasses import dataclass
 import structlog
 
 from sequence_planner.emulation.devices import EmulatedDevices
-from sequence_planner.expressions.parser import parse_assignment
-from sequence_planner.expressions.syntax import Constant, ExpressionError, Name
+from sequence_planner.emulation.fault_script import Scripted
+from sequence_planner.emulation.fault_text import FaultReader
+from sequence_planner.emulation.faulty import FaultyDevices
+from sequence_planner.emulation.links import Links
+from sequence_planner.emulation.live import cause, listen
+from sequence_planner.emulation.serving import serve_clients
+from sequence_planner.pipelines.running import RunningPipelines
+from sequence_planner.ros.actions import ActionNames
+from sequence_planner.ros.derived import GOAL_STATUSES
 from sequence_planner.ros.errors import MalformedMessageError
 from sequence_planner.ros.exclusivity import require_sole_publisher
-from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import QualityOfService, Sample, Transport
+from sequence_planner.ros.transport import Sample, Transport
 from sequence_planner.station import ReadyStation
 
 LOG = structlog.get_logger(__name__)
@@ -23,17 +30,35 @@ LOG = structlog.get_logger(__name__)
 NODE = "emulated_devices"  # its name on the network
 STEP = 0.02  # seconds between two looks at the clock
 REPORT_EVERY = 0.1  # seconds between two reports that say the same
-BY_HAND_TOPIC = "/sequence_planner/emulator/by_hand"
-BY_HAND_TYPE = "std_msgs/msg/String"
 
 
 @dataclass(frozen=True)
 class Emulation:
-    """What is emulated, and how fast."""
+    """What is emulated, and how.
+
+    Devices go `speed` times as fast. `seed` draws all that is random; effects and repeated reports come up to `jitter`
+    seconds late. Only the devices of `resources` are emulated; None stands for all. `script` has faults, in the order
+    in which they begin.
+    """
 
     station: ReadyStation
     speed: float = 1.0
     seed: int = 0
+    jitter: float = 0.0
+    resources: frozenset[str] | None = None
+    script: tuple[Scripted, ...] = ()
+
+    @property
+    def emulated(self) -> frozenset[str]:
+        """The resources whose topics the devices are on."""
+        pipelines = self.station.pipelines
+        said = {each.topic.resource for each in (*pipelines.outgoing.values(), *pipelines.requests.values())}
+        there = said.union(each.topic.resource for each in pipelines.sources.values())
+        return frozenset(there if self.resources is None else there & self.resources)
+
+    def reader(self) -> FaultReader:
+        """Reads faults of these devices."""
+        return FaultReader(self.station.automaton, self.station.pipelines, self.emulated.__contains__)
 
 
 async def emulate(emulation: Emulation, connect: Callable[[str], Transport]) -> None:
@@ -41,84 +66,115 @@ async def emulate(emulation: Emulation, connect: Callable[[str], Transport]) -> 
 
     Raises `TransportError` when another publishes the devices' topics.
     """
-    reported = {p.topic.name: p.topic.type_name for p in emulation.station.pipelines.incoming.values()}
+    pipelines, emulated = emulation.station.pipelines, emulation.emulated
+    topics = [each.topic for each in pipelines.incoming.values() if each.topic.resource in emulated]
+    served = [each.name for each in pipelines.actions.values() if each.goal.topic.resource in emulated]
+    reported = {topic.name: topic.type_name for topic in topics}
+    reported |= {ActionNames(name).status: GOAL_STATUSES for name in served}
     question = connect(f"{NODE}_check")
     try:
         await require_sole_publisher(question, reported, "the emulated devices")
     finally:
         question.close()
-    transport = connect(NODE)
-    try:
-        await _run(emulation, transport)
-    finally:
-        transport.close()
+    await _Life(emulation, connect).run()
 
 
-async def _run(emulation: Emulation, transport: Transport) -> None:
-    devices = EmulatedDevices(emulation.station.automaton, emulation.station.pipelines, emulation.speed, emulation.seed)
-    incoming = emulation.station.pipelines.incoming
-    for pipeline in incoming.values():
-        transport.advertise(pipeline.topic.name, pipeline.topic.type_name, pipeline.topic.quality)
-    for outgoing in emulation.station.pipelines.outgoing.values():
-        topic = outgoing.topic
-        transport.subscribe(topic.name, topic.type_name, topic.quality, _commands(emulation, devices))
-    transport.subscribe(
-        BY_HAND_TOPIC, BY_HAND_TYPE, QualityOfService.RELIABLE, _by_hand(emulation.station.registry, devices)
-    )
-    LOG.info("emulated devices are up", topics=sorted(incoming))
-    said: dict[str, tuple[float, bytes]] = {}
-    while True:
-        now = time.monotonic()
-        devices.advance(now)
-        for name, pipeline in incoming.items():
-            data = emulation.station.registry.encode(pipeline.topic.type_name, devices.report(name))
-            last = said.get(name)
-            if last is None or last[1] != data or now - last[0] >= REPORT_EVERY:
-                transport.publish(name, pipeline.topic.type_name, data)
-                said[name] = (now, data)
-        await asyncio.sleep(STEP)
+class _Life:
+    def __init__(self, emulation: Emulation, connect: Callable[[str], Transport]) -> None:
+        station = emulation.station
+        self._emulation = emulation
+        self._pipelines, self._registry = station.pipelines, station.registry
+        devices = EmulatedDevices(
+            station.automaton,
+            station.pipelines,
+            emulation.speed,
+            emulation.seed,
+            jitter=emulation.jitter,
+            resources=emulation.resources,
+        )
+        self._devices = FaultyDevices(devices, station.pipelines, emulation.seed)
+        self._others = RunningPipelines(station.pipelines)  # what devices say that are not emulated
+        self._random = random.Random(f"reports {emulation.seed}")
+        self._troubles: dict[str, str] = {}  # what was wrong on each topic last, so that it is not said every time
+        self._said: dict[str, tuple[float, bytes]] = {}  # when the next report is due, and the last one
+        self._connect = connect
+        self._links = Links(station.pipelines, emulation.emulated, lambda: connect(NODE), self._obey)
 
+    async def run(self) -> None:
+        """Live until cancelled."""
+        main = self._connect(NODE)
+        try:
+            listen(main, self._registry, self._devices, self._emulation.reader())
+            self._look_on(main)
+            serve_clients(self._emulation.station, self._devices.devices, main)
+            self._links.keep(frozenset())
+            LOG.info("emulated devices are up", resources=sorted(self._emulation.emulated))
+            script, began = list(self._emulation.script), time.monotonic()
+            while True:
+                now = time.monotonic()
+                while script and script[0].at <= now - began:
+                    what = script.pop(0).what
+                    LOG.info("as written", fault=str(what), answer=cause(self._devices, what, now))
+                self._devices.advance(now)
+                self._links.keep(self._devices.offline_resources)
+                self._report(now)
+                await asyncio.sleep(STEP)
+        finally:
+            self._links.close()
+            self._others.close()
+            main.close()
 
-def _commands(emulation: Emulation, devices: EmulatedDevices) -> Callable[[Sequence[Sample]], None]:
-    said: dict[str, list[str]] = {}  # what was wrong on each topic last, so that it is not said with every message
+    def _look_on(self, main: Transport) -> None:
+        """Hear what is said and commanded where the devices are not emulated."""
+        emulated = self._emulation.emulated
+        for incoming in self._pipelines.incoming.values():
+            if incoming.topic.resource not in emulated:
+                main.subscribe(incoming.topic.name, incoming.topic.type_name, incoming.topic.quality, self._see)
+        for outgoing in self._pipelines.outgoing.values():
+            if outgoing.topic.resource not in emulated:
+                main.subscribe(outgoing.topic.name, outgoing.topic.type_name, outgoing.topic.quality, self._obey)
 
-    def take(samples: Sequence[Sample]) -> None:
+    def _report(self, now: float) -> None:
+        for name, pipeline in self._pipelines.incoming.items():
+            if pipeline.topic.resource not in self._emulation.emulated:
+                continue
+            message = self._devices.says(name)
+            if message is None:
+                self._said.pop(name, None)
+                continue
+            data = self._registry.encode(pipeline.topic.type_name, message)
+            due, last = self._said.get(name, (now, b""))
+            if data == last and now < due:
+                continue
+            self._said[name] = (now + REPORT_EVERY + self._random.uniform(0, self._emulation.jitter), data)
+            if (sent := self._devices.sent(name, data)) is not None:
+                self._links.publish(name, pipeline.topic.type_name, sent)
+
+    def _obey(self, samples: Sequence[Sample]) -> None:
+        """Take commands; one that makes no sense is said once."""
         for sample in samples:
-            type_name = emulation.station.pipelines.outgoing[sample.topic].topic.type_name
+            if self._devices.hears(sample.topic):
+                type_name = self._pipelines.outgoing[sample.topic].topic.type_name
+                try:
+                    message = self._registry.decode(type_name, sample.data)
+                    trouble = "; ".join(self._devices.devices.command(sample.topic, message))
+                except MalformedMessageError as error:
+                    trouble = str(error)
+                self._note(sample.topic, trouble)
+
+    def _see(self, samples: Sequence[Sample]) -> None:
+        """Take what devices say that are not emulated; what cannot be read leaves what they said before."""
+        for sample in samples:
+            type_name = self._pipelines.incoming[sample.topic].topic.type_name
             try:
-                troubles = devices.command(sample.topic, emulation.station.registry.decode(type_name, sample.data))
+                self._others.take(sample.topic, self._registry.decode(type_name, sample.data), sample.received)
+                self._note(sample.topic, "")
             except MalformedMessageError as error:
-                troubles = [str(error)]
-            if troubles and troubles != said.get(sample.topic):
-                LOG.warning("command not understood", topic=sample.topic, troubles=troubles)
-            said[sample.topic] = troubles
+                self._note(sample.topic, str(error))
+        fresh = dict.fromkeys(self._pipelines.sources, True)
+        self._devices.devices.observe({n: v for n, v in self._others.values(fresh).items() if v is not None})
 
-    return take
-
-
-def _by_hand(registry: MessageRegistry, devices: EmulatedDevices) -> Callable[[Sequence[Sample]], None]:
-    """Take texts such as `robot.pose := home`: somebody moves a device by hand."""
-
-    def take(samples: Sequence[Sample]) -> None:
-        for sample in samples:
-            text = ""
-            try:
-                text = str(registry.decode(BY_HAND_TYPE, sample.data)["data"])
-                move(devices, text)
-                LOG.info("moved by hand", change=text)
-            except (MalformedMessageError, ExpressionError, ValueError) as error:
-                LOG.warning("not moved", change=text[:200], reason=str(error)[:200])
-
-    return take
-
-
-def move(devices: EmulatedDevices, text: str) -> None:
-    """Carry out a text such as `robot.pose := home`. Raises `ExpressionError` or ValueError saying what is wrong."""
-    action = parse_assignment(text)
-    match action.value if action.condition is None else None:
-        case Constant(value):
-            devices.put(str(action.target), value)
-        case Name():
-            devices.put(str(action.target), str(action.value))
-        case _:
-            raise ValueError(f"`{text}`: write `variable := value`")
+    def _note(self, topic: str, trouble: str) -> None:
+        if trouble and trouble != self._troubles.get(topic):
+            LOG.warning("message not understood", topic=topic, trouble=trouble)
+        self._troubles[topic] = trouble

@@ -34,7 +34,7 @@ def spoken(pipelines: StationPipelines, topic: str, state: State, before: Mappin
             values = {**needed.pop(flow.name, {}), **_own(flow, state)}
             _backwards(flow.name, flow.chain, values, {})
             _hand_up(flow, values, pipelines, needed)
-    pipeline = pipelines.incoming[topic]
+    pipeline = pipelines.sources[topic]
     values = {**needed.pop(topic, {}), **_own(pipeline, state)}
     _backwards(topic, pipeline.chain, values, before)
     return _message(pipeline.chain.fields[0], values)

@@ -1,6 +1,7 @@
 """A station's folder, brought together.
 
 station.yaml  resources/*.yaml  operations.yaml  specifications.yaml  work_masters.yaml  messages/<package>/msg/*.msg
+messages/<package>/srv/*.srv  messages/<package>/action/*.action
 """
 
 from __future__ import annotations
@@ -27,6 +28,8 @@ from sequence_planner.model.validation import findings_of, shown
 D = TypeVar("D", bound=BaseModel)
 
 FOLDERS = ("resources", "messages", "stages")
+# What files below `messages` define, by what their names end with.
+DEFINITIONS = {"msg": "message", "srv": "service", "action": "action"}
 # The documents of a station beside its resources.
 FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml")
 
@@ -94,10 +97,11 @@ class _FolderReader:
             if path.suffix not in (".yaml", ".yml") and not path.name.startswith("."):
                 message = "this is not read: each resource is a file <name>.yaml in this folder"
                 self.findings.append(Finding(Place(str(path), 1, 1), message))
-        for path in sorted((self._folder / "messages").rglob("*.msg")):
-            if len(path.relative_to(self._folder).parts) != 4 or path.parent.name != "msg":
-                message = "this is not read: message definitions are files messages/<package>/msg/<Name>.msg"
-                self.findings.append(Finding(Place(str(path), 1, 1), message))
+        for kind, what in DEFINITIONS.items():
+            for path in sorted((self._folder / "messages").rglob(f"*.{kind}")):
+                if len(path.relative_to(self._folder).parts) != 4 or path.parent.name != kind:
+                    message = f"this is not read: {what} definitions are files messages/<package>/{kind}/<Name>.{kind}"
+                    self.findings.append(Finding(Place(str(path), 1, 1), message))
         for path in sorted(each for each in self._folder.glob("*") if each.is_dir() and each.name not in FOLDERS):
             if near := suggestion(path.name, FOLDERS, likeness=0.75):
                 self.findings.append(Finding(Place(str(path), 1, 1), f"this folder is not read{near}"))

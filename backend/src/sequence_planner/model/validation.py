@@ -82,6 +82,8 @@ def _expectation(details: ErrorDetails) -> str:
         case "too_short":
             least = limits["min_length"]
             return "at least one entry" if least == 1 else f"at least {least} entries"
+        case "too_long":
+            return f"at most {limits['max_length']} entries"
         case other:
             return _EXPECTED.get(other.partition("_")[0], details["msg"])
 

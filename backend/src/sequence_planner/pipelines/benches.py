@@ -8,10 +8,11 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.types import contains
 from sequence_planner.pipelines.graph import Flow, IncomingPipeline, Joining, OutgoingPipeline, StationPipelines
-from sequence_planner.pipelines.record import Record
-from sequence_planner.pipelines.running import shown, written_values
+from sequence_planner.pipelines.record import RealType, Record, RecordType
+from sequence_planner.pipelines.running import written_values
 from sequence_planner.pipelines.running_chain import RunningChain
 from sequence_planner.pipelines.running_outgoing import message_of
+from sequence_planner.pipelines.stages.values import fits, shown
 from sequence_planner.ros.errors import MessageValueError
 from sequence_planner.ros.messages import MessageRegistry
 
@@ -101,12 +102,12 @@ class FlowBench(Bench):
     def give(self, given: Plain, now: float) -> None:
         """Take records of sources, by alias in a merge."""
         if self._flow.joining is not Joining.MERGE:
-            self.take(_checked(given, self._flow.chain.fields[0]), now)
+            self.take(_fitting(given, self._flow.chain.fields[0]), now)
             return
         for alias, values in _checked(given, self._ends).items():
             if not isinstance(values, dict):
                 raise GivenError(f"`{alias}` is a source: give its fields")
-            self._values |= {f"{alias}.{name}": value for name, value in _checked(values, self._ends[alias]).items()}
+            self._values |= {f"{alias}.{name}": value for name, value in _fitting(values, self._ends[alias]).items()}
         if all(any(name.startswith(f"{alias}.") for name in self._values) for alias in self._ends):
             self.take(dict(self._values), now)
 
@@ -144,6 +145,18 @@ class OutgoingBench(Bench):
             self.trouble = str(error)
             return dict.fromkeys(self._registry.fields(type_name))
         return self._registry.decode(type_name, data)
+
+
+def _fitting(given: Plain, known: RecordType) -> Plain:
+    """`given`, if all its names are known and all its values of their types; raises `GivenError`.
+
+    As in messages, real numbers need not be finite.
+    """
+    for name, value in _checked(given, known).items():
+        may_be_any = value is None or (isinstance(value, float) and isinstance(known[name], RealType))
+        if not may_be_any and not fits(known[name], value):
+            raise GivenError(f"`{name}` is {known[name]}, and {shown(value)} is no value of that type")
+    return given
 
 
 def _checked(given: Plain, known: Mapping[str, object]) -> Plain:

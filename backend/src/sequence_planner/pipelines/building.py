@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.model.documents import TopicDocument
@@ -18,8 +18,10 @@ from sequence_planner.pipelines.flow_building import WrittenFlow, found_flows, j
 from sequence_planner.pipelines.graph import Flow, IncomingPipeline, Joining, OutgoingPipeline, StationPipelines, Topic
 from sequence_planner.pipelines.graph_building import Resource, incoming_pipeline, outgoing_pipeline, writings
 from sequence_planner.pipelines.message_types import message_fields
+from sequence_planner.pipelines.override_names import check_override_names
 from sequence_planner.pipelines.record import RecordType
 from sequence_planner.pipelines.running_outgoing import first_message
+from sequence_planner.pipelines.stage import Patient
 from sequence_planner.ros.errors import MessageDefinitionError, MessageValueError
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.names import check_topic
@@ -38,13 +40,16 @@ def build_pipelines(station: Station, automaton: Automaton, registry: MessageReg
     """The pipelines of all topics, whose message types `registry` knows. Raises `ModelError` with all findings."""
     building = _Building(station, automaton, registry)
     for resource, document in station.resources.items():
-        for name, topic in (*document.topics.items(), *parts(document, registry).items()):
-            building.add(resource, name, topic)
+        for name, topic in document.topics.items():
+            building.add(resource, name, topic, name)
+        for name, part in parts(document, registry).items():
+            building.add(resource, name, part, client_of(name))
     flows = {resource: document.flows for resource, document in station.resources.items()}
     for flow in found_flows(flows, building.incoming, building.outgoing, building.findings):
         building.add_flow(flow)
     if building.has_all(sum(map(len, flows.values()))):
         building.check_uses()
+    check_override_names(station.resources.values(), building.findings)
     clients = ClientBuilding(automaton, building.findings)
     for resource, document in station.resources.items():
         clients.add(resource, document, building.incoming, building.outgoing)
@@ -70,16 +75,16 @@ class _Building:
         self.outgoing: dict[str, OutgoingPipeline] = {}
         self.flows: dict[str, Flow] = {}
 
-    def add(self, resource: str, name: SourceText, document: TopicDocument) -> None:
-        """Add the pipeline of one topic."""
+    def add(self, resource: str, name: SourceText, document: TopicDocument, called: str) -> None:
+        """Add the pipeline of one topic, or of a part of the service or action that is `called` so."""
         try:
-            check_topic(client_of(name))
+            check_topic(called)
         except ValueError as error:
             self.findings.add(name.place, str(error).replace("'", "`"))
             return
         if name in self._chains:
             what = "a service or an action" if is_part(name) else "a topic"
-            self.findings.add(name.place, f"duplicate name `{client_of(name)}`: {what} belongs to one resource")
+            self.findings.add(name.place, f"duplicate name `{called}`: {what} belongs to one resource")
             return
         topic = Topic(str(name), str(document.type), resource, _quality(document))
         message = message_fields(self._registry, topic.type_name)
@@ -173,16 +178,30 @@ class _Building:
         return frozenset(found)
 
     def _check_writable(self, name: SourceText, document: TopicDocument) -> None:
-        """Encode the initial outputs once: a constant that does not fit is found here and not on a running station."""
+        """Encode what is said of the initial state, and of each other value of a variable on which it depends.
+
+        A value that does not fit is found here, and not on a running station.
+        """
         pipeline = self.outgoing[str(name)]
-        message = first_message(pipeline, self._automaton.initial_valuation)
         try:
-            self._registry.encode(pipeline.topic.type_name, message or {})
+            for state in self._states(pipeline):
+                self._registry.encode(pipeline.topic.type_name, first_message(pipeline, state) or {})
         except MessageValueError as error:
             field = re.split(r"[.\[]", error.path)[0]
-            constants = [key for stage in document.pipeline for key in stage.constant or ()]
-            where = next((key for key in constants if key in (field, error.path)), document.type)
-            self.findings.add(where.place, f"the message cannot be written: {error}")
+            chain = self._chains[str(name)]
+            key = next((each for each in (error.path, field) if each in chain.given), None)
+            where = document.type.place if key is None else chain.place_of(key)
+            origin = "" if key is None else chain.origin(key)
+            self.findings.add(where, f"{origin}the message cannot be written: {error}")
+
+    def _states(self, pipeline: OutgoingPipeline) -> Iterator[State]:
+        """The initial state and, where no process must be asked, those that differ from it in one variable."""
+        initial = self._automaton.initial_valuation
+        yield initial
+        if not any(isinstance(stage, Patient) for stage in pipeline.chain.stages):
+            for name in pipeline.variables:
+                for value in self._automaton.variables[name].type.domain:
+                    yield {**initial, name: value}
 
 
 def _quality(document: TopicDocument) -> QualityOfService:

@@ -94,7 +94,16 @@ class ChainBuilding:
     @property
     def given(self) -> dict[str, int]:
         """The names that stages have given, each with the index of the last one that did."""
-        return {name: index for index, stage in enumerate(self.stages) for name in stage.gives}
+        return {
+            name: index
+            for index, stage in enumerate(self.stages)
+            if not self._is_about_all(index)
+            for name in stage.gives
+        }
+
+    def _is_about_all(self, index: int) -> bool:
+        """Whether a stage is about every field there is: that is no use of any."""
+        return self.documents[index].fold == []
 
     @property
     def between(self) -> dict[str, str]:
@@ -122,7 +131,8 @@ class ChainBuilding:
     def unread(self, read_behind: frozenset[str]) -> Iterator[tuple[str, str]]:
         """The names given for which there is no use, each with its stage: not wanted, and read by nothing later."""
         for name, index in self.given.items():
-            later = frozenset().union(*(self.keys_read(i) for i in range(index + 1, len(self.stages))))
+            behind = (each for each in range(index + 1, len(self.stages)) if not self._is_about_all(each))
+            later = frozenset().union(*(self.keys_read(each) for each in behind))
             if name not in later | read_behind and not is_field(self.wanted, name):
                 yield name, self.edge(index)
 

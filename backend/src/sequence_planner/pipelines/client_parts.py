@@ -7,6 +7,7 @@ names, such as `/mir/state request`, are none that a topic can have.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.model.client_documents import ActionDocument, ServiceDocument
@@ -26,8 +27,8 @@ def is_part(name: str) -> bool:
 
 
 def client_of(name: str) -> str:
-    """The name of the service or action of a part; a topic's is its own."""
-    return name.partition(" ")[0]
+    """The name of the service or action of a part."""
+    return name.rpartition(" ")[0]
 
 
 def parts_of_service(name: SourceText, document: ServiceDocument, registry: MessageRegistry) -> Topics:
@@ -42,7 +43,8 @@ def parts_of_service(name: SourceText, document: ServiceDocument, registry: Mess
 def parts_of_action(name: SourceText, document: ActionDocument, registry: MessageRegistry) -> Topics:
     """The goal, the feedback, the result and the status of an action whose type is known."""
     type_, status = registry.action(document.type), document.status
-    told = StageDocument(rename={SourceText(STATUS_FIELD, status.place, STATUS_FIELD): status})
+    key, field = (SourceText(text, status.place, text) for text in ("rename", STATUS_FIELD))
+    told = StageDocument.model_validate({key: {field: status}})
     return {
         _named(name, "goal"): _topic(document, type_.goal, "out", document.goal, registry),
         _named(name, "feedback"): _topic(document, type_.feedback, "in", document.feedback, registry),
@@ -68,9 +70,9 @@ def parts(document: ResourceDocument, registry: MessageRegistry) -> dict[SourceT
 def client_findings(document: ResourceDocument, registry: MessageRegistry) -> Iterator[Finding]:
     """The types of services and actions that nobody knows, and what is ignored and is not there."""
     for name, service in document.services.items():
-        yield from _findings("service", service, lambda s=service, n=name: parts_of_service(n, s, registry), registry)
+        yield from _findings("service", service, partial(parts_of_service, name, service, registry), registry)
     for name, action in document.actions.items():
-        yield from _findings("action", action, lambda a=action, n=name: parts_of_action(n, a, registry), registry)
+        yield from _findings("action", action, partial(parts_of_action, name, action, registry), registry)
 
 
 def _findings(

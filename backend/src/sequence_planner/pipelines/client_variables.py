@@ -12,12 +12,13 @@ from sequence_planner.pipelines.goal_states import GOAL_STATE, GoalState
 
 
 def with_client_variables(document: ResourceDocument) -> ResourceDocument:
-    """The resource with each `when` as an output and each `status` as a measured variable, unless it has such a name."""
+    """The resource with each `when` as an output and each `status` as a measured variable, unless the name is taken."""
     output, measured = dict(document.output), dict(document.measured)
     declared = {*document.output, *document.measured, *document.estimated}
-    for client in (*document.services.values(), *document.actions.values()):
-        if client.when is not None and client.when not in declared:
-            output[client.when] = _typed("bool", client.when.place)
+    called = [service.when for service in document.services.values() if service.when is not None]
+    for name in (*called, *(action.when for action in document.actions.values())):
+        if name not in declared:
+            output[name] = _typed("bool", name.place)
     for action in document.actions.values():
         written = measured.get(action.status)
         if written is not None and written.type is None:

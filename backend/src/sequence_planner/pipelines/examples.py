@@ -15,8 +15,8 @@ from sequence_planner.model.flow_documents import ExampleDocument, ExampleStepDo
 from sequence_planner.model.source import Finding, SourceText
 from sequence_planner.pipelines.benches import Bench, FlowBench, GivenError, IncomingBench, OutgoingBench, Plain
 from sequence_planner.pipelines.graph import StationPipelines
-from sequence_planner.pipelines.running import shown
 from sequence_planner.pipelines.stage import Loadable
+from sequence_planner.pipelines.stages.values import shown
 from sequence_planner.ros.errors import MessageValueError
 from sequence_planner.ros.messages import MessageRegistry
 
@@ -111,7 +111,7 @@ def _said(value: object) -> str:
         case bool():
             return "true" if value else "false"
         case str():
-            return value if value.isidentifier() else shown(value)
+            return value if value.isidentifier() and value not in ("true", "false", "unknown") else shown(value)
     return shown(value)
 
 

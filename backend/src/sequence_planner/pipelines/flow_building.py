@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
+from sequence_planner.expressions.lexer import KEYWORDS
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.model.flow_documents import FlowDocument
 from sequence_planner.model.source import SourceText
@@ -13,7 +14,7 @@ from sequence_planner.pipelines.chains import Findings
 from sequence_planner.pipelines.graph import Joining
 from sequence_planner.pipelines.record import FieldType, RecordType
 
-_ALIAS = re.compile(r"[A-Za-z_]\w*")
+_NAME = re.compile(r"[A-Za-z_]\w*")
 
 
 @dataclass(frozen=True)
@@ -26,6 +27,10 @@ class WrittenFlow:
     document: FlowDocument
     joining: Joining
     sources: Mapping[str, str]
+
+
+def _why_no_name(text: str) -> str:
+    return "it is a word of the language" if text in KEYWORDS else "use letters, digits and _"
 
 
 def flow_name(resource: str, name: str) -> str:
@@ -60,6 +65,9 @@ class _Sources:
 
     def flow(self, resource: str, name: SourceText, document: FlowDocument) -> WrittenFlow | None:
         """A flow with its sources, or findings."""
+        if not _NAME.fullmatch(name) or name in KEYWORDS:
+            self.findings.add(name.place, f"`{name}` is no name for a flow: {_why_no_name(name)}")
+            return None
         match document.source:
             case dict() as aliases:
                 joining, written = Joining.MERGE, list(aliases.items())
@@ -70,8 +78,8 @@ class _Sources:
         sources: dict[str, str] = {}
         is_sound = True
         for alias, source in written:
-            if joining is Joining.MERGE and not _ALIAS.fullmatch(alias):
-                self.findings.add(alias.place, f"`{alias}` is no name for a source: use letters, digits and _")
+            if joining is Joining.MERGE and (not _NAME.fullmatch(alias) or alias in KEYWORDS):
+                self.findings.add(alias.place, f"`{alias}` is no name for a source: {_why_no_name(alias)}")
                 is_sound = False
             full = self._full(resource, source)
             if full is None:

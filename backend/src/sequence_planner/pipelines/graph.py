@@ -191,8 +191,13 @@ class StationPipelines:
     def carried(self) -> frozenset[str]:
         """The variables of which devices hear."""
         said = (name for part in (*self.outgoing.values(), *self.requests.values()) for name in part.variables)
-        heeded = (use.when for use in (*self.services.values(), *self.actions.values()) if use.when is not None)
-        return frozenset((*said, *heeded))
+        return self.heeded.union(said)
+
+    @property
+    def heeded(self) -> frozenset[str]:
+        """The outputs whose rise asks something of a device."""
+        of_services = (use.when for use in self.services.values() if use.when is not None)
+        return frozenset((*of_services, *(use.when for use in self.actions.values())))
 
     @property
     def feeds(self) -> Mapping[str, str]:

@@ -48,7 +48,8 @@ def incoming_pipeline(
         numbers = names_of_constants(constants, variable)
         if building.is_sound and isinstance(field, IntegerRange) and numbers is not None and name not in ignored:
             building.map_constants(name, name, numbers, building.name.place)
-    names = set(building.chain.end) - (ignored - set(building.given))
+    renamed = {str(field) for stage in document.pipeline for field in stage.rename or ()}
+    names = set(building.chain.end) - ((ignored | renamed) - set(building.given))
     return IncomingPipeline(topic, document.deadline, building.chain, writings(resource, building, names))
 
 
@@ -102,8 +103,12 @@ def outgoing_pipeline(
 def _is_set(resource: Resource, building: ChainBuilding, name: str) -> bool:
     """Whether a field at the end is one of the message, of a type that it can hold; else a finding."""
     try:
-        wanted = find_field(building.wanted, name)[1]
+        path, wanted = find_field(building.wanted, name)
     except NoFieldError:
+        return False
+    if any(isinstance(step, int) for step in path.steps):
+        said = f"`{name}` is an item of a list, and lists are sent as a whole: give `{path.key}`"
+        building.findings.add(building.place_of(name), f"{building.origin(name)}{said}")
         return False
     field = building.chain.end[name]
     if fills(field, wanted):

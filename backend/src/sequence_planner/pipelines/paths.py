@@ -6,6 +6,7 @@ its name, so that `pose.position.x` given by a stage stands before that of the n
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -32,6 +33,14 @@ class FieldPath:
                 value = value[step] if isinstance(value, list) and step < len(value) else None
             else:
                 value = value.get(step) if isinstance(value, dict) else None
+        return value
+
+    def read(self, values: Mapping[str, object], troubles: list[str]) -> object:
+        """The same for what makes something of the value: a number that is not finite is unknown, and a trouble."""
+        value = self.get(values)
+        if isinstance(value, float) and not math.isfinite(value):
+            troubles.append(f"{self} is {value}")
+            return None
         return value
 
     def __str__(self) -> str:

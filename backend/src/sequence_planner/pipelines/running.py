@@ -15,11 +15,15 @@ from sequence_planner.pipelines.observation import PipelineView
 from sequence_planner.pipelines.record import Record
 from sequence_planner.pipelines.running_chain import RunningChain
 from sequence_planner.pipelines.stage import Overriding
+from sequence_planner.pipelines.stages.values import shown
 
 
 @dataclass
 class _Node:
-    """A topic or a flow: its chain, and what its last record said. `latest` has the last record of each source."""
+    """A topic or a flow: its chain, and what its last record said. `latest` has the last record of each source.
+
+    While it `is_spoilt`, the last message could not be read, and what stages still have of those before counts no more.
+    """
 
     description: IncomingPipeline | Flow
     chain: RunningChain
@@ -27,6 +31,7 @@ class _Node:
     trouble: str | None = None
     latest: dict[str, Record] = field(default_factory=dict)
     repeated: int = 0
+    is_spoilt: bool = False
 
     def write(self, record: Record) -> None:
         """The variables take what the record says; values they cannot have make them unknown."""
@@ -35,6 +40,7 @@ class _Node:
     def forget(self, sources: Set[str]) -> None:
         """As if nothing had come so far of these sources, and nothing had come of it itself."""
         self.chain.restart()
+        self.is_spoilt = False
         self.values = {}
         self.trouble = None
         self.latest = {alias: record for alias, record in self.latest.items() if alias not in sources}
@@ -56,12 +62,6 @@ def _value(writing: Writing, record: Record, troubles: list[str]) -> Value | Non
         return value
     troubles.append(f"{writing.field} is {shown(value)}, and {writing.variable} ranges over {writing.type}")
     return None
-
-
-def shown(value: object) -> str:
-    """A value for people, shortened."""
-    text = repr(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 class RunningPipelines:
@@ -91,6 +91,7 @@ class RunningPipelines:
     def take(self, topic: str, values: dict[str, object], now: float) -> None:
         """Take a message, as its fields."""
         now = self._forward(now)
+        self._nodes[topic].is_spoilt = False
         record = self._nodes[topic].chain.take(Record(values), now)
         if record is not None:
             self._carry({topic: [record]}, now, self._behind[topic])
@@ -106,6 +107,7 @@ class RunningPipelines:
         for name in behind:
             node = self._nodes[name]
             node.values = {}
+            node.is_spoilt = True
             if isinstance(node.description, Flow):
                 lost = {alias for alias, source in node.description.sources.items() if source in behind}
                 node.latest = {alias: record for alias, record in node.latest.items() if alias not in lost}
@@ -128,11 +130,13 @@ class RunningPipelines:
         """When time next makes a difference if nothing comes before."""
         return min((due for node in self._timed if (due := node.chain.due) is not None), default=None)
 
-    def wake(self, now: float) -> None:
-        """Let time pass."""
+    def wake(self, now: float) -> dict[str, str]:
+        """Let time pass; what made no sense in what has come of it, by topic."""
         now = self._forward(now)
         came = {name: list(node.chain.wake(now)) for name, node in self._nodes.items() if _is_due(node, now)}
         self._carry(came, now, self._nodes)
+        said = ((name, self._nodes[name].trouble) for name, records in came.items() if records)
+        return {min(self._topics[name]): trouble for name, trouble in said if trouble is not None}
 
     def values(self, fresh: Mapping[str, bool]) -> dict[str, Value | None]:
         """All measured variables that are fed; those are unknown of which a source is not fresh."""
@@ -201,8 +205,11 @@ class RunningPipelines:
         self._changed.update(among)
         for name in among:
             node = self._nodes[name]
+            if node.is_spoilt:
+                came.pop(name, None)
             if isinstance(node.description, Flow):
                 joined = _joined(node, node.description, came)
+                node.is_spoilt = node.is_spoilt and not joined
                 out = [record for each in joined if (record := node.chain.take(each, now)) is not None]
                 if out:
                     came[name] = [*came.get(name, ()), *out]
@@ -220,11 +227,11 @@ def _is_due(node: _Node, now: float) -> bool:
 
 
 def _joined(node: _Node, flow: Flow, came: Mapping[str, list[Record]]) -> list[Record]:
-    """The records with which a flow begins because its sources have had these."""
+    """The records with which a flow begins because its sources have had these, which have said what made no sense."""
     news = [(alias, record) for alias, source in flow.sources.items() for record in came.get(source, ())]
     if flow.joining is not Joining.MERGE:
         fields = flow.chain.fields[0]
-        return [Record({name: record.values.get(name) for name in fields}, list(record.troubles)) for _, record in news]
+        return [Record({name: record.values.get(name) for name in fields}) for _, record in news]
     if not news:
         return []
     node.latest.update(news)

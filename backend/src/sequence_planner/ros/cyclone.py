@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from cyclonedds.core import DDSException
 from cyclonedds.pub import DataWriter
@@ -40,6 +40,8 @@ from sequence_planner.ros.transport import (
     TransportError,
 )
 from sequence_planner.ros.type_description import TypeDescription
+
+READER_DEPTH = 1000  # samples
 
 
 @dataclass(frozen=True)
@@ -115,7 +117,7 @@ class CycloneTransport:
         """Receive batches; see `Transport.subscribe`."""
         dds_topic = self._topic(topic, type_name)
         try:
-            reader = DataReader(self._participant, dds_topic, self._qos(type_name, qos))
+            reader = DataReader(self._participant, dds_topic, self._qos(type_name, _taken(qos)))
         except DDSException as error:
             raise TransportError(f"DDS cannot subscribe to {topic}: {error}") from error
         delivery = Delivery(self._loop, topic, on_batch)
@@ -231,3 +233,11 @@ class CycloneTransport:
             )
         except DDSException as error:
             raise TransportError(f"DDS cannot announce this node: {error}") from error
+
+
+def _taken(qos: QualityOfService) -> QualityOfService:
+    """What a reader has that loses nothing while this process waits for the processor: its samples wait in `Delivery`.
+
+    The depth of a reader is nobody else's affair.
+    """
+    return replace(qos, depth=max(qos.depth, READER_DEPTH)) if qos.reliable else qos

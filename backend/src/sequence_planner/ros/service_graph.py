@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, Protocol, runtime_checkable
 
+Role = Literal["server", "client"]
+
 
 @dataclass(frozen=True)
 class ServiceEnd:
@@ -15,7 +17,7 @@ class ServiceEnd:
 
     service: str
     type_name: str
-    role: Literal["server", "client"]
+    role: Role
     own: bool
     node: str | None
     vendor: str | None = None

@@ -13,10 +13,11 @@ from typing import Any
 
 from fastapi import APIRouter, FastAPI
 
-from sequence_planner.web import actions, health, problems, station, stream
+from sequence_planner.web import actions, attachments, health, pipelines, problems, ros, station, stream
 from sequence_planner.web.broadcast import Broadcast
 from sequence_planner.web.controller_client import ControllerClient
 from sequence_planner.web.guard import Guard
+from sequence_planner.web.looking import FlowsShow, NetworkShow
 from sequence_planner.web.openapi_document import PROBLEM_RESPONSES, describe
 from sequence_planner.web.problems import LastResort
 from sequence_planner.web.security_headers import SecurityHeaders
@@ -43,10 +44,11 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     """
     check_host(settings.host)
     broadcast = Broadcast(controller, settings.stream)
+    network, flows = NetworkShow(controller, settings.stream), FlowsShow(controller, settings.stream)
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        running = [asyncio.create_task(controller.run()), asyncio.create_task(broadcast.run())]
+        running = [asyncio.create_task(each.run()) for each in (controller, broadcast, network, flows)]
         try:
             yield
         finally:
@@ -66,10 +68,12 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         lifespan=lifespan,
     )
     app.state.controller = controller
-    app.state.broadcast = broadcast
+    app.state.broadcast, app.state.network_show, app.state.flows_show = broadcast, network, flows
+    app.state.settings, app.state.attaching = settings, asyncio.Lock()
     problems.install(app)
     api = APIRouter(prefix=PREFIX)
-    for part in (station.router, actions.router, stream.router):
+    acting = (actions.router, actions.bodiless, attachments.router)
+    for part in (station.router, *acting, ros.router, pipelines.router, stream.router):
         api.include_router(part)
     app.include_router(api)
     app.include_router(health.router)

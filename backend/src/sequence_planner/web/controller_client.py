@@ -22,13 +22,21 @@ from sequence_planner.control.lines import read_lines
 from sequence_planner.control.link_messages import (
     FROM_CONTROLLER,
     LONGEST_VIEW,
+    AskMessage,
     CommandMessage,
-    Refusal,
+    FlowsAnswer,
+    LinkMessage,
+    NetworkMessage,
+    PipelinesAnswer,
     Reply,
     ViewMessage,
     encode,
 )
+from sequence_planner.control.network_view import NetworkView
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.view import StationView
+
+Answer = Reply | PipelinesAnswer | FlowsAnswer
 
 LOG = structlog.get_logger(__name__)
 SILENCE = 2.0  # seconds without a view after which the controller counts as lost
@@ -51,10 +59,12 @@ class ControllerClient:
         self.last_heard: float | None = None  # seconds, on `clock`
         self._clock = clock
         self._reply_deadline = reply_deadline
+        self.network: NetworkView | None = None
         self._listeners: list[Callable[[StationView], None]] = []
+        self._network_listeners: list[Callable[[NetworkView], None]] = []
         self._writer: asyncio.StreamWriter | None = None
         self._numbers = itertools.count(1)
-        self._awaited: dict[int, asyncio.Future[Refusal | None]] = {}
+        self._awaited: dict[int, asyncio.Future[Answer]] = {}
 
     @property
     def connected(self) -> bool:
@@ -69,6 +79,10 @@ class ControllerClient:
     def listen(self, listener: Callable[[StationView], None]) -> None:
         """Call `listener` with each view as it arrives; it must not block."""
         self._listeners.append(listener)
+
+    def listen_to_network(self, listener: Callable[[NetworkView], None]) -> None:
+        """Call `listener` with the ROS graph whenever it has changed; it must not block."""
+        self._network_listeners.append(listener)
 
     async def run(self) -> None:
         """Stay connected until cancelled."""
@@ -93,6 +107,23 @@ class ControllerClient:
         Raises `CommandRefused`: with the controller's own words, `controller-unavailable` (503) when it was never
         sent, `controller-no-answer` (504) when it is not known what became of it.
         """
+        expires = time.monotonic() + self._reply_deadline
+        await self._exchange(lambda number: CommandMessage(id=number, command=command, expires=expires))
+
+    async def pipelines(self) -> PipelinesView:
+        """Ask for the graph of the pipelines. Raises `CommandRefused` as `send` does."""
+        answer = await self._exchange(lambda number: AskMessage(id=number, about="pipelines"))
+        assert isinstance(answer, PipelinesAnswer)
+        return answer.view
+
+    async def flows(self) -> FlowsView:
+        """Ask what has passed the pipelines. Raises `CommandRefused` as `send` does."""
+        answer = await self._exchange(lambda number: AskMessage(id=number, about="flows"))
+        assert isinstance(answer, FlowsAnswer)
+        return answer.view
+
+    async def _exchange(self, message: Callable[[int], LinkMessage]) -> Answer:
+        """Send a message and wait for what comes back under its number. Raises `CommandRefused`."""
         writer = self._writer
         if writer is None:
             raise CommandRefused(
@@ -102,14 +133,13 @@ class ControllerClient:
                 503,
             )
         number = next(self._numbers)
-        answer: asyncio.Future[Refusal | None] = asyncio.get_running_loop().create_future()
-        self._awaited[number] = answer
-        expires = time.monotonic() + self._reply_deadline
+        awaited: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
+        self._awaited[number] = awaited
         try:
             async with asyncio.timeout(self._reply_deadline):
-                writer.write(encode(CommandMessage(id=number, command=command, expires=expires)))
+                writer.write(encode(message(number)))
                 await writer.drain()
-                refusal = await answer
+                answer = await awaited
         except (TimeoutError, ConnectionError) as error:
             raise CommandRefused(
                 "controller-no-answer",
@@ -119,8 +149,9 @@ class ControllerClient:
             ) from error
         finally:
             self._awaited.pop(number, None)
-        if refusal is not None:
-            raise refusal.error()
+        if isinstance(answer, Reply) and not answer.ok and answer.problem is not None:
+            raise answer.problem.error()
+        return answer
 
     async def _receive(self, reader: asyncio.StreamReader) -> None:
         async for line in read_lines(reader, LONGEST_VIEW):
@@ -133,19 +164,24 @@ class ControllerClient:
                 self.view, self.last_heard = message.view, self._clock()
                 for listener in self._listeners:
                     listener(message.view)
+            elif isinstance(message, NetworkMessage):
+                self.network = message.network
+                for each in self._network_listeners:
+                    each(message.network)
             else:
                 self._answered(message)
 
-    def _answered(self, reply: Reply) -> None:
-        answer = None if reply.id is None else self._awaited.get(reply.id)
-        if answer is not None and not answer.done():
-            answer.set_result(None if reply.ok else reply.problem)
+    def _answered(self, answer: Answer) -> None:
+        awaited = None if answer.id is None else self._awaited.get(answer.id)
+        if awaited is not None and not awaited.done():
+            awaited.set_result(answer)
 
     def _forget_connection(self) -> None:
         if self._writer is not None:
             with contextlib.suppress(OSError):
                 self._writer.close()
         self._writer = None
+        self.network = None  # that of another controller may be another one
         for answer in self._awaited.values():
             if not answer.done():
                 answer.set_exception(ConnectionResetError("the controller went away"))

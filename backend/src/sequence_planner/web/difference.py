@@ -11,6 +11,7 @@ from typing import cast
 
 from pydantic import BaseModel
 
+from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.view import StationView, VariableView
 from sequence_planner.web.stream_messages import StationChange, StationRemoval
 
@@ -48,8 +49,13 @@ def _same(old: BaseModel, new: BaseModel) -> bool:
         return True
     if old != new:
         return False
-    return not isinstance(old, VariableView) or _types(old) == _types(cast(VariableView, new))
+    return _types(old) == _types(new)
 
 
-def _types(variable: VariableView) -> list[type]:
-    return [type(value) for value in (variable.value, *variable.domain)]
+def _types(entry: BaseModel) -> list[type]:
+    """The types of the values in it that can be of several."""
+    if isinstance(entry, VariableView):
+        return [type(value) for value in (entry.value, *entry.domain)]
+    if isinstance(entry, OverrideView):
+        return [type(value) for field in entry.fields.values() for value in (field.value, *(field.among or ()))]
+    return []

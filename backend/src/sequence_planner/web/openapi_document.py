@@ -12,6 +12,7 @@ from fastapi import FastAPI
 from fastapi.openapi.utils import get_openapi
 from pydantic.json_schema import models_json_schema
 
+from sequence_planner.web.looking_messages import FlowsStreamMessage, NetworkStreamMessage
 from sequence_planner.web.problems import MEDIA_TYPE, Problem
 from sequence_planner.web.stream_messages import ClientMessage, StreamMessage
 
@@ -29,7 +30,13 @@ def describe(app: FastAPI) -> dict[str, Any]:
     """The document of `app`, with the components of the stream and of problems."""
     document = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
     _, definitions = models_json_schema(
-        [(StreamMessage, "serialization"), (ClientMessage, "validation"), (Problem, "serialization")],
+        [
+            (StreamMessage, "serialization"),
+            (NetworkStreamMessage, "serialization"),
+            (FlowsStreamMessage, "serialization"),
+            (ClientMessage, "validation"),
+            (Problem, "serialization"),
+        ],
         ref_template=REFERENCE,
     )
     components = document.setdefault("components", {}).setdefault("schemas", {})

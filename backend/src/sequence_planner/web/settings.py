@@ -30,12 +30,17 @@ class StreamLimits:
 
 @dataclass(frozen=True)
 class Settings:
-    """All that the server needs to know; `page` is the folder of the built page."""
+    """All that the server needs to know; `page` is the folder of the built page, `model` that of the running station.
+
+    With `transport` the network is joined for what a person wants to attach, as the controller joins it.
+    """
 
     controller_socket: Path
     page: Path
     host: str = "127.0.0.1"
     port: int = 8000
+    model: Path | None = None
+    transport: str = "auto"
     stream: StreamLimits = field(default_factory=StreamLimits)
 
 

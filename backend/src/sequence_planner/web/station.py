@@ -10,6 +10,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel
 
 from sequence_planner.analysis.document import AnalysisDocument
+from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
@@ -85,6 +86,12 @@ class TopicsAnswer(Answer):
     topics: dict[str, TopicView]
 
 
+class OverridesAnswer(Answer):
+    """What a person may set, and what is set."""
+
+    overrides: dict[str, OverrideView]
+
+
 class AnalysisAnswer(Answer):
     """What synthesis has found of the station; null before it has found anything."""
 
@@ -145,6 +152,12 @@ async def tasks(view: LiveView) -> TasksAnswer:
 async def topics(view: LiveView) -> TopicsAnswer:
     """Every ROS 2 topic of the station, and whether it speaks."""
     return TopicsAnswer(tick=view.tick, time=view.time, topics=view.topics)
+
+
+@router.get("/overrides")
+async def overrides(view: LiveView) -> OverridesAnswer:
+    """What a person may set within which bounds, what is set, and when it expires."""
+    return OverridesAnswer(tick=view.tick, time=view.time, overrides=view.overrides)
 
 
 @router.get("/analysis")

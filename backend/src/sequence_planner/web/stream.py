@@ -8,6 +8,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+from contextlib import AbstractContextManager
+from typing import Protocol
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
@@ -23,14 +25,28 @@ LAST_WORDS = 30.0  # seconds in which a dropped client may still learn why
 router = APIRouter()
 
 
+class Source(Protocol):
+    """What clients subscribe to."""
+
+    limits: StreamLimits
+
+    def subscription(self) -> AbstractContextManager[Subscriber | None]:
+        """A subscriber for as long as the block lasts; None when there are too many already."""
+
+
 @router.websocket("/stream")
 async def stream(websocket: WebSocket) -> None:
     """Serve one client until it leaves or is dropped."""
     broadcast: Broadcast = websocket.app.state.broadcast
+    await serve(websocket, broadcast)
+
+
+async def serve(websocket: WebSocket, source: Source) -> None:
+    """Serve one client of `source` until it leaves or is dropped."""
     await websocket.accept()
-    with broadcast.subscription() as subscriber:
+    with source.subscription() as subscriber:
         if subscriber is not None:
-            dropped = await _converse(websocket, subscriber, broadcast.limits)
+            dropped = await _converse(websocket, subscriber, source.limits)
         reason = "too many clients" if subscriber is None else "too slow"
     if subscriber is None or dropped:
         with contextlib.suppress(TimeoutError, WebSocketDisconnect, RuntimeError):

@@ -14,6 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, RootModel
 from typing_extensions import TypedDict
 
 from sequence_planner.analysis.document import AnalysisDocument
+from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
@@ -46,6 +47,7 @@ class StationChange(TypedDict, total=False):
     plan: PlanView
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
+    overrides: dict[str, OverrideView]
     alarms: dict[str, AlarmView]
     way_back: WayBackView | None
     analysis: AnalysisDocument | None
@@ -60,6 +62,7 @@ class StationRemoval(TypedDict, total=False):
     operations: list[str]
     tasks: list[str]
     topics: list[str]
+    overrides: list[str]
     alarms: list[str]
 
 

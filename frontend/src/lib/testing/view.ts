@@ -51,6 +51,7 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		plan: PLAN,
 		tasks: {},
 		topics: {},
+		overrides: {},
 		alarms: {},
 		way_back: null,
 		analysis: null,

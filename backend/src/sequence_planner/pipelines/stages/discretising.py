@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 from sequence_planner.expressions.place import Place
-from sequence_planner.expressions.types import EnumerationType
+from sequence_planner.expressions.types import EnumerationType, IntegerRange
 from sequence_planner.pipelines.paths import FieldPath
-from sequence_planner.pipelines.record import FieldType, Record
+from sequence_planner.pipelines.record import FieldType, ListType, Record
 from sequence_planner.pipelines.stage import NotInvertibleError
 from sequence_planner.pipelines.stages.immediate import ImmediateStage
 from sequence_planner.pipelines.stages.regions import Numbers, Points, Regions, numbers_of
@@ -30,7 +30,7 @@ class DiscretiseStage:
     regions: Regions
     otherwise: str | None
     hysteresis: float
-    is_list: bool
+    field_type: FieldType
     kind: ClassVar[str] = "discretise"
 
     @property
@@ -52,13 +52,20 @@ class DiscretiseStage:
         name = values.get(self.variable)
         if name is None:
             return
-        if isinstance(name, str) and name in self.regions.names:
-            numbers = self.regions.inside(name)
+        region = name if isinstance(name, str) and name in self.regions.names else None
+        for numbers in self._tried(region, numbers_of(values.get(self.field.text), self.regions.axes)):
+            if numbers is not None and self.regions.find(fitting := _of_type(numbers, self.field_type)) == region:
+                values[self.field.text] = _as_field(fitting, self.field_type)
+                return
+        raise NotInvertibleError(f"no number means {shown(name)} for `{self.variable}`: leave a gap for it")
+
+    def _tried(self, region: str | None, now: Numbers | None) -> Iterator[Numbers | None]:
+        """Numbers in that region, or in none; the second ones outside are so far out that integers are, too."""
+        if region is not None:
+            yield self.regions.inside(region)
         else:
-            numbers = self.regions.outside(self.hysteresis, numbers_of(values.get(self.field.text), self.regions.axes))
-        if numbers is None:
-            raise NotInvertibleError(f"no number means {shown(name)} for `{self.variable}`: leave a gap for it")
-        values[self.field.text] = _as_field(numbers, self.is_list)
+            yield self.regions.outside(self.hysteresis, now)
+            yield self.regions.outside(self.hysteresis + 1.0, now)
 
 
 @dataclass(slots=True)
@@ -100,7 +107,6 @@ class UndiscretiseStage(ImmediateStage):
     field: str
     type: FieldType
     points: Mapping[str, Numbers]
-    is_list: bool
     kind: ClassVar[str] = "undiscretise"
 
     @property
@@ -117,7 +123,7 @@ class UndiscretiseStage(ImmediateStage):
         """The field takes the coordinates."""
         name = self.variable.get(record.values)
         numbers = self.points.get(name) if isinstance(name, str) else None
-        record.values[self.field] = None if numbers is None else _as_field(numbers, self.is_list)
+        record.values[self.field] = None if numbers is None else _as_field(numbers, self.type)
         if name is not None and numbers is None:
             record.troubles.append(f"{self.variable} is {shown(name)}, which has no coordinates")
 
@@ -132,5 +138,11 @@ class UndiscretiseStage(ImmediateStage):
         values[self.variable.text] = Points(self.points, 0.0).nearest(numbers)
 
 
-def _as_field(numbers: Numbers, is_list: bool) -> object:
-    return list(numbers) if is_list else numbers[0]
+def _of_type(numbers: Numbers, type_: FieldType) -> Numbers:
+    """`numbers` as the field can have them: rounded where it has integers."""
+    element = type_.element if isinstance(type_, ListType) else type_
+    return tuple(map(round, numbers)) if isinstance(element, IntegerRange) else numbers
+
+
+def _as_field(numbers: Numbers, type_: FieldType) -> object:
+    return list(numbers) if isinstance(type_, ListType) else numbers[0]

@@ -43,7 +43,7 @@ class MapStage(ImmediateStage):
 
     def apply(self, record: Record) -> None:
         """Give what the value means."""
-        value = self.source.get(record.values)
+        value = self.source.read(record.values, record.troubles)
         meaning = None if value is None else self.meaning(value)
         record.values[self.target] = meaning
         if value is not None and meaning is None:
@@ -105,7 +105,7 @@ class TableStage(ImmediateStage):
 
     def apply(self, record: Record) -> None:
         """Give what the first row that applies says."""
-        given = tuple(source.get(record.values) for source in self.sources)
+        given = tuple(source.read(record.values, record.troubles) for source in self.sources)
         found = self.meaning(given)
         record.values.update(zip(self.gives, found or (None,) * len(self.gives), strict=True))
         if found is None and None not in given:

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.expressions.types import IntegerRange
 from sequence_planner.pipelines.record import FieldType, Record
 from sequence_planner.pipelines.stage import Override
 from sequence_planner.pipelines.stages.mapping import is_same
 from sequence_planner.pipelines.stages.transparent import TransparentStage, again
-from sequence_planner.pipelines.stages.values import fits, shown
+from sequence_planner.pipelines.stages.values import as_written, fits, shown
 
 
 @dataclass(frozen=True)
@@ -29,12 +30,12 @@ class Bounds:
             return any(is_same(value, allowed) for allowed in self.among)
         return isinstance(value, int | float) and self.between[0] <= value <= self.between[1]
 
-    def __str__(self) -> str:
-        if self.between is not None:
-            return f"a number from {self.between[0]} to {self.between[1]}"
-        return "one of " + ", ".join(
-            str(value).lower() if isinstance(value, bool) else str(value) for value in self.among
-        )
+    def described(self, type_: FieldType) -> str:
+        """What a field of `type_` may be given, for people."""
+        if self.between is None:
+            return f"one of {', '.join(map(as_written, self.among))}"
+        kind = "an integer" if isinstance(type_, IntegerRange) else "a number"
+        return f"{kind} from {self.between[0]:g} to {self.between[1]:g}"
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,8 @@ class OverrideStage(TransparentStage):
                 near = suggestion(name, self.bounds) or f"; it has {', '.join(self.bounds)}"
                 raise ValueError(f"`{self.name}` has no field `{name}`{near}")
             if not self.bounds[name].allow(self.gives[name], value):
-                raise ValueError(f"`{name}` cannot be {shown(value)}: it is {self.bounds[name]}")
+                allowed = self.bounds[name].described(self.gives[name])
+                raise ValueError(f"`{name}` cannot be {shown(value)}: it is {allowed}")
 
 
 @dataclass(slots=True)

@@ -8,11 +8,11 @@ from typing import ClassVar, Literal
 
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.pipelines.paths import FieldPath
-from sequence_planner.pipelines.record import FieldType, ListType, Record
+from sequence_planner.pipelines.record import FieldType, ListType, RealType, Record
 from sequence_planner.pipelines.stages.immediate import ImmediateStage
 from sequence_planner.pipelines.stages.inversion import candidates, solve
 from sequence_planner.pipelines.stages.mapping import is_same
-from sequence_planner.pipelines.stages.values import TEXT, shown
+from sequence_planner.pipelines.stages.values import TEXT, is_number, shown
 
 Way = Literal["contains", "begins", "ends", "equals"]
 
@@ -126,9 +126,15 @@ class MemberStage(ImmediateStage):
         return {self.variable: BOOLEAN}
 
     def apply(self, record: Record) -> None:
-        """Give whether the item is there."""
+        """Give whether the item is there; where one that is no number might be it, that is unknown."""
         items = self.field.get(record.values)
-        record.values[self.variable] = self._contains(items) if isinstance(items, list) else None
+        contains = None
+        if isinstance(items, list):
+            contains = self._contains(items)
+            if not contains and isinstance(self.type.element, RealType) and not all(map(is_number, items)):
+                record.troubles.append(f"{self.field} is {shown(items)}, with an item that is no number")
+                contains = None
+        record.values[self.variable] = contains
 
     def _contains(self, items: list[object]) -> bool:
         return any(is_same(item, self.item) for item in items)

@@ -51,7 +51,7 @@ class RememberCourse:
 
     def take(self, record: Record, now: float) -> Record:
         """The record with the value kept, after this one has been looked at."""
-        value = self.stage.of.get(record.values)
+        value = self.stage.of.read(record.values, record.troubles)
         if value is not None and value not in self.stage.ignored:
             self.kept = value
         record.values[self.stage.variable] = self.kept
@@ -83,7 +83,7 @@ class FoldCourse:
     def take(self, record: Record, now: float) -> Record:
         """The record with what earlier ones said where it says nothing."""
         values = record.values
-        given = ((each.path.text, each.path.get(values)) for each in self.stage.fields)
+        given = ((each.path.text, each.path.read(values, record.troubles)) for each in self.stage.fields)
         self.known |= {name: value for name, value in given if value is not None}
         values |= {each.path.text: self.known.get(each.path.text) for each in self.stage.fields}
         return record

@@ -37,7 +37,7 @@ class TransparentStage:
 
     def get(self, record: Record) -> tuple[object, ...]:
         """The values of the fields."""
-        return tuple(field.path.get(record.values) for field in self.fields)
+        return tuple(field.path.read(record.values, record.troubles) for field in self.fields)
 
     def put(self, record: Record, values: tuple[object, ...]) -> Record:
         """Give `values` to the fields."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import reprlib
+import sys
 from collections.abc import Iterable
 
 from sequence_planner.expressions.types import BOOLEAN, BooleanType, EnumerationType, IntegerRange, contains
@@ -31,8 +32,10 @@ def as_written(value: object) -> str:
 
 
 def is_number(value: object) -> bool:
-    """Whether `value` is a finite number; a truth value is none."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    """Whether `value` is a finite number, of a size that a real one can have; a truth value is none."""
+    if isinstance(value, float):
+        return math.isfinite(value)
+    return isinstance(value, int) and not isinstance(value, bool) and abs(value) <= sys.float_info.max
 
 
 def fits(type_: FieldType, value: object) -> bool:

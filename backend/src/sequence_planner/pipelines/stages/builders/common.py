@@ -6,13 +6,21 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
-from sequence_planner.expressions.types import BooleanType, EnumerationType
+from sequence_planner.expressions.types import BooleanType, EnumerationType, IntegerRange
 from sequence_planner.model.source import SourceText
 from sequence_planner.pipelines.context import Context
 from sequence_planner.pipelines.paths import FieldPath, NoFieldError, find_field
 from sequence_planner.pipelines.record import FieldType
 from sequence_planner.pipelines.stages.transparent import Passing
-from sequence_planner.pipelines.stages.values import as_written, common_type, domain, shown, written
+from sequence_planner.pipelines.stages.values import (
+    as_written,
+    common_type,
+    domain,
+    is_numeric,
+    is_textual,
+    shown,
+    written,
+)
 
 
 def wanted_type(context: Context, name: str) -> FieldType | None:
@@ -26,7 +34,15 @@ def wanted_type(context: Context, name: str) -> FieldType | None:
 def narrowest(context: Context, path: FieldPath, type_: FieldType) -> FieldType:
     """The type of a field, as the variable of its name has it if there is one."""
     wanted = context.wanted.get(path.text)
-    return wanted if isinstance(wanted, EnumerationType) or (wanted and domain(wanted)) else type_
+    is_narrow = isinstance(wanted, EnumerationType) or (wanted is not None and domain(wanted) is not None)
+    return wanted if wanted is not None and is_narrow and are_alike(type_, wanted) else type_
+
+
+def are_alike(one: FieldType, other: FieldType) -> bool:
+    """Whether a value of the one type may be one of the other."""
+    if isinstance(one, IntegerRange) or isinstance(other, IntegerRange):
+        return is_numeric(one) and is_numeric(other)
+    return type(one) is type(other) or (is_textual(one) and is_textual(other))
 
 
 def place_of(values: Iterable[object], otherwise: Place) -> Place:

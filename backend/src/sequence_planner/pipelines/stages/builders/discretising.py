@@ -6,14 +6,14 @@ from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations
 
 from sequence_planner.expressions.resolution import suggestion
-from sequence_planner.expressions.types import EnumerationType
+from sequence_planner.expressions.types import EnumerationType, IntegerRange
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stage_documents import DiscretiseDocument, UndiscretiseDocument
 from sequence_planner.pipelines.context import Context
 from sequence_planner.pipelines.record import FieldType, ListType
 from sequence_planner.pipelines.stages.builders.common import only, wanted_type
 from sequence_planner.pipelines.stages.discretising import DiscretiseStage, UndiscretiseStage
-from sequence_planner.pipelines.stages.regions import Points, Ranges, Regions, distance
+from sequence_planner.pipelines.stages.regions import Numbers, Points, Ranges, Regions, distance
 from sequence_planner.pipelines.stages.values import REAL, is_numeric
 
 Coordinates = Mapping[SourceText, Sequence[float]]
@@ -37,8 +37,7 @@ def build_discretise(document: DiscretiseDocument, context: Context) -> Discreti
         return None
     otherwise = None if document.otherwise is None else str(document.otherwise)
     variable, hysteresis = str(document.variable), document.hysteresis
-    is_list = isinstance(field, ListType)
-    return DiscretiseStage(context.place, path, variable, type_, regions, otherwise, hysteresis, is_list)
+    return DiscretiseStage(context.place, path, variable, type_, regions, otherwise, hysteresis, field)
 
 
 def build_undiscretise(document: UndiscretiseDocument, context: Context) -> UndiscretiseStage | None:
@@ -56,8 +55,20 @@ def build_undiscretise(document: UndiscretiseDocument, context: Context) -> Undi
     if missing:
         context.found(document.variable.place, f"no coordinates for {', '.join(missing)}")
         return None
-    points = {str(name): tuple(point) for name, point in document.values.items()}
-    return UndiscretiseStage(context.place, path, str(document.field), field, points, isinstance(field, ListType))
+    element = field.element if isinstance(field, ListType) else field
+    points = {str(name): _coordinates(context, name, at, element) for name, at in document.values.items()}
+    known = {name: point for name, point in points.items() if point is not None}
+    return UndiscretiseStage(context.place, path, str(document.field), field, known) if known == points else None
+
+
+def _coordinates(context: Context, name: SourceText, at: Sequence[float], type_: FieldType) -> Numbers | None:
+    """A point as it is sent; None, and findings, where the field cannot have it."""
+    if not isinstance(type_, IntegerRange):
+        return tuple(at)
+    strange = [number for number in at if not number.is_integer() or not type_.minimum <= number <= type_.maximum]
+    for number in strange:
+        context.found(name.place, f"`{name}` has the coordinate {number:g}, and the field has integers in {type_}")
+    return None if strange else tuple(map(int, at))
 
 
 def _are_names(context: Context, where: SourceText, names: Iterable[SourceText], type_: FieldType) -> bool:

@@ -34,7 +34,7 @@ def build_map(document: MapDocument, context: Context) -> MapStage | None:
     path, source_type = found
     given = values_of(context, source_type, list(document.values), source.place)
     meant = values_of(context, target_type, meanings, target.place)
-    if given is None or meant is None:
+    if given is None or meant is None or _are_twice(list(document.values), given, context):
         return None
     missing = [value for value in domain(source_type) or () if value not in given]
     if missing and document.otherwise is None and not context.is_incoming:
@@ -45,6 +45,19 @@ def build_map(document: MapDocument, context: Context) -> MapStage | None:
     return MapStage(context.place, path, source_type, str(target), target_type, pairs, otherwise)
 
 
+def _are_twice(written: Sequence[SourceText], values: Sequence[object], context: Context) -> bool:
+    """Whether two of the keys are the same value, such as `1` and `1.0`; a finding for each."""
+    first: dict[object, SourceText] = {}
+    twins = [
+        (text, other)
+        for text, value in zip(written, values, strict=True)
+        if (other := first.setdefault(value, text)) is not text
+    ]
+    for text, other in twins:
+        context.found(text.place, f"`{text}` is the same as `{other}`, for which there is a value already")
+    return bool(twins)
+
+
 def build_table(document: TableDocument, context: Context) -> TableStage | None:
     """From several fields to several variables, whichever way the topic goes."""
     sources = passing(context, document.fields)
@@ -53,7 +66,10 @@ def build_table(document: TableDocument, context: Context) -> TableStage | None:
         place = place_of(document.otherwise, document.variables[0].place)
         context.found(place, f"`otherwise` needs {_cells(document.variables)}")
         right.append(False)
-    if sources is None or not all(right):
+    twice = [name for index, name in enumerate(document.variables) if name in document.variables[:index]]
+    for name in twice:
+        context.found(name.place, f"`{name}` is given twice here")
+    if sources is None or not all(right) or twice:
         return None
     given = [row.gives for row in document.rows] + ([] if document.otherwise is None else [document.otherwise])
     types = [

@@ -84,7 +84,10 @@ def _takes(function: ast.FunctionDef, document: PythonDocument, context: Context
     ]
     refused = [name for name in document.reads if name not in named and arguments.kwarg is None]
     for name in refused:
-        context.found(name.place, f"`{document.function}` has no parameter `{name}`{suggestion(name, named)}")
+        hint = (
+            suggestion(name, named) if name.isidentifier() else ": `rename` the field to a parameter's name before this"
+        )
+        context.found(name.place, f"`{document.function}` has no parameter `{name}`{hint}")
     missing = [argument.arg for argument in without_default if argument.arg not in document.reads]
     missing += [argument.arg for argument in arguments.posonlyargs]
     if missing:

@@ -19,7 +19,14 @@ from sequence_planner.model.stage_documents import (
 from sequence_planner.pipelines.context import Context
 from sequence_planner.pipelines.paths import FieldPath
 from sequence_planner.pipelines.record import FieldType
-from sequence_planner.pipelines.stages.builders.common import narrowest, only, passing, values_of, wanted_type
+from sequence_planner.pipelines.stages.builders.common import (
+    are_alike,
+    narrowest,
+    only,
+    passing,
+    values_of,
+    wanted_type,
+)
 from sequence_planner.pipelines.stages.overriding import Bounds, OverrideStage
 from sequence_planner.pipelines.stages.remembering import FoldStage, RememberStage
 from sequence_planner.pipelines.stages.timing import DebounceStage, LimitStage, TickStage, TimeoutStage
@@ -37,6 +44,10 @@ def build_remember(document: RememberDocument, context: Context) -> RememberStag
     path, given = found
     of = narrowest(context, path, given)
     type_ = wanted_type(context, document.variable) or of
+    if not are_alike(of, type_):
+        remedy = "make one of the other by a stage before this"
+        context.found(document.of.place, f"`{path}` is {of} here, and `{document.variable}` is {type_}: {remedy}")
+        return None
     ignored = {value: written(of, value) for value in document.ignored}
     for value, meant in ignored.items():
         if meant is None:

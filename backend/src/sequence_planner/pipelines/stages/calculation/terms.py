@@ -83,16 +83,8 @@ def constant(value: object, type_: FieldType, span: Span) -> Term:
 def field_term(path: FieldPath, type_: FieldType, span: Span) -> Term:
     """A field of the record; a real one that is no finite number is unknown."""
     get = path.get
-
-    def read_real(values: Values, troubles: list[str]) -> object:
-        value = get(values)
-        if isinstance(value, float) and not math.isfinite(value):
-            troubles.append(f"{path} is {value}")
-            return None
-        return value
-
     is_word = "." not in path.text and "[" not in path.text
-    reader: Reader = read_real if isinstance(type_, RealType) else lambda values, troubles: get(values)
+    reader: Reader = path.read if isinstance(type_, RealType) else lambda values, troubles: get(values)
     return Term(type_, reader, span, path.text if is_word else None)
 
 
@@ -168,11 +160,24 @@ def beside(operand: Operand, other: Operand) -> Term:
     """`operand` where it stands beside `other`: a word there may be a value of the other's enumeration."""
     type_ = other.type if isinstance(other, Term) else None
     if operand.word is None or not isinstance(type_, EnumerationType) or operand.word not in type_.values:
-        return known(operand)
+        if isinstance(operand, UnknownWord):
+            raise _no_field(operand, other)
+        return operand
     if isinstance(operand, Term) and is_textual(operand.type):
         message = f"`{operand.word}` is both a value and a field here: put the value into single quotes"
         raise ExpressionError(message, operand.span)
     return constant(operand.word, EnumerationType((operand.word,)), operand.span)
+
+
+def _no_field(operand: UnknownWord, other: Operand) -> ExpressionError:
+    """That a word is no field, and what may have been meant beside a field that is a text or a number."""
+    hint = ""
+    if isinstance(other, Term) and other.word is not None:
+        if isinstance(other.type, TextType):
+            hint = f"; a text is written '{operand.word}'"
+        elif isinstance(other.type, IntegerRange):
+            hint = f"; `{other.word}` is a number here, whose values get names by a `map` before this"
+    return ExpressionError(f"{operand.error.message}{hint}", operand.span)
 
 
 def _check_comparable(left: Term, right: Term) -> None:

@@ -7,7 +7,7 @@ import re
 from sequence_planner.expressions.lexer import KEYWORDS, Token
 from sequence_planner.expressions.syntax import ExpressionError, Span
 
-MOST_DIGITS = 18  # of a number without a decimal point: those of 64 bits
+MOST_DIGITS = 20  # of a number without a decimal point: those of 64 bits
 
 # What people write out of habit from other languages, and what it is here.
 _HABITS = {

@@ -1,0 +1,81 @@
+"""What passes the edges of the pipelines, with rates. Nothing is kept unless somebody asks."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Mapping
+
+from pydantic import JsonValue
+
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.pipeline_view import EdgeFlowView, FlowsView, PipelineFlowView
+from sequence_planner.pipelines.observation import EdgeView, PipelineView
+
+SHORTEST, LONGEST = 1.0, 10.0  # seconds over which a rate is taken
+MOST_ITEMS, LONGEST_TEXT, DEEPEST = 16, 200, 6  # of a value that is shown
+
+Counts = Mapping[str, tuple[int, ...]]  # by pipeline: all that came, and the records of each edge
+
+
+class Observing:
+    """Makes views of what was observed; remembers the counts of the last seconds in which somebody looked."""
+
+    def __init__(self) -> None:
+        self._past: deque[tuple[float, Counts]] = deque()
+
+    def view(self, observed: Mapping[str, PipelineView], moment: Moment) -> FlowsView:
+        """The view of what has been observed at `moment`."""
+        then, before = self._base(moment.monotonic)
+        seconds = moment.monotonic - then
+        counts = {name: _counts(view) for name, view in observed.items()}
+        self._past.append((moment.monotonic, counts))
+        pipelines = {}
+        for name, view in observed.items():
+            passed = [new - old for new, old in zip(counts[name], before.get(name, counts[name]), strict=True)]
+            total, *rates = [number / seconds if seconds > 0 else None for number in passed]
+            edges = [_edge(edge, rate, moment) for edge, rate in zip(view.edges, rates, strict=True)]
+            pipelines[name] = PipelineFlowView(edges=edges, repeated=view.repeated, rate=total)
+        return FlowsView(time=moment.epoch, pipelines=pipelines)
+
+    def _base(self, now: float) -> tuple[float, Counts]:
+        """The counts from which rates are taken: the newest that are old enough, else the oldest."""
+        while self._past and now - self._past[0][0] > LONGEST:
+            self._past.popleft()
+        while len(self._past) > 1 and now - self._past[1][0] >= SHORTEST:
+            self._past.popleft()
+        return self._past[0] if self._past else (now, {})
+
+
+def _counts(view: PipelineView) -> tuple[int, ...]:
+    records = tuple(edge.records for edge in view.edges)
+    return (records[0] + view.repeated, *records)
+
+
+def _edge(edge: EdgeView, rate: float | None, moment: Moment) -> EdgeFlowView:
+    return EdgeFlowView(
+        to=edge.to,
+        records=edge.records,
+        held=edge.held,
+        rate=rate,
+        last=None if edge.last is None else {name: shown(value) for name, value in edge.last.items()},
+        troubles=[each[:LONGEST_TEXT] for each in edge.troubles[:MOST_ITEMS]],
+        at=moment.epoch_of(edge.at),
+    )
+
+
+def shown(value: object, depth: int = 0) -> JsonValue:
+    """A value as JSON has it, shortened; what JSON has not, such as NaN, becomes text."""
+    if value is None or isinstance(value, bool | int):
+        return value
+    if isinstance(value, float):
+        return value if math.isfinite(value) else str(value)
+    if depth > DEEPEST:
+        return "..."
+    if isinstance(value, Mapping):
+        return {str(name): shown(inner, depth + 1) for name, inner in value.items()}
+    if isinstance(value, list | tuple):
+        kept: list[JsonValue] = [shown(inner, depth + 1) for inner in value[:MOST_ITEMS]]
+        return kept if len(value) <= MOST_ITEMS else [*kept, f"and {len(value) - MOST_ITEMS} more"]
+    text = str(value)
+    return text if len(text) <= LONGEST_TEXT else f"{text[:LONGEST_TEXT]}..."

@@ -1,0 +1,11 @@
+"""What all documents about a running station are made of."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel, ConfigDict
+
+
+class View(BaseModel):
+    """Base of all parts of a document: immutable, and nothing beside what is declared."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")

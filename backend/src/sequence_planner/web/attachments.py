@@ -1,0 +1,98 @@
+"""Attaching a topic of the network to the model of the running station; the station itself goes on as it is.
+
+`sequence-planner attach` does it, as a process of its own: it joins the network and checks the model without holding
+the server up.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import sys
+from asyncio.subprocess import PIPE
+from pathlib import Path
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Request
+from pydantic import BaseModel, ConfigDict, Field
+
+from sequence_planner.analysis.document import FindingDocument
+from sequence_planner.web.problems import ProblemFound
+from sequence_planner.web.request_parts import JSON_ONLY
+from sequence_planner.web.settings import Settings
+
+LONGEST = 60.0  # seconds
+STATUS = {"no-topic": 404, "attached": 409, "not-written": 409}  # of refusals; others are 422
+
+router = APIRouter(prefix="/ros", tags=["ros"], dependencies=[JSON_ONLY])
+
+
+class AttachmentBody(BaseModel):
+    """A topic, and the resource that gets it, which may be a new one. Without a direction the network tells it.
+
+    With `dry_run` nothing is changed.
+    """
+
+    model_config = ConfigDict(extra="forbid")
+    topic: Annotated[str, Field(pattern=r"^(/[A-Za-z_][A-Za-z0-9_]*)+$", max_length=200)]
+    resource: Annotated[str, Field(pattern=r"^[A-Za-z_][A-Za-z0-9_]*$", max_length=100)]
+    direction: Literal["in", "out"] | None = None
+    dry_run: bool = False
+
+
+class AttachmentAnswer(BaseModel):
+    """What was changed, as `diff -u` shows it, or would be; and what `check` finds then.
+
+    `made` is false for a dry run, and when one of the findings is an error: the model could not be used afterwards.
+    """
+
+    topic: str
+    type: str
+    direction: Literal["in", "out"]
+    resource: str
+    made: bool
+    difference: str
+    findings: list[FindingDocument]
+
+
+@router.post("/attachments")
+async def attach(body: AttachmentBody, request: Request) -> AttachmentAnswer:
+    """Enter a topic that is on the network into the station's model; what runs does not change before a restart."""
+    settings: Settings = request.app.state.settings
+    if settings.model is None:
+        detail = "This server does not know where the station's model is. Use `sequence-planner attach`."
+        raise ProblemFound(409, "no-model", "The model is not known", detail)
+    lock: asyncio.Lock = request.app.state.attaching
+    async with lock:
+        answer = await _run(_arguments(settings.model, settings.transport, body))
+    if "refused" in answer:
+        slug, detail = answer["refused"]["slug"], answer["refused"]["detail"]
+        raise ProblemFound(STATUS.get(slug, 422), slug, "The topic cannot be attached", detail)
+    return AttachmentAnswer.model_validate(answer)
+
+
+def _arguments(model: Path, transport: str, body: AttachmentBody) -> list[str]:
+    arguments = [str(model), body.topic, "--resource", body.resource, "--transport", transport, "--json"]
+    arguments += ["--direction", body.direction] if body.direction else []
+    return [*arguments, "--dry-run"] if body.dry_run else arguments
+
+
+async def _run(arguments: list[str]) -> dict[str, dict[str, str]]:
+    """What the command says."""
+    command = [sys.executable, "-m", "sequence_planner.cli", "attach", *arguments]
+    process = await asyncio.create_subprocess_exec(*command, stdout=PIPE, stderr=PIPE)
+    try:
+        async with asyncio.timeout(LONGEST):
+            out, err = await process.communicate()
+    except TimeoutError:
+        detail = f"It took more than {LONGEST:g} s and was given up. Look at the model before trying again."
+        raise ProblemFound(504, "attach-no-answer", "The topic was not attached in time", detail) from None
+    finally:
+        if process.returncode is None:
+            process.kill()
+            await process.wait()
+    try:
+        found: dict[str, dict[str, str]] = json.loads(out)
+    except ValueError:
+        raise RuntimeError(f"attach ended with code {process.returncode}: {err.decode(errors='replace')}") from None
+    return found

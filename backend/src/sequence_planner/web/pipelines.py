@@ -1,0 +1,31 @@
+"""The pipelines: their typed graph, and what passes it, read once or as it goes on."""
+
+from __future__ import annotations
+
+from fastapi import APIRouter, WebSocket
+
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
+from sequence_planner.web.looking import FlowsShow
+from sequence_planner.web.request_parts import Controller
+from sequence_planner.web.stream import serve
+
+router = APIRouter(prefix="/pipelines", tags=["pipelines"])
+
+
+@router.get("")
+async def pipelines(client: Controller) -> PipelinesView:
+    """The typed graph: topics and flows with their stages, the fields on each edge, and what they become."""
+    return await client.pipelines()
+
+
+@router.get("/edges")
+async def edges(client: Controller) -> FlowsView:
+    """What has passed each edge: counts, rates, drops and the last record. Rates come with the second look."""
+    return await client.flows()
+
+
+@router.websocket("/stream")
+async def stream(websocket: WebSocket) -> None:
+    """Serve one client: what has passed each edge, twice a second."""
+    show: FlowsShow = websocket.app.state.flows_show
+    await serve(websocket, show.latest)

@@ -1,0 +1,70 @@
+"""Messages between two processes over real DDS: none is lost, and what they say is seen at once."""
+
+from __future__ import annotations
+
+import asyncio
+import random
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from running.stations import MODEL, PATIENCE, REPOSITORY, RunningStation, foreign_node, station
+from sequence_planner.emulation.spoken import Message, spoken
+from sequence_planner.pipelines.running import RunningPipelines
+from sequence_planner.station import ReadyStation, prepare_station
+
+BURSTS, BURST = 50, 20  # of messages of each topic
+PAUSE = 0.05  # seconds between two bursts
+SEEN_WITHIN = 5.0  # seconds
+
+
+def test_no_message_is_lost_and_the_last_one_counts(tmp_path: Path) -> None:
+    ready = prepare_station(REPOSITORY / MODEL)
+    topics = [each.topic for each in ready.pipelines.incoming.values()]
+    drawn = random.Random(5)
+    reference = RunningPipelines(ready.pipelines)
+
+    async def devices(running: RunningStation) -> None:
+        async with foreign_node() as (transport, registry):
+            for topic in topics:
+                transport.advertise(topic.name, topic.type_name, topic.quality)
+            await until(lambda: all(running.get("topics")[topic.name]["peers"] for topic in topics))
+            for _ in range(BURSTS):
+                for _ in range(BURST):
+                    for topic in topics:
+                        message = random_message(ready, topic.name, drawn)
+                        reference.take(topic.name, message, time.monotonic())
+                        transport.publish(topic.name, topic.type_name, registry.encode(topic.type_name, message))
+                await asyncio.sleep(PAUSE)
+            began = time.monotonic()
+            expected = reference.values(dict.fromkeys(ready.pipelines.sources, True))
+            heard = {topic.name: BURSTS * BURST for topic in topics}
+
+            def seen() -> bool:
+                said = running.get("topics")
+                return {name: said[name]["messages"] for name in heard} == heard
+
+            await until(seen)
+            assert time.monotonic() - began < SEEN_WITHIN
+            values = running.get("variables", "state")
+            assert {name: values[name]["value"] for name in expected} == expected
+
+    with station(tmp_path) as running:
+        asyncio.run(devices(running))
+
+
+async def until(what: Callable[[], bool]) -> None:
+    async with asyncio.timeout(PATIENCE):
+        while True:
+            if await asyncio.to_thread(what):
+                return
+            await asyncio.sleep(0.05)
+
+
+def random_message(ready: ReadyStation, topic: str, drawn: random.Random) -> Message:
+    """What a device says in a random state of its own."""
+    state = {
+        **ready.automaton.initial_valuation,
+        **{name: drawn.choice(list(ready.automaton.variables[name].type.domain)) for name in ready.pipelines.feeds},
+    }
+    return dict(spoken(ready.pipelines, topic, state, {}))
