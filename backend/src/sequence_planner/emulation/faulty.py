@@ -136,5 +136,5 @@ class FaultyDevices:
 
 
 def _garbage(data: bytes) -> bytes:
-    """As many bytes without sense, for a truth value or the length of a text; the middleware drops what is shorter."""
+    """As many bytes with all bits set: no number, no length of a text. The middleware would not send fewer."""
     return data[:_HEADER] + b"\xff" * (len(data) - _HEADER)
