@@ -134,3 +134,24 @@ def test_what_has_passed_can_be_seen(bench: Bench) -> None:
     assert view.edges[-1].last is not None
     assert (view.edges[-1].last["careful"], view.edges[-1].last["speed"]) == (True, 0.2)
     assert view.overrides["speed"] is not None
+
+
+def test_what_makes_no_sense_in_a_command_is_reported_until_it_does(tmp_path: Path) -> None:
+    resource = """
+topics:
+  /order:
+    type: tank_msgs/msg/Order
+    direction: out
+    pipeline: [expression: {speed: 1 / place}]
+output: {place: {type: 0..9, initial: 2}}
+"""
+    bench = Bench(station_with(tmp_path, resource, {"Order": "float64 speed 0.25\nuint8 place\n"}))
+    bench.commander.publish_all(bench.state, 0.0)
+    assert list(bench.commander.reports.current(0.0)) == []
+    bench.commander.publish({**bench.state, "tank.place": 0}, 0.1)
+    assert [message["speed"] for message in bench.sent()] == [0.5, 0.25]
+    [(place, _, report)] = bench.commander.reports.current(60.0)
+    assert place == "/order"
+    assert report.text == "1 / place divides by zero"
+    bench.commander.publish({**bench.state, "tank.place": 4}, 60.0)
+    assert list(bench.commander.reports.current(75.0)) == []

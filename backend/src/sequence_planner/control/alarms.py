@@ -6,6 +6,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from sequence_planner.control.bad_input import Reports
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution, TickOutcome
 from sequence_planner.control.feeds import Feeds
@@ -61,7 +62,8 @@ class Alarms:
                 self._controller(),
                 self._state(),
                 _topics(self._feeds, moment.monotonic),
-                _reports(self._feeds, moment),
+                _reports(self._feeds.reports, moment, "Check the node that sends it."),
+                _reports(self._commander.reports, moment, "The device gets the default instead. Correct the pipeline."),
                 _network(self._network, self._commander),
                 _plan(self._execution, planner_trouble),
                 _overdue(self._execution, self._reacted, moment.monotonic),
@@ -126,14 +128,14 @@ def _topics(feeds: Feeds, monotonic: float) -> Iterator[Cause]:
             )
 
 
-def _reports(feeds: Feeds, moment: Moment) -> Iterator[Cause]:
-    for place, cause, report in feeds.reports.current(moment.monotonic):
+def _reports(reports: Reports, moment: Moment, action: str) -> Iterator[Cause]:
+    for place, cause, report in reports.current(moment.monotonic):
         text = f"{place}: {report.text}"
         if report.count > 1:
             first, last = (time.localtime(moment.epoch_of(each)) for each in (report.first, report.last))
             when = f"first at {time.strftime('%H:%M:%S', first)}, last at {time.strftime('%H:%M:%S', last)}"
             text += f" ({report.count} times, {when})"
-        yield Cause(f"message:{place}:{cause}", Priority.MEDIUM, text, "Check the node that sends it.")
+        yield Cause(f"message:{place}:{cause}", Priority.MEDIUM, text, action)
 
 
 def _network(network: NetworkWatch, commander: Commander) -> Iterator[Cause]:

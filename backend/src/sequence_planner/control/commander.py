@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from sequence_planner.automaton.structure import State
+from sequence_planner.control.bad_input import Reports
 from sequence_planner.expressions.types import Value
 from sequence_planner.pipelines.graph import OutgoingPipeline
 from sequence_planner.pipelines.observation import PipelineView
@@ -58,6 +59,7 @@ class Commander:
         self.topics = {name: Command(pipeline, RunningOutgoing(pipeline)) for name, pipeline in pipelines.items()}
         self._registry = registry
         self._transport = transport
+        self.reports = Reports()
         for pipeline in pipelines.values():
             transport.advertise(pipeline.topic.name, pipeline.topic.type_name, pipeline.topic.quality)
 
@@ -118,6 +120,10 @@ class Commander:
             return
         command.message = message
         topic = command.pipeline.topic
+        for trouble in command.running.troubles:
+            self.reports.note(topic.name, trouble, now)
+        if not command.running.troubles:
+            self.reports.settle(topic.name)
         try:
             data = self._registry.encode(topic.type_name, message)
             self._transport.publish(topic.name, topic.type_name, data)

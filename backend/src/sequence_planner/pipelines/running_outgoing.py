@@ -12,30 +12,38 @@ from sequence_planner.pipelines.running_chain import RunningChain
 
 
 class RunningOutgoing:
-    """One outgoing topic. Nothing is sent here: messages are returned, as their fields."""
+    """One outgoing topic. Nothing is sent here: messages are returned, as their fields.
+
+    `troubles` say what made no sense in the record of which the last message came.
+    """
 
     def __init__(self, pipeline: OutgoingPipeline, patient: bool = False) -> None:
         self.chain = RunningChain(pipeline.chain, patient)
+        self.troubles: tuple[str, ...] = ()
         self._pipeline = pipeline
 
     def take(self, state: State, now: float) -> dict[str, object] | None:
         """The message that says `state`; None when a stage does not let it through, or not yet."""
         record = self.chain.take(Record({name: state[variable] for name, variable in self._pipeline.read.items()}), now)
-        return None if record is None else message_of(self._pipeline, record)
+        return None if record is None else self._message(record)
 
     def wake(self, now: float) -> Iterator[dict[str, object]]:
         """The messages that come because time has passed."""
-        return (message_of(self._pipeline, record) for record in self.chain.wake(now))
+        return map(self._message, self.chain.wake(now))
 
     def set_override(self, name: str, fields: Mapping[str, object], now: float, actor: str) -> dict[str, object] | None:
         """The message that comes because a person sets fields. Raises ValueError for what the model does not allow."""
         record = self.chain.set_override(name, fields, now, actor)
-        return None if record is None else message_of(self._pipeline, record)
+        return None if record is None else self._message(record)
 
     def clear_override(self, name: str, now: float) -> dict[str, object] | None:
         """The message that comes because a person takes back what was set."""
         record = self.chain.clear_override(name, now)
-        return None if record is None else message_of(self._pipeline, record)
+        return None if record is None else self._message(record)
+
+    def _message(self, record: Record) -> dict[str, object]:
+        self.troubles = tuple(record.troubles)
+        return message_of(self._pipeline, record)
 
     def observed(self) -> PipelineView:
         """What has passed each edge."""
