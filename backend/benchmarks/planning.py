@@ -25,7 +25,7 @@ from compared import abc, fast_downward
 from compared.aiger import aiger
 from compared.families import Problem, blocked, blocks, capacity, logistics, mutex, stations
 from compared.timing import ROUNDS, child, median, own
-from compared.truck import truck_engine_station
+from compared.bolts import bolt_tightening
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import apply_effects, finish, start, synchronise
@@ -56,11 +56,11 @@ def main() -> None:
         print("Fast Downward is not installed, and left out")
     if abc.PROGRAM is None:
         print("Berkeley ABC is not installed, and left out")
-    truck, small = truck_engine_station(), stations(3, 2, 2)
+    bolts, small = bolt_tightening(), stations(3, 2, 2)
     middle, large = stations(20, 8, 2), stations(40, 16, 2)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        for problem in (truck, small) if quick else (truck, small, middle):
+        for problem in (bolts, small) if quick else (bolts, small, middle):
             print(f"\nWarm re-plan while a plan is followed: {problem.name}, {problem.size}")
             for question, contract in REPLANS:
                 replan(problem, question, contract, folder, states=2 if quick else 7)
@@ -68,12 +68,12 @@ def main() -> None:
         whole_process(small if quick else middle, "part", folder)
     print("\nFast plan, cold, in process")
     for problem in (
-        (truck, small, logistics(5, 2), blocks(4))
+        (bolts, small, logistics(5, 2), blocks(4))
         if quick
-        else (truck, small, middle, large, logistics(40, 4), blocks(10))
+        else (bolts, small, middle, large, logistics(40, 4), blocks(10))
     ):
         for question in problem.questions:
-            fast(problem, question, compare=problem in (truck, small))
+            fast(problem, question, compare=problem in (bolts, small))
     print("\nNo plan at all, cold")
     with tempfile.TemporaryDirectory() as name:
         for family, sizes in ((mutex, (3, 8)), (blocked, (6, 40)), (capacity, (2, 3))):
