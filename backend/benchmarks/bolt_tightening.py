@@ -1,4 +1,4 @@
-"""What the bolt tightening station costs: safe states, plans (warm beside fresh), ticks and the look-ahead at each start.
+"""What the bolt tightening station costs: safe states, plans (warm beside fresh), ticks, the look-ahead at each start.
 
 Run with `make bench`. Figures are medians; ratios are taken within the run.
 """

@@ -23,9 +23,9 @@ from typing import TypeVar
 
 from compared import abc, fast_downward
 from compared.aiger import aiger
+from compared.bolts import bolt_tightening
 from compared.families import Problem, blocked, blocks, capacity, logistics, mutex, stations
 from compared.timing import ROUNDS, child, median, own
-from compared.bolts import bolt_tightening
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import apply_effects, finish, start, synchronise

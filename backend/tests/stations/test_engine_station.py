@@ -11,6 +11,7 @@ import pytest
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Kind, State
 from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.emulation.spoken import spoken
 from sequence_planner.emulation.truck_station.node import NODE_TYPES, PACKAGE, PREFIX
 from sequence_planner.emulation.truck_station.poses import PAIRS, POSES
 from sequence_planner.expressions.evaluation import holds
@@ -116,6 +117,15 @@ def test_a_person_who_takes_over_is_asked_to_tighten_by_hand() -> None:
     assert answer.plan is not None
     starts = [name for tick in answer.plan.ticks for name in tick.starts]
     assert starts == ["nutrunner.float", "operator.guide_nutrunner(AtBoltPair1TCPPose)"]
+
+
+def test_an_emulated_lift_says_what_it_was_told() -> None:
+    station = ready()[0]
+    lift = spoken(station.pipelines, f"{PREFIX}/aecu_uni_to_sp", initial_state(station.automaton), {})
+    assert (lift["got_cmd_activate_lift"], lift["got_cmd_activate_unload"]) == (True, False)
+    floating = situation({"nutrunner.lift_state": "floats"})
+    lift = spoken(station.pipelines, f"{PREFIX}/aecu_uni_to_sp", floating, {})
+    assert (lift["got_cmd_activate_lift"], lift["got_cmd_activate_unload"]) == (False, True)
 
 
 def test_what_is_measured_is_fed_and_what_is_commanded_leaves() -> None:

@@ -7,10 +7,10 @@ from stations.simulated import HallRig
 LONG_ENOUGH = 150.0  # seconds to the second tool of an engine
 
 
-def at_work(improves: bool = False) -> HallRig:
+def at_work() -> HallRig:
     """The station with production started."""
     rig = HallRig()
-    rig.improves = improves
+    rig.improves = False
     rig.start_production()
     return rig
 
@@ -28,9 +28,11 @@ def test_the_robot_leaves_its_tool_only_when_the_scene_says_that_it_has_let_go_o
 def test_the_robot_pulls_the_nutrunner_only_when_its_lift_floats() -> None:
     rig = at_work()
     assert rig.live(LONG_ENOUGH, until=lambda: "nutrunner.float" in rig.started)
-    rig.hall.restart("tool_ecu", 2.8)
+    rig.hall.freeze("tool_ecu", 25.0)
+    rig.live(24.8)
+    assert rig.hall.world.nutrunner.lift == "hold"
+    assert "ATLASTOOL" not in rig.hall.world.away
     assert rig.live(LONG_ENOUGH, until=lambda: "ATLASTOOL" in rig.hall.world.away)
-    assert rig.hall.world.nutrunner.lift == "float"
 
 
 def test_the_robot_lets_go_of_the_nutrunner_only_when_its_lift_holds() -> None:

@@ -38,7 +38,9 @@ class RememberStage:
         return RememberCourse(self)
 
     def backwards(self, values: dict[str, object]) -> None:
-        """A memory is no matter of the device's: it says only what is so now."""
+        """A device says what is so now: where the state does not tell that, it is what is remembered."""
+        if self.of.text not in values and values.get(self.variable) is not None:
+            values[self.of.text] = values[self.variable]
 
 
 @dataclass(slots=True)
