@@ -194,7 +194,7 @@ def test_a_question_that_is_called_off_is_not_answered_and_the_next_one_is() -> 
 
 # The process of a planner that is asked something, and all that it has started, as its parent sees them.
 PARENT = f"""
-import threading, time
+import signal, threading, time
 from pathlib import Path
 from sequence_planner.planning.racing.companion import Companion
 from sequence_planner.planning.reasons.diagnoser import Model
@@ -204,6 +204,7 @@ from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import synthesise
 
 if __name__ == "__main__":
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
     automaton = prepare_station(Path({str(CELL)!r})).automaton
     ready = threading.Event()
     supervisor = synthesise(automaton)
