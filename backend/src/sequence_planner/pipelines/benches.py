@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 
 from sequence_planner.automaton.structure import Automaton
@@ -23,7 +24,7 @@ class GivenError(Exception):
     """What an example gives cannot be taken; the text says why."""
 
 
-class Bench:
+class Bench(ABC):
     """A chain on its own, in time that is told."""
 
     trouble: str | None = None
@@ -40,13 +41,13 @@ class Bench:
             if self.chain.due == due:
                 return
 
+    @abstractmethod
     def give(self, given: Plain, now: float) -> None:
         """Take what an example gives. Raises `GivenError`."""
-        raise NotImplementedError
 
+    @abstractmethod
     def came(self) -> Plain:
         """What has come of it, by name; None is unknown."""
-        raise NotImplementedError
 
     def take(self, values: Plain, now: float) -> None:
         """Take a record."""
