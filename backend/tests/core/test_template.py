@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from itertools import product
+from typing import NamedTuple
+
 from hypothesis import given
 
 from sequence_planner.automaton.structure import Automaton, State
@@ -10,8 +13,10 @@ from sequence_planner.expressions.types import Value
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Circumstances
 from sequence_planner.planning.sat.circuit import Circuit
+from sequence_planner.planning.sat.flattening import flattened
 from sequence_planner.planning.sat.solver import Solver
 from sequence_planner.planning.sat.sweep import sweep_order
+from sequence_planner.planning.sat.template import Recorder
 from sequence_planner.planning.sat.unrolling import Unrolling
 
 from .budget import examples
@@ -124,35 +129,68 @@ def test_at_most_one_is_at_most_one(values: list[bool]) -> None:
     solver.close()
 
 
-def gates(choices: Choices) -> tuple[list[tuple[int, ...]], list[bool]]:
-    """Gates over inputs and gates before them, by their places counted from 1, and the values of the inputs."""
-    values = [choices.chance(2) for _ in range(choices.number(1, 4))]
-    made: list[tuple[int, ...]] = []
-    for top in range(len(values), len(values) + choices.number(1, 8)):
-        parts = [choices.number(1, top) for _ in range(choices.number(2, 3))]
-        made.append(tuple(-part if choices.chance(2) else part for part in parts))
-    return made, values
+class Gates(NamedTuple):
+    """Gates over inputs and gates before them, clauses over all of these, and the one that is asked for besides.
+
+    All by their places, counted from 1 and negative for the opposite.
+    """
+
+    inputs: int
+    parts: list[tuple[int, ...]]
+    clauses: list[tuple[int, ...]]
+    asked: int
 
 
-@examples(100)
+def gates(choices: Choices) -> Gates:
+    """Some, of which many stand in few clauses."""
+
+    def places(top: int, least: int) -> tuple[int, ...]:
+        some = [choices.number(1, top) for _ in range(choices.number(least, 3))]
+        return tuple(-place if choices.chance(2) else place for place in some)
+
+    inputs = choices.number(1, 4)
+    top = inputs + choices.number(1, 8)
+    parts = [places(before, 2) for before in range(inputs, top)]
+    clauses = [places(top, 1) for _ in range(choices.number(0, 4))]
+    return Gates(inputs, parts, clauses, choices.number(1, top))
+
+
+@examples(300)
 @given(made_by(gates))
-def test_literals_that_are_defined_later_can_be_true_exactly_where_they_are(
-    given_: tuple[list[tuple[int, ...]], list[bool]],
-) -> None:
-    made, values = given_
-    solver = Solver()
-    circuit = Circuit(solver, later=True)
-    literals = [circuit.fresh() for _ in values]
-    inputs, truths = circuit.top, list(values)
+def test_clauses_over_gates_mean_the_same_when_they_are_flattened(given_: Gates) -> None:
+    recorder = Recorder()
+    circuit = Circuit(recorder, later=True)
+    literals = [circuit.fresh() for _ in range(given_.inputs)]
+    inputs = circuit.top
 
     def at(place: int) -> int:
         return literals[place - 1] if place > 0 else -literals[-place - 1]
 
-    for parts in made:
+    for parts in given_.parts:
         literals.append(circuit.conjunction(map(at, parts)))
-        truths.append(all(truths[abs(part) - 1] is (part > 0) for part in parts))
-    assumed = [literal if value else -literal for literal, value in zip(literals, values, strict=False)]
-    for asked, truth in ((literals[-1], truths[-1]), (-literals[-1], not truths[-1])):
-        solver.add_clauses(circuit.definitions([asked], inputs))
-        assert solver.solve([*assumed, asked], Budget.seconds(60)) is truth
+    for clause in given_.clauses:
+        circuit.require(*map(at, clause))
+    solver, asked = Solver(), at(given_.asked)
+    solver.add_clauses(flattened(recorder.clauses, circuit.gates, inputs, {abs(asked)}))
+    for values in product((False, True), repeat=given_.inputs):
+        truths = list(values)
+        for parts in given_.parts:
+            truths.append(all(truths[abs(part) - 1] is (part > 0) for part in parts))
+        met = all(any(truths[abs(place) - 1] is (place > 0) for place in clause) for clause in given_.clauses)
+        assumed = [literal if value else -literal for literal, value in zip(literals, values, strict=False)]
+        for literal, truth in ((asked, truths[given_.asked - 1]), (-asked, not truths[given_.asked - 1])):
+            assert solver.solve([*assumed, literal], Budget.seconds(60)) is (met and truth)
     solver.close()
+
+
+def test_a_gate_that_stands_in_few_clauses_is_replaced_by_its_parts() -> None:
+    recorder = Recorder()
+    circuit = Circuit(recorder, later=True)
+    one, other, third = (circuit.fresh() for _ in range(3))
+    inputs, gate = circuit.top, circuit.both(one, other)
+    circuit.require(gate, third)
+    circuit.require(-gate, -third)
+    found = flattened(recorder.clauses, circuit.gates, inputs, set())
+    expected = {(Circuit.TRUE,), (one, third), (other, third), (-one, -other, -third)}
+    assert {tuple(sorted(clause, key=abs)) for clause in found} == expected
+    assert len(flattened(recorder.clauses, circuit.gates, inputs, {gate})) == len(recorder.clauses) + 3

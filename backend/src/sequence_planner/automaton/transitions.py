@@ -5,7 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 from functools import cached_property
 
-from sequence_planner.automaton.structure import Automaton, reads, target
+from sequence_planner.automaton.structure import Ability, Automaton, Effect, reads, target
 from sequence_planner.expressions.syntax import Assignment, Expression, conjunction, variables
 from sequence_planner.immutable import Immutable
 
@@ -51,20 +51,24 @@ def transitions(automaton: Automaton) -> tuple[Transition, ...]:
     """
     abilities = automaton.abilities.values()
     return (
-        *(Transition(e.name, Phase.SENSE, e.guard, e.actions, fault=e.fault) for e in automaton.effects),
-        *(
-            Transition(f"{a.name}.finish", Phase.FINISH, a.finish_guard, a.finish_actions)
-            for a in abilities
-            if a.finish_guard is not None
-        ),
-        *(
-            Transition(
-                f"{a.name}.start",
-                Phase.START,
-                conjunction(a.enabled, a.start_guard),
-                a.start_actions,
-                restart=a.restart,
-            )
-            for a in abilities
-        ),
+        *map(sensing, automaton.effects),
+        *(finishing(ability) for ability in abilities if ability.finish_guard is not None),
+        *map(starting, abilities),
     )
+
+
+def sensing(effect: Effect) -> Transition:
+    """The transition of an effect."""
+    return Transition(effect.name, Phase.SENSE, effect.guard, effect.actions, fault=effect.fault)
+
+
+def finishing(ability: Ability) -> Transition:
+    """The finish of an ability that has one."""
+    assert ability.finish_guard is not None
+    return Transition(f"{ability.name}.finish", Phase.FINISH, ability.finish_guard, ability.finish_actions)
+
+
+def starting(ability: Ability) -> Transition:
+    """The start of an ability."""
+    guard = conjunction(ability.enabled, ability.start_guard)
+    return Transition(f"{ability.name}.start", Phase.START, guard, ability.start_actions, restart=ability.restart)

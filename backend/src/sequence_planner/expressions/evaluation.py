@@ -42,7 +42,8 @@ def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
     formula, which has a value only over a trace (see `traces`).
     """
     # What is most frequent comes first, and is asked for without patterns, which take several times as long to match.
-    if isinstance(expression, And):
+    # From none of these classes others are derived.
+    if type(expression) is And:
         unknown = False
         for part in expression.operands:
             truth = evaluate(part, valuation)
@@ -50,17 +51,17 @@ def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
                 return False
             unknown = unknown or truth is None
         return None if unknown else True
-    if isinstance(expression, Comparison):
+    if type(expression) is Comparison:
         left, right = expression.left, expression.right
-        a = valuation[left.name] if isinstance(left, Variable) else evaluate(left, valuation)
-        b = right.value if isinstance(right, Constant) else evaluate(right, valuation)
+        a = valuation[left.name] if type(left) is Variable else evaluate(left, valuation)
+        b = right.value if type(right) is Constant else evaluate(right, valuation)
         return None if a is None or b is None else RELATIONS[expression.operator](a, b)
-    if isinstance(expression, Variable):
+    if type(expression) is Variable:
         return valuation[expression.name]
-    if isinstance(expression, Not):
+    if type(expression) is Not:
         truth = evaluate(expression.operand, valuation)
         return None if truth is None else not truth
-    if isinstance(expression, Or):
+    if type(expression) is Or:
         unknown = False
         for part in expression.operands:
             truth = evaluate(part, valuation)
@@ -68,7 +69,7 @@ def evaluate(expression: Expression, valuation: Valuation) -> Value | None:
                 return True
             unknown = unknown or truth is None
         return None if unknown else False
-    if isinstance(expression, Constant):
+    if type(expression) is Constant:
         return expression.value
     return _less_frequent(expression, valuation)
 

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from math import inf
 
 
 class SpentError(Exception):
@@ -13,10 +14,14 @@ class SpentError(Exception):
 
 
 class Budget:
-    """Until a moment on the clock of `time.monotonic`, or until it is called off from another thread."""
+    """Until a moment on the clock of `time.monotonic`, or until it is called off from another thread.
 
-    def __init__(self, until: float) -> None:
+    Or until a moment on the clock of `time.process_time`, which stands still while others have the processor.
+    """
+
+    def __init__(self, until: float, worked_until: float = inf) -> None:
         self.until = until
+        self._worked_until = worked_until
         self._off = threading.Event()
         self._lock = threading.Lock()
         self._interrupts: list[Callable[[], object]] = []
@@ -28,13 +33,18 @@ class Budget:
 
     @property
     def remaining(self) -> float:
-        """The seconds that are left, none when it was called off."""
-        return 0.0 if self._off.is_set() else max(self.until - time.monotonic(), 0.0)
+        """The seconds that are left at least, none when it was called off."""
+        if self._off.is_set():
+            return 0.0
+        left = self.until - time.monotonic()
+        if self._worked_until != inf:
+            left = min(left, self._worked_until - time.process_time())
+        return max(left, 0.0)
 
     @property
     def spent(self) -> bool:
         """Whether work on the question must end."""
-        return self._off.is_set() or time.monotonic() >= self.until
+        return self.remaining == 0.0
 
     def require(self) -> None:
         """Raises `SpentError` when work on the question must end."""
@@ -52,20 +62,35 @@ class Budget:
     @contextmanager
     def interrupting(self, interrupt: Callable[[], object]) -> Iterator[None]:
         """While the body runs, `interrupt` is called, in another thread, as soon as the budget is spent."""
-        alarm = threading.Timer(self.remaining, interrupt)
+        done = threading.Event()
+        alarm = threading.Thread(target=self._ring, args=(interrupt, done))
         with self._lock:
             self._interrupts.append(interrupt)
         alarm.start()
         try:
             yield
         finally:
-            alarm.cancel()
+            done.set()
             alarm.join()
             with self._lock:
                 self._interrupts.remove(interrupt)
 
     def part(self, share: float) -> Budget:
         """A share of the time that is left; calling off the whole calls off the part."""
-        part = Budget(time.monotonic() + share * self.remaining)
+        return self._of_this(time.monotonic() + share * self.remaining, self._worked_until)
+
+    def working(self, seconds: float) -> Budget:
+        """As much of it as this process works for so many seconds, however long others hold it up."""
+        return self._of_this(self.until, min(time.process_time() + seconds, self._worked_until))
+
+    def _of_this(self, until: float, worked_until: float) -> Budget:
+        part = Budget(until, worked_until)
         part._off, part._lock, part._interrupts = self._off, self._lock, self._interrupts
         return part
+
+    def _ring(self, interrupt: Callable[[], object], done: threading.Event) -> None:
+        """Wait until the budget is spent, which may take longer than it seemed; nothing more when it is done before."""
+        while not self.spent:
+            if done.wait(self.remaining):
+                return
+        interrupt()

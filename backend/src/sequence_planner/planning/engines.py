@@ -16,7 +16,14 @@ from sequence_planner.planning.plan import Contract
 
 # Seconds; each further turn is twice as long, so that no engine costs another much more than its own time.
 FIRST_TURN = 0.1
-LONG_FIRST_TURNS = {"partial sight": 2.0, "goal by goal": 2.0, "projection": 2.0, "search": 0.5, "bmc": 1.5}
+LONG_FIRST_TURNS = {
+    "first sight": 1.0,
+    "partial sight": 2.0,
+    "goal by goal": 2.0,
+    "projection": 2.0,
+    "search": 0.5,
+    "bmc": 1.5,
+}
 
 Factory = Callable[[Automaton, Supervisor], Engine]
 

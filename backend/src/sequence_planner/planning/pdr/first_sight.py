@@ -17,7 +17,8 @@ if TYPE_CHECKING:
     from sequence_planner.planning.pdr.engine import Reachability
 
 
-# Variables beyond which something else is tried first, and seconds for a look.
+# Variables beyond which something else is tried first, and seconds of work for a look: those during which others have
+# the processor do not count, or a busy machine would turn away what is soon seen.
 _FEW = 100
 _GLANCE = 0.1
 _MOST_IN_VAIN = 16  # questions that are remembered
@@ -39,9 +40,8 @@ class FirstSight:
         asked = task.goals, task.circumstances
         if not self._few or asked in self._in_vain or budget.spent:
             return Finding()
-        glance = budget.part(_GLANCE / max(budget.remaining, _GLANCE))
         with suppress(SpentError):
-            finding = self._reachability.at_first_sight(task, glance)
+            finding = self._reachability.at_first_sight(task, budget.working(_GLANCE))
             if finding.decided:
                 return finding
         if len(self._in_vain) == _MOST_IN_VAIN:

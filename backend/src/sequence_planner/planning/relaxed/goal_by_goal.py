@@ -14,28 +14,31 @@ from functools import cached_property
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.collection import collection_put_off
 from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.goals.pursuit import Goals
+from sequence_planner.planning.goals.pursuit import Goals, moved, settled
 from sequence_planner.planning.plan import Contract, Plan, PlanTick
 from sequence_planner.planning.relaxed.causal_order import CausalOrder
-from sequence_planner.planning.relaxed.projection import Projection
+from sequence_planner.planning.relaxed.projection import Outline, Projection
 from sequence_planner.planning.replaying.acceptance import Acceptance
+from sequence_planner.planning.replaying.reference_run import ReferenceRun
 
 _MOST_SHARED = 0.25  # of the variables that a goal's relaxed plan writes, those that another's writes too
 _LONGER = 1.5  # than the longest of its parts a plan may be
 
 
 class _Work:
-    """What has been done of a task, whose goals are planned for in their order: the plans up to now."""
+    """What has been done of a task, from where its runs begin: the plans up to now for its goals, in their order."""
 
-    def __init__(self, task: Task, goals: Goals, acceptance: Acceptance, order: CausalOrder) -> None:
+    def __init__(self, first: Outline, task: Task, goals: Goals, begun: ReferenceRun, order: CausalOrder) -> None:
         self.task = task
+        self.goals = goals  # still missing
+        self.begun = begun
         self.order = order
-        self.run = acceptance.begin(replace(task, goals=goals))
         self.longest = 0  # ticks of one of the plans
-        self.next = replace(task, goals=goals[:1])
+        self.next = first.task
 
 
 class GoalByGoal:
@@ -48,25 +51,22 @@ class GoalByGoal:
         self._supervisor = supervisor
         self._work: _Work | None = None
 
+    @collection_put_off()
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A plan for several goals that are nearly independent; nothing for others, or by another contract."""
         if task.contract is not Contract.FAST or len(task.goals) < 2:
             return Finding()
         if self._work is None or self._work.task is not task:
-            goals = self._ordered(task)
-            if goals is None:
-                return Finding()
-            self._work = _Work(task, goals, self._acceptance, CausalOrder(self._automaton))
+            self._work = self._begun(task)
         work = self._work
-        while work.run.goals:
+        while work is not None and work.goals:
             plan = self._projection.solve(work.next, budget).plan
             if plan is None and budget.spent:
                 return Finding()
             if plan is None or not self._taken(work, plan):
-                self._work = None
-                return Finding()
+                work = None
         self._work = None
-        return Finding(self._together(work))
+        return Finding(None if work is None else self._together(work))
 
     @cached_property
     def _projection(self) -> Projection:
@@ -76,44 +76,55 @@ class GoalByGoal:
     def _acceptance(self) -> Acceptance:
         return Acceptance.of(self._automaton, self._supervisor)
 
-    def _ordered(self, task: Task) -> Goals | None:
-        """The goals, first those that seem to take longest; None if they have too much in common, as far as is seen."""
-        written: list[frozenset[str]] = []
-        layers: dict[str, int] = {}
+    def _begun(self, task: Task) -> _Work | None:
+        """Nothing done yet, goals that seem to take longest first; None if they seem to have too much in common."""
+        outlines: list[Outline] = []
         for goal in task.goals:
             outline = self._projection.outline(replace(task, goals=(goal,)))
             if outline is None:
                 return None
-            written.append(outline[0])
-            layers[goal.name] = outline[1]
-        times = Counter(name for each in written for name in each)
-        if any(sum(times[name] > 1 for name in each) > _MOST_SHARED * len(each) for each in written):
+            outlines.append(outline)
+        times = Counter(name for outline in outlines for name in outline.written)
+        if any(sum(times[name] > 1 for name in each.written) > _MOST_SHARED * len(each.written) for each in outlines):
             return None
-        return tuple(sorted(task.goals, key=lambda goal: -layers[goal.name]))
+        outlines.sort(key=lambda outline: -outline.layers)
+        self._projection.take_up(outlines[0])
+        goals = tuple(goal for outline in outlines for goal in outline.task.goals)
+        run = self._acceptance.begin(task)
+        self._acceptance.begin_at(outlines[0].task, run.fork(outlines[0].task.goals))
+        return _Work(outlines[0], task, goals, run, CausalOrder(self._automaton))
 
     def _taken(self, work: _Work, plan: Plan) -> bool:
         """Go on with `plan`, noting what waits for what; whether that can be with all goals in mind."""
-        run, effects = work.run, {effect.name: effect for effect in self._automaton.effects}
-        for tick in plan.ticks:
-            before = run.values.copy()
-            if not run.settle(tick.effects):
+        course = self._acceptance.course(work.next, plan)
+        if course is None:
+            return False
+        effects = {effect.name: effect for effect in self._automaton.effects}
+        before, run = work.next.state, work.begun
+        for point in course.way:
+            tick, run = plan.ticks[point.tick], point.run
+            if point.starts == 0:
+                for name in tick.effects:
+                    work.order.happens(effects[name], before)
+                left = settled(work.goals, run.values)
+            else:
+                work.order.starts(self._automaton.abilities[tick.starts[point.starts - 1]], before)
+                left = moved(work.goals, run.values)
+            if left is None:
                 return False
-            for name in tick.effects:
-                work.order.happens(effects[name], before)
-            for name in tick.starts if run.goals else ():
-                before = run.values.copy()
-                if not run.start(name):
-                    return False
-                work.order.starts(self._automaton.abilities[name], before)
+            before, work.goals = run.values, left
+            if not left:
+                break
         work.longest = max(work.longest, len(plan.ticks))
-        work.next = replace(work.task, state=run.values.copy(), goals=run.goals[:1])
+        work.next = replace(work.task, state=before, goals=work.goals[:1])
+        self._acceptance.begin_at(work.next, run.fork(work.next.goals))
         return True
 
     def _together(self, work: _Work) -> Plan | None:
         """The plan in which every event comes as soon as it may; None if it is too long, or none."""
         events, task = work.order.events, work.task
-        run, pending, done = self._acceptance.begin(task), list(range(len(events))), set[int]()
-        run.look_ahead()
+        run, pending, done = work.begun.fork(), list(range(len(events))), set[int]()
+        self._acceptance.begin_at(task, work.begun)
         ticks: list[PlanTick] = []
         while run.goals:
             if len(ticks) >= min(_LONGER * work.longest, task.longest):

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from sequence_planner.automaton.structure import Ability, Automaton, target
 from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import Constant, Expression, conjunction, variables
+from sequence_planner.expressions.syntax import Constant, Expression, conjunction, conjuncts, variables
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.known import Known, equalities
 
@@ -35,10 +35,10 @@ def likely_order(part: Automaton) -> tuple[Ability, ...]:
 
 def _before(abilities: Mapping[str, Ability]) -> dict[str, dict[str, None]]:
     """For each ability those that should have their place before it."""
-    guards = {name: conjunction(ability.enabled, ability.start_guard) for name, ability in abilities.items()}
+    guards = {name: _Guard(conjunction(ability.enabled, ability.start_guard)) for name, ability in abilities.items()}
     readers: dict[str, list[str]] = defaultdict(list)
     for name, guard in guards.items():
-        for variable in dict.fromkeys(variables(guard)):
+        for variable in guard.reading:
             readers[variable].append(name)
     before: dict[str, dict[str, None]] = {name: {} for name in abilities}
     for name, ability in abilities.items():
@@ -48,13 +48,23 @@ def _before(abilities: Mapping[str, Ability]) -> dict[str, dict[str, None]]:
             for reader in readers[variable]:
                 if reader == name:
                     continue
-                if isinstance(action.value, Constant) and _excludes(guards[reader], variable, action.value.value):
+                if isinstance(action.value, Constant) and guards[reader].excludes(variable, action.value.value):
                     before[name][reader] = None
-                elif not any(n not in written and _excludes(guards[name], n, v) for n, v in equalities(guards[reader])):
+                elif not any(n not in written and guards[name].excludes(n, v) for n, v in guards[reader].equalities):
                     before[reader][name] = None
     return before
 
 
-def _excludes(guard: Expression, variable: str, value: Value) -> bool:
-    """Whether `guard` cannot hold while the variable has that value."""
-    return evaluate(guard, Known({variable: value})) is False
+class _Guard:
+    """What a guard asks of variables, one by one."""
+
+    def __init__(self, guard: Expression) -> None:
+        self.reading: dict[str, list[Expression]] = defaultdict(list)  # parts by the variables that they read
+        for part in conjuncts(guard):
+            for name in dict.fromkeys(variables(part)):
+                self.reading[name].append(part)
+        self.equalities = tuple(equalities(guard))
+
+    def excludes(self, name: str, value: Value) -> bool:
+        """Whether it cannot hold while the variable `name` has that value."""
+        return any(evaluate(part, Known({name: value})) is False for part in self.reading.get(name, ()))

@@ -13,8 +13,6 @@ from sequence_planner.immutable import replace
 from sequence_planner.planning.relaxed.relevance import Relevance
 from sequence_planner.planning.relaxed.usefulness import useful, written_by
 
-_FLAGS = ("enabled", "executing", "finished")
-
 
 def part_of(
     automaton: Automaton,
@@ -44,7 +42,10 @@ def part_of(
     part = replace(automaton, abilities=abilities, effects=effects)
     if serving is not None:
         part = useful(part, serving, asked)
-    known = _with_flags(automaton, (*_read(part, supervisor), *(name for each in asked for name in variables(each))))
+    read = [*_read(part, supervisor), *(name for each in asked for name in variables(each))]
+    if None in state.values():  # the flag that an ability is enabled is then more than its predicate
+        read += (ability.flag("enabled") for ability in part.abilities.values())
+    known = _with_flags(automaton, read)
     return replace(
         part,
         variables=_narrowed(part, state, known | loose),
@@ -60,7 +61,6 @@ def _read(part: Automaton, supervisor: Supervisor) -> Iterator[str]:
             yield from variables(predicate)
         for action in (*ability.start_actions, *ability.finish_actions):
             yield from reads(action)
-        yield from map(ability.flag, _FLAGS)
         if (guard := supervisor.guards.get(ability.name)) is not None:
             yield from guard.names
     for effect in part.effects:

@@ -12,7 +12,9 @@ from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State, target
 from sequence_planner.automaton.transitions import Phase, Transition
+from sequence_planner.collection import collection_put_off
 from sequence_planner.expressions.syntax import Expression
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Contract, Plan
@@ -29,6 +31,15 @@ from sequence_planner.planning.sat.unrolling import Unrolling
 _LONGER, _MORE = 2, 4
 # Of the variables, unless they are few; beyond, nothing is gained.
 _MOST, _FEW = 0.7, 50
+
+
+class Outline(Immutable):
+    """A relaxed plan of `task`, its layers, and the variables that it writes."""
+
+    task: Task
+    relaxed: Sequence[Transition]
+    layers: int
+    written: frozenset[str]
 
 
 class _Work:
@@ -57,32 +68,41 @@ class Projection:
         )
         self._work: _Work | None = None
 
+    @collection_put_off()
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A plan, if freezing what does not seem to matter leaves one that replays; nothing by another contract."""
-        if task.contract is not Contract.FAST or not self._reacts:
+        if task.contract is not Contract.FAST:
             return Finding()
         if self._work is None or self._work.task is not task:
-            self._work = self._begun(task)
+            outline = self.outline(task)
+            if outline is None:
+                return Finding()
+            self.take_up(outline)
+        assert self._work is not None
         try:
-            plan = None if self._work is None else self._plan(self._work, budget)
+            plan = self._plan(self._work, budget)
         except SpentError:
             return Finding()
         self._work = None
         return Finding(plan)
 
-    def outline(self, task: Task) -> tuple[frozenset[str], int] | None:
-        """The variables that a relaxed plan of `task` writes, and its layers; None if there is none, or this is no
-        engine for the task.
-        """
-        found = self._relaxed_plan(task) if self._reacts else None
-        return None if found is None else (self._written(found[0]), found[1])
+    def outline(self, task: Task) -> Outline | None:
+        """None if there is no relaxed plan of `task`, or this is no engine for it.
 
-    def _begun(self, task: Task) -> _Work | None:
-        found = self._relaxed_plan(task)
-        if found is None:
-            return None
-        relaxed, layers = found
-        return _Work(task, min(task.longest, _LONGER * layers + _MORE), self._parts(task, relaxed))
+        The plan is made of what seems to matter if possible.
+        """
+        goals = [goal.predicate for goal in task.goals]
+        for moves in self._moves(task, goals) if self._reacts else ():
+            guess = RelaxedPlan(self._automaton, task.state, moves)
+            relaxed = guess.towards(goals)
+            if relaxed is not None:
+                return Outline(task, relaxed, guess.layers, self._written(relaxed))
+        return None
+
+    def take_up(self, outline: Outline) -> None:
+        """Begin to work on its task, which is asked for next."""
+        longest = min(outline.task.longest, _LONGER * outline.layers + _MORE)
+        self._work = _Work(outline.task, longest, self._parts(outline))
 
     def _plan(self, work: _Work, budget: Budget) -> Plan | None:
         """A plan of the first part that has one which replays. Raises `SpentError`."""
@@ -106,41 +126,31 @@ class Projection:
         inside = self._supervisor.safe.includes(state)
         return Unrolling(part, self._supervisor, order, unknown, inside, frozen, oracles=frozenset(), budget=budget)
 
-    def _parts(self, task: Task, relaxed: Sequence[Transition]) -> Iterator[Automaton]:
+    def _parts(self, outline: Outline) -> Iterator[Automaton]:
         """The parts to be tried, from the smallest on: of the first only what serves the relaxed plan."""
-        serving: list[str] | None = [_unit(move) for move in relaxed]
+        task = outline.task
+        serving: list[str] | None = [_unit(move) for move in outline.relaxed]
         last: Set[str] = frozenset()
-        for loose in self._loosened(task, relaxed):
+        for loose in self._loosened(outline):
             if loose == last or len(loose) > max(_MOST * len(self._automaton.variables), _FEW):
                 return
             part = part_of(self._automaton, self._supervisor, self._relevance, task.state, loose, _asked(task), serving)
             yield part
             serving, last = None, loose
 
-    def _relaxed_plan(self, task: Task) -> tuple[Sequence[Transition], int] | None:
-        """A relaxed plan, made of what seems to matter if possible, and its layers."""
-        goals = [goal.predicate for goal in task.goals]
-        for moves in self._moves(task, goals):
-            guess = RelaxedPlan(self._automaton, task.state, moves)
-            relaxed = guess.towards(goals)
-            if relaxed is not None:
-                return relaxed, guess.layers
-        return None
-
     def _moves(self, task: Task, goals: Sequence[Expression]) -> Iterator[Sequence[Transition]]:
         yield self._relevance.towards(goals, task.state, task.circumstances)
         yield self._relevance.counted_on(task.state, task.circumstances)
 
-    def _loosened(self, task: Task, relaxed: Sequence[Transition]) -> Iterator[frozenset[str]]:
+    def _loosened(self, outline: Outline) -> Iterator[frozenset[str]]:
         """Sets of variables to be let loose, each larger than the one before.
 
         First those that the relaxed plan writes, then those that it reads, and at last all that transitions touch which
         write one of these, and all that keeps starts of these.
         """
-        written = self._written(relaxed)
-        yield written
-        loose = written | read_variables(self._automaton, _asked(task))
-        yield loose.union(*map(self._touched, relaxed))
+        yield outline.written
+        loose = outline.written | read_variables(self._automaton, _asked(outline.task))
+        yield loose.union(*map(self._touched, outline.relaxed))
         while True:
             loose = self._widened(loose)
             yield loose

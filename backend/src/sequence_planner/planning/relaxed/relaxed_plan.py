@@ -95,14 +95,17 @@ class RelaxedPlan:
         new: list[tuple[Fact, _Way]] = []
         guard: _Support | None = None
         for action in move.actions:
-            name = target(action)
-            if len(self._costs[name]) == len(self._automaton.variables[name].type.domain):
+            name, written = target(action), action.value
+            costs = self._costs[name]
+            if not costs or len(costs) == len(self._automaton.variables[name].type.domain):
+                continue  # what is unknown stays so
+            if isinstance(written, Constant) and written.value in costs:
                 continue
             guard = guard or self._support(move.guard, True)
             if guard is None:
                 return []
             for value, (cost, facts) in self._written(action):
-                if value not in self._costs[name] and self._costs[name]:  # what is unknown stays so
+                if value not in costs:
                     new.append(((name, value), (1 + guard[0] + cost, move, guard[1] + facts)))
         return new
 

@@ -8,11 +8,12 @@ not looked for elsewhere when it finishes. It is a guess; where it leaves too li
 from __future__ import annotations
 
 from collections import defaultdict, deque
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import cached_property, partial
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Automaton, State, target
-from sequence_planner.automaton.transitions import Phase, Transition, transitions
+from sequence_planner.automaton.transitions import Phase, Transition, finishing, sensing, starting
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import (
     And,
@@ -34,24 +35,48 @@ from sequence_planner.planning.plan import Circumstances
 Fact = tuple[str, Value | None]  # a value that a variable does not have; with None, whichever
 _Write = tuple[int, Assignment]  # an action, with the number of its transition
 
+_JUNCTIONS = (And, Or)
+
 
 class Relevance:
     """Finds the transitions of one automaton."""
 
     def __init__(self, automaton: Automaton) -> None:
         self._automaton = automaton
-        self.transitions = transitions(automaton)  # all of them
-        self._resources = {effect.name: effect.resource for effect in automaton.effects}
-        self._numbers = {move.name: number for number, move in enumerate(self.transitions)}
+        abilities = automaton.abilities.values()
+        # Of a large station few transitions matter, so that they are made as they are asked for.
+        self._makers: list[Callable[[], Transition]] = []
+        self._made: dict[int, Transition] = {}
+        self._starts: dict[str, int] = {}  # by ability
         self._writes: dict[str, list[_Write]] = defaultdict(list)
-        for number, move in enumerate(self.transitions):
-            for action in move.actions:
-                self._writes[target(action)].append((number, action))
+        for effect in automaton.effects:
+            self._add(partial(sensing, effect), effect.actions)
+        for ability in abilities:
+            if ability.finish_guard is not None:
+                self._add(partial(finishing, ability), ability.finish_actions)
+        for ability in abilities:
+            self._starts[ability.name] = len(self._makers)
+            self._add(partial(starting, ability), ability.start_actions)
+
+    def _add(self, maker: Callable[[], Transition], actions: Iterable[Assignment]) -> None:
+        for action in actions:
+            self._writes[target(action)].append((len(self._makers), action))
+        self._makers.append(maker)
+
+    def _transition(self, number: int) -> Transition:
+        if number not in self._made:
+            self._made[number] = self._makers[number]()
+        return self._made[number]
+
+    @property
+    def transitions(self) -> Iterator[Transition]:
+        """All of them, as `automaton.transitions` has them."""
+        return map(self._transition, range(len(self._makers)))
 
     def writing(self, names: Iterable[str]) -> list[Transition]:
         """All transitions that write one of these variables, in order."""
         numbers = {number for name in names for number, _ in self._writes[name]}
-        return [self.transitions[number] for number in sorted(numbers)]
+        return [self._transition(number) for number in sorted(numbers)]
 
     def counted_on(self, state: State, circumstances: Circumstances) -> list[Transition]:
         """All that a plan from `state` may be made of, in order."""
@@ -71,17 +96,22 @@ class Relevance:
             seen.add(fact)
             for number, action in self._bringing(fact):
                 if number not in moves:
-                    moves[number] = self._counted_on(self.transitions[number], state, circumstances)
+                    moves[number] = self._counted_on(self._transition(number), state, circumstances)
                 move = moves[number]
                 if move is None:
                     continue
                 pending += here.of_action(action, move.guard)
                 if move.phase is Phase.FINISH:
                     # It comes after its own start, and looks for nobody else to bring what that brings.
-                    start = self._numbers[f"{move.name.rpartition('.')[0]}.start"]
-                    moves[start] = self._counted_on(self.transitions[start], state, circumstances)
-                    seen.update(_brought(self.transitions[start].actions))
+                    number = self._starts[move.name.rpartition(".")[0]]
+                    start = self._transition(number)
+                    moves[number] = self._counted_on(start, state, circumstances)
+                    seen.update(_brought(start.actions))
         return [move for _, move in sorted(moves.items()) if move is not None]
+
+    @cached_property
+    def _resources(self) -> dict[str, str]:
+        return {effect.name: effect.resource for effect in self._automaton.effects}
 
     def _bringing(self, fact: Fact) -> Iterator[_Write]:
         name, value = fact
@@ -130,19 +160,21 @@ class _Missing:
         flags = self._automaton.flag_predicates
         if evaluate(predicate, self._state) is truth:
             return []
+        # What is most frequent comes first, and without patterns, as in `expressions.evaluation.evaluate`.
+        if isinstance(predicate, _JUNCTIONS):
+            parts = [self.of(part, truth) for part in predicate.operands]
+            if isinstance(predicate, Or) is truth:
+                least = min(map(len, parts))
+                parts = [part for part in parts if len(part) == least]
+            return [fact for part in parts for fact in part]
+        if isinstance(predicate, Variable):
+            name = predicate.name
+            return self.of(flags[name], truth) if name in flags else [(name, truth)]
         match predicate:
-            case Variable(name):
-                return self.of(flags[name], truth) if name in flags else [(name, truth)]
-            case Not(operand):
-                return self.of(operand, not truth)
-            case And(operands) | Or(operands):
-                parts = [self.of(part, truth) for part in operands]
-                if isinstance(predicate, Or) is truth:
-                    least = min(map(len, parts))
-                    parts = [part for part in parts if len(part) == least]
-                return [fact for part in parts for fact in part]
-            case Implies(left, right):
-                return self.of(Or((Not(left), right)), truth)
             case Comparison("==" | "!=" as relation, Variable(name), Constant(value)) if truth is (relation == "=="):
                 return [(name, value)]
+            case Not(operand):
+                return self.of(operand, not truth)
+            case Implies(left, right):
+                return self.of(Or((Not(left), right)), truth)
         return [(name, None) for name in read_variables(self._automaton, (predicate,))]

@@ -27,6 +27,8 @@ from sequence_planner.planning.known import Known
 
 Fact = tuple[str, Value]
 
+_JUNCTIONS = (And, Or)
+
 
 def useful(automaton: Automaton, taken: Iterable[str], goals: Iterable[Expression]) -> Automaton:
     """`automaton` with no other abilities and effects than those `taken`, by name, and those that bring values which
@@ -90,22 +92,24 @@ def _asked_by(automaton: Automaton, unit: Ability | Effect) -> Iterator[Fact]:
 
 def _asked(automaton: Automaton, predicate: Expression, truth: bool) -> Iterator[Fact]:
     """The values by which `predicate` can get the value `truth`; a difference asks for none."""
+    # What is most frequent comes first, and without patterns, as in `expressions.evaluation.evaluate`.
+    if isinstance(predicate, _JUNCTIONS):
+        for part in predicate.operands:
+            yield from _asked(automaton, part, truth)
+        return
+    if isinstance(predicate, Variable):
+        flag = automaton.flag_predicates.get(predicate.name)
+        yield from ((predicate.name, truth),) if flag is None else _asked(automaton, flag, truth)
+        return
     match predicate:
-        case Variable(name) if name in automaton.flag_predicates:
-            yield from _asked(automaton, automaton.flag_predicates[name], truth)
-        case Variable(name):
-            yield name, truth
-        case Not(operand):
-            yield from _asked(automaton, operand, not truth)
-        case And(operands) | Or(operands):
-            for part in operands:
-                yield from _asked(automaton, part, truth)
-        case Implies(left, right):
-            yield from _asked(automaton, left, not truth)
-            yield from _asked(automaton, right, truth)
         case Comparison("==" | "!=" as relation, Variable(name), Constant(value)):
             if truth is (relation == "=="):
                 yield name, value
+        case Not(operand):
+            yield from _asked(automaton, operand, not truth)
+        case Implies(left, right):
+            yield from _asked(automaton, left, not truth)
+            yield from _asked(automaton, right, truth)
         case Comparison(_, Variable(name) as variable, Constant()) | Membership(Variable(name) as variable, _):
             for value in variable.type.domain:
                 if evaluate(predicate, Known({name: value})) is truth:

@@ -95,6 +95,10 @@ class Acceptance:
             self._begun = task, run
         return self._begun[1].fork()
 
+    def begin_at(self, task: Task, run: ReferenceRun) -> None:
+        """From now on runs of `task` begin where `run` is, which has led to its state and misses its goals."""
+        self._begun = task, run
+
     def _may_be(self, task: Task, plan: Plan) -> bool:
         return len(plan.ticks) <= task.longest and all(self._counted_on(task, tick) for tick in plan.ticks)
 

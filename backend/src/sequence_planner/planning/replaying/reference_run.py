@@ -18,7 +18,7 @@ from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.goals.pursuit import moved, settled
+from sequence_planner.planning.goals.pursuit import Goals, moved, settled
 from sequence_planner.planning.sat.following import Following
 
 _KEPT = 1000  # sets of variables that have changed
@@ -77,9 +77,11 @@ class ReferenceRun:
         self.values = before
         self._finished()
 
-    def fork(self) -> ReferenceRun:
-        """A run of its own that goes on from here."""
+    def fork(self, goals: Goals | None = None) -> ReferenceRun:
+        """A run of its own that goes on from here, towards other `goals` if there are any."""
         fork = copy(self)
+        if goals is not None:
+            fork.goals = goals
         fork.values, fork._due, fork._finishers = self.values.copy(), self._due.copy(), self._finishers.copy()
         fork._possible = self._possible.copy()
         fork._effects = None if self._effects is None else self._effects.copy()

@@ -6,7 +6,7 @@ can be assumed either way, or later only in those that are needed.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from typing import Protocol
 
 
@@ -24,12 +24,17 @@ class Circuit:
     FALSE = -1
 
     def __init__(self, sink: ClauseSink, later: bool = False) -> None:
-        """With `later`, gates mean nothing to `sink` before it is given their `definitions`."""
+        """With `later`, gates mean nothing to `sink` before somebody defines them."""
         self._add = sink.add_clause
         self._later = later
         self._top = 1
         self._gates: dict[tuple[int, ...], int] = {}
         self._add([self.TRUE])
+
+    @property
+    def gates(self) -> dict[tuple[int, ...], int]:
+        """All gates by the literals of which each is the conjunction, parts before wholes."""
+        return self._gates
 
     @property
     def top(self) -> int:
@@ -95,23 +100,6 @@ class Circuit:
                     self._add([-gate, part])
                 self._add([gate, *[-part for part in parts]])
         return gate
-
-    def definitions(self, literals: Iterable[int], above: int) -> Iterator[list[int]]:
-        """Clauses by which `literals`, where true, imply all that they stand for (Plaisted and Greenbaum 1986).
-
-        Gates up to the variable `above` are taken for inputs.
-        """
-        needed = set(literals)
-        for parts, gate in reversed(self._gates.items()):
-            if gate <= above:
-                return
-            if gate in needed:
-                needed.update(parts)
-                yield from ([-gate, part] for part in parts)
-            if -gate in needed:
-                negated = [-part for part in parts]
-                needed.update(negated)
-                yield [gate, *negated]
 
     def at_most_one(self, literals: Sequence[int]) -> None:
         """Demand that no two of `literals` are true: each tells the next that one was (Sinz 2005)."""

@@ -5,7 +5,9 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Sequence
+from itertools import repeat
 
 import pysolvers
 
@@ -37,9 +39,8 @@ class Solver:
 
     def add_clauses(self, clauses: Iterable[Sequence[int]]) -> None:
         """Demand all of them."""
-        handle, add = self._handle, pysolvers.glucose41_add_cl
-        for clause in clauses:
-            add(handle, clause)
+        # There are many, and this is the fastest way to exhaust an iterator.
+        deque(map(pysolvers.glucose41_add_cl, repeat(self._handle), clauses), maxlen=0)
 
     def prefer(self, literals: Sequence[int]) -> None:
         """Try these literals true first, where nothing decides them."""

@@ -65,29 +65,25 @@ class Reading:
 
     def truth(self, expression: Expression, state: SymbolicState) -> Truth:
         """A resolved predicate over `state`."""
-        circuit = self._circuit
+        # What is most frequent comes first, and without patterns, as in `expressions.evaluation.evaluate`.
+        if isinstance(expression, Comparison):
+            return self._compared(expression, state)
+        if isinstance(expression, And):
+            return self._all([self.truth(part, state) for part in expression.operands])
+        if isinstance(expression, Variable):
+            symbol = state[expression.name]
+            return Truth(symbol.literal(True), symbol.literal(False))
+        if isinstance(expression, Not):
+            inner = self.truth(expression.operand, state)
+            return Truth(inner.no, inner.yes)
+        if isinstance(expression, Or):
+            return self._any([self.truth(part, state) for part in expression.operands])
         match expression:
             case Constant(value):
-                return Truth(circuit.TRUE, circuit.FALSE) if value else Truth(circuit.FALSE, circuit.TRUE)
-            case Variable(name):
-                return Truth(state[name].literal(True), state[name].literal(False))
-            case Not(operand):
-                inner = self.truth(operand, state)
-                return Truth(inner.no, inner.yes)
-            case And(operands):
-                return self._all([self.truth(part, state) for part in operands])
-            case Or(operands):
-                return self._any([self.truth(part, state) for part in operands])
+                return Truth(Circuit.TRUE, Circuit.FALSE) if value else Truth(Circuit.FALSE, Circuit.TRUE)
             case Implies(left, right):
                 premise = self.truth(left, state)
                 return self._any([Truth(premise.no, premise.yes), self.truth(right, state)])
-            case Comparison("==" | "!=" as relation, Variable(name), Constant(value)):
-                symbol = state[name]
-                equal = symbol.literals.get(value, circuit.FALSE)
-                differs = circuit.both(symbol.known, -equal)
-                return Truth(equal, differs) if relation == "==" else Truth(differs, equal)
-            case Comparison(relation, left, right):
-                return self._comparison(relation, self.symbol(left, state), self.symbol(right, state))
             case Membership(left, options):
                 subject = self.symbol(left, state)
                 return self._any([self._comparison("==", subject, self.symbol(o, state)) for o in options])
@@ -145,6 +141,15 @@ class Reading:
     def _any(self, truths: list[Truth]) -> Truth:
         yes = self._circuit.disjunction(truth.yes for truth in truths)
         return Truth(yes, self._circuit.conjunction(truth.no for truth in truths))
+
+    def _compared(self, comparison: Comparison, state: SymbolicState) -> Truth:
+        relation, left, right = comparison.operator, comparison.left, comparison.right
+        if not (isinstance(left, Variable) and isinstance(right, Constant) and relation in ("==", "!=")):
+            return self._comparison(relation, self.symbol(left, state), self.symbol(right, state))
+        symbol = state[left.name]
+        equal = symbol.literal(right.value)
+        differs = self._circuit.both(symbol.known, -equal)
+        return Truth(equal, differs) if relation == "==" else Truth(differs, equal)
 
     def _comparison(self, relation: str, left: Symbol, right: Symbol) -> Truth:
         if relation == "!=":

@@ -11,34 +11,30 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from itertools import combinations, count, repeat
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, State
-from sequence_planner.automaton.transitions import Phase, transitions
-from sequence_planner.expressions.syntax import Expression
+from sequence_planner.automaton.structure import Ability, Automaton, State, reads
+from sequence_planner.expressions.syntax import Expression, variables
 from sequence_planner.planning.plan import Circumstances
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.encoding import Encoding, SymbolicTick
+from sequence_planner.planning.sat.flattening import flattened
 from sequence_planner.planning.sat.symbolic import Reading, Symbol, SymbolicState
 
 # The literal of each literal of the template: at its own index, that of a negated one counted from the end.
 Renaming = Sequence[int]
 
 _ANEW = 0  # instead of a literal: a new one in each tick
+_MOST_EXCLUDING = 8  # values of a variable of which each is said to exclude the others; pairs of more are too many
 
 
-class _Recorder:
-    """Keeps clauses: all literals of those of a length one after the other."""
+class Recorder:
+    """Keeps clauses."""
 
     def __init__(self) -> None:
-        self.literals: dict[int, list[int]] = defaultdict(list)
+        self.clauses: list[list[int]] = []
 
-    def add_clause(self, clause: Sequence[int], /) -> None:
+    def add_clause(self, clause: list[int], /) -> None:
         """Add one clause."""
-        self.literals[len(clause)] += clause
-
-    def add_clauses(self, clauses: Iterable[Sequence[int]]) -> None:
-        """Add several."""
-        for clause in clauses:
-            self.add_clause(clause)
+        self.clauses.append(clause)
 
 
 class Template:
@@ -59,7 +55,7 @@ class Template:
         oracles: frozenset[str],
         pause: Callable[[], object],
     ) -> None:
-        recorder = _Recorder()
+        recorder = Recorder()
         circuit = Circuit(recorder, later=True)
         blind = unknown & automaton.variables.keys()
         self._predicates = automaton.flag_predicates
@@ -69,19 +65,23 @@ class Template:
         kept = free.keys() if unknown else automaton.variables.keys() | _read_before_synchronising(automaton)
         self.start = {name: symbol for name, symbol in free.items() if name in kept and name not in oracles}
         self._inputs = circuit.top
-        recorder.literals.clear()  # what must hold of a state holds at the end of each tick
-        recorder.add_clause([Circuit.TRUE])
+        recorder.clauses = [[Circuit.TRUE]]  # what must hold of a state holds at the end of each tick
         for name in unknown - blind:
             # An undetermined flag is known where one of its values is; this gate is part of the tick.
-            recorder.add_clauses(_known(self.start[name]))
+            recorder.clauses += _known(self.start[name])
         anew = {name: free[name] for name in sorted(oracles)}
         for symbol in anew.values():
-            recorder.add_clauses(_one_value(symbol))
+            recorder.clauses += _one_value(symbol)
         self._tick = self._encoding.tick(self.start | anew, order, pause)
+        recorder.clauses += _no_two_values(self._tick.synchronised.values())
         self._carried = self._carry(anew.values())
-        recorder.add_clauses(list(circuit.definitions(self._read(recorder.literals.values()), self._inputs)))
-        self._clauses = recorder.literals
+        asked = set(map(abs, self._asked()))
+        self._literals: dict[int, list[int]] = defaultdict(list)  # of all clauses of a length, one after the other
+        for clause in flattened(recorder.clauses, circuit.gates, self._inputs, asked):
+            self._literals[len(clause)] += clause
         self.top = circuit.top
+        met = {abs(literal) for literals in self._literals.values() for literal in literals}
+        self._own = [literal in met for literal in range(self._inputs + 1, self.top + 1)]  # the others mean nothing
 
     def assumptions(self, circumstances: Circumstances) -> list[int]:
         """The literals that say what may happen."""
@@ -95,13 +95,12 @@ class Template:
         """The renaming of the tick after one renamed `before`; new variables come after `top`."""
         literals, new = list(range(self._shared + 1)), count(top + 1)
         literals += [next(new) if literal == _ANEW else before[literal] for literal in self._carried]
-        first = next(new)
-        literals += range(first, first + self.top - self._inputs)
+        literals += [next(new) if own else Circuit.FALSE for own in self._own]
         return _both_signs(literals)
 
     def renamed(self, renaming: Renaming) -> Iterator[tuple[int, ...]]:
         """The clauses of the tick so renamed."""
-        for length, literals in self._clauses.items():
+        for length, literals in self._literals.items():
             yield from zip(*repeat(map(renaming.__getitem__, literals), length), strict=True)
 
     def tick(self, renaming: Renaming, reading: Reading) -> SymbolicTick:
@@ -119,16 +118,15 @@ class Template:
             [(renaming[choice], renamed(state)) for choice, state in tick.positions],
         )
 
-    def _read(self, clauses: Iterable[Iterable[int]]) -> Iterator[int]:
-        """The literals that anybody may ask to be true: those of `clauses`, and both of what is known of a state."""
-        for literals in clauses:
-            yield from literals
+    def _asked(self) -> Iterator[int]:
+        """The literals that anybody may ask to be true or false: those of the states, of finishes and of the end."""
         states = (self._tick.synchronised, *(state for _, state in self._tick.positions))
         symbols = {id(symbol): symbol for state in states for symbol in state.values()}
-        asked = (literal for symbol in symbols.values() for literal in (*symbol.literals.values(), symbol.known))
-        for literal in (*asked, *self._tick.finishes.values(), *self._carried):
-            yield literal
-            yield -literal
+        for symbol in symbols.values():
+            yield from symbol.literals.values()
+            yield symbol.known
+        yield from self._tick.finishes.values()
+        yield from self._carried
 
     def _carry(self, anew: Iterable[Symbol]) -> list[int]:
         """For each literal of the state before, in order, the one that says the same at the end."""
@@ -189,11 +187,27 @@ def _known(flag: Symbol) -> list[list[int]]:
 
 def _one_value(symbol: Symbol) -> list[list[int]]:
     """That it has one of its values, and no other."""
-    values = list(symbol.literals.values())
-    return [values, *([-one, -other] for one, other in combinations(values, 2))]
+    return [list(symbol.literals.values()), *_excluding(symbol)]
 
 
-def _read_before_synchronising(automaton: Automaton) -> frozenset[str]:
+def _excluding(symbol: Symbol) -> Iterator[list[int]]:
+    """That it has no two values."""
+    return ([-one, -other] for one, other in combinations(symbol.literals.values(), 2))
+
+
+def _no_two_values(symbols: Iterable[Symbol]) -> Iterator[list[int]]:
+    """That none has two values. It follows from all else, but not at a glance: said, it spares a solver conflicts."""
+    for symbol in symbols:
+        if 2 < len(symbol.literals) <= _MOST_EXCLUDING and Circuit.TRUE not in symbol.literals.values():
+            yield from _excluding(symbol)
+
+
+def _read_before_synchronising(automaton: Automaton) -> set[str]:
     """What effects and finishes read, flags as the tick before left them."""
-    early = (t for t in transitions(automaton) if t.phase is not Phase.START)
-    return frozenset().union(*(transition.reads for transition in early))
+    found: set[str] = set()
+    for effect in automaton.effects:
+        found.update(variables(effect.guard), *map(reads, effect.actions))
+    for ability in automaton.abilities.values():
+        if ability.finish_guard is not None:
+            found.update(variables(ability.finish_guard), *map(reads, ability.finish_actions))
+    return found
