@@ -1,0 +1,79 @@
+"""Names of people, watches and keys: as they are kept, as they are found by, and as they look.
+
+A name is shown to people who decide by it who has control or whose watch they let in, so two names of one kind may not
+look the same. Unicode has many ways to write what looks the same: compatibility forms (normalisation form KC, UAX #15,
+takes them away), case (caseless matching, Unicode 3.13), invisible characters, and letters that look alike (UTS #39;
+here those of Latin, Cyrillic and Greek, which keyboards have).
+"""
+
+from __future__ import annotations
+
+import unicodedata
+
+from sequence_planner.identity.refusal import IdentityRefused
+
+LONGEST_NAME = 100  # characters
+_MOST_MARKS = 3  # combining marks on one letter; no living script puts more there
+_UNFIT = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"})  # control, invisible, half, private or unknown ones
+_BLANK = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u2800\u3164\uffa0") | {chr(at) for at in range(0xFE00, 0xFE10)}
+# Pairs: a letter, and the Latin one that it looks like. Capital and small ones look different, so both stand here.
+_LATIN = "il Il 1l |l 0o ıl ʟl ɑa ɡg ɪl"
+_CYRILLIC = "Аa Вb Еe Кk Мm Нh Оo Рp Сc Тt Хx Іl Јj Ѕs Үy аa еe оo рp сc уy хx іl јj ѕs ԁd һh ӏl ԛq ԝw"
+_GREEK = "Αa Βb Εe Ζz Ηh Ιl Κk Μm Νn Οo Ρp Τt Υy Χx αa ιl κk τt νv οo ρp υu"
+_ALIKE = {ord(pair[0]): pair[1] for pair in f"{_LATIN} {_CYRILLIC} {_GREEK}".split()}
+
+
+def clean_name(text: str) -> str:
+    """A name as it is kept: in normalisation form KC, with single blanks between words.
+
+    Raises `IdentityRefused` (`unfit-name`, 422) unless it has 1 to 100 characters, a letter or digit among them, and
+    none that does not show or changes the direction of writing.
+    """
+    if len(text) > 4 * LONGEST_NAME:
+        raise _unfit(f"it is longer than {LONGEST_NAME} characters")
+    name = " ".join(unicodedata.normalize("NFKC", text).split())
+    if not 1 <= len(name) <= LONGEST_NAME:
+        raise _unfit(f"it has to have 1 to {LONGEST_NAME} characters")
+    if any(unicodedata.category(each) in _UNFIT or each in _BLANK for each in text + name):
+        raise _unfit("it has characters that do not show; type it again instead of copying it")
+    if not any(each.isalnum() for each in name):
+        raise _unfit("it has neither a letter nor a digit")
+    if _piled(name):
+        raise _unfit(f"it has more than {_MOST_MARKS} marks on one letter")
+    return name
+
+
+def name_key(text: str) -> str:
+    """What a name is found by: regardless of case and of surrounding and repeated blanks. Any text has one."""
+    folded = unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", text).casefold())
+    return " ".join(folded.split())
+
+
+def name_shape(name: str) -> str:
+    """What a name looks like at a glance: letters that look alike are one, and marks and punctuation do not count."""
+    bare = "".join(each for each in unicodedata.normalize("NFKD", name) if unicodedata.category(each)[0] != "M")
+    return "".join(each for each in bare.translate(_ALIKE).casefold().translate(_ALIKE) if each.isalnum())
+
+
+def as_typed(text: str) -> str:
+    """A name that anybody may have sent, fit for the journal: at most 100 characters, each of which shows."""
+    shown = short(text, LONGEST_NAME)
+    return shown if shown.strip() else "(nothing)"
+
+
+def short(text: str, most: int = 200) -> str:
+    """A text that anybody may have sent, such as the name of a browser: so many characters, each of which shows."""
+    return "".join("\ufffd" if unicodedata.category(each) in _UNFIT else each for each in text[:most])
+
+
+def _piled(name: str) -> bool:
+    marks = 0
+    for each in unicodedata.normalize("NFD", name):
+        marks = marks + 1 if unicodedata.combining(each) else 0
+        if marks > _MOST_MARKS:
+            return True
+    return False
+
+
+def _unfit(why: str) -> IdentityRefused:
+    return IdentityRefused("unfit-name", "Not a name", f"This cannot be a name: {why}.", 422)

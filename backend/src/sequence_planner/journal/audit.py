@@ -1,0 +1,165 @@
+"""The durable record of who did what: only ever added to, and chained so that a change behind its back shows."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from pydantic import ValidationError
+from sqlalchemy import (
+    BigInteger,
+    Column,
+    Connection,
+    Double,
+    Integer,
+    String,
+    Table,
+    Text,
+    insert,
+    select,
+    update,
+)
+
+from sequence_planner.journal.entry import Entry, Record
+from sequence_planner.storage.error import StorageError
+from sequence_planner.storage.metadata import METADATA
+
+_NUMBER: Final = BigInteger().with_variant(Integer, "sqlite")
+
+AUDIT: Final = Table(
+    "audit",
+    METADATA,
+    Column("number", _NUMBER, primary_key=True, autoincrement=False),
+    Column("time", Double, nullable=False),
+    Column("action", String(100), nullable=False, index=True),
+    Column("actor", String(200), nullable=False, index=True),
+    Column("entry", Text, nullable=False),
+    Column("hash", String(64), nullable=False),
+)
+"""`entry` is the JSON text of the entry, of which `action` and `actor` (its id) are copies to search by."""
+
+AUDIT_END: Final = Table(
+    "audit_end",
+    METADATA,
+    Column("id", Integer, primary_key=True, autoincrement=False),
+    Column("number", _NUMBER, nullable=False),
+    Column("hash", String(64), nullable=False),
+)
+"""One row with the number and the hash of the last record, so that records missing at the end show."""
+
+_PAGE: Final = 1000  # records read at once
+_BELOW_ALL: Final = -(2**63)  # also below numbers that were never given
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A record as it is in the database."""
+
+    number: int
+    time: float
+    action: str
+    actor: str
+    entry: str
+    hash: str
+
+    def line(self) -> str:
+        """The record as a line of JSON that anybody can verify: the hash is over all that stands before it.
+
+        It is the SHA-256 over the hash of the record before (nothing, for the first), and the line up to `,"hash":`.
+        """
+        return f'{self._text()},"hash":"{self.hash}"}}'
+
+    def digest(self, before: str) -> str:
+        """What its hash must be behind a record with the hash `before`."""
+        return hashlib.sha256((before + self._text()).encode()).hexdigest()
+
+    def is_whole(self, before: str) -> bool:
+        """Whether it is what was written behind a record with the hash `before`."""
+        if self.hash != self.digest(before):
+            return False
+        entry = json.loads(self.entry)
+        return (self.action, self.actor) == (entry["action"], entry["actor"]["id"])
+
+    def record(self) -> Record:
+        """What it says. Raises `StorageError` if it says nothing that could have been written."""
+        try:
+            entry = Entry.model_validate_json(self.entry)
+            return Record(number=self.number, time=self.time, entry=entry, hash=self.hash)
+        except ValidationError as error:
+            raise StorageError(f"record {self.number} of the journal cannot be read: it was changed") from error
+
+    def _text(self) -> str:
+        return f'{{"number":{self.number},"time":{self.time!r},"entry":{self.entry}'
+
+
+def append(connection: Connection, entry: Entry, now: float) -> Record:
+    """Write a record. Call it within a `writing()` block: the record is there if, and only if, all of the block is."""
+    number, before = connection.execute(select(AUDIT_END.c.number, AUDIT_END.c.hash)).one()
+    number += 1
+    written = Stored(number, float(now), entry.action, entry.actor.id, entry.model_dump_json(), "")
+    digest = written.digest(before)
+    connection.execute(
+        insert(AUDIT),
+        {
+            "number": number,
+            "time": written.time,
+            "action": written.action,
+            "actor": written.actor,
+            "entry": written.entry,
+            "hash": digest,
+        },
+    )
+    connection.execute(update(AUDIT_END), {"number": number, "hash": digest})
+    return Record(number=number, time=written.time, entry=entry, hash=digest)
+
+
+def read(
+    connection: Connection,
+    *,
+    before: int | None = None,
+    limit: int = 50,
+    action: str | None = None,
+    actor: str | None = None,
+) -> list[Record]:
+    """Up to `limit` records, the newest first: those with numbers below `before`, of an action, of an actor's id.
+
+    Raises `StorageError` for a record that was changed so that it can no longer be read.
+    """
+    chosen = select(AUDIT).order_by(AUDIT.c.number.desc()).limit(limit)
+    if before is not None:
+        chosen = chosen.where(AUDIT.c.number < before)
+    if action is not None:
+        chosen = chosen.where(AUDIT.c.action == action)
+    if actor is not None:
+        chosen = chosen.where(AUDIT.c.actor == actor)
+    return [Stored(**row).record() for row in connection.execute(chosen).mappings()]
+
+
+def page_after(connection: Connection, number: int, limit: int = _PAGE) -> list[Stored]:
+    """Up to `limit` records as they are stored, in order, with numbers above `number`."""
+    chosen = select(AUDIT).where(AUDIT.c.number > number).order_by(AUDIT.c.number).limit(limit)
+    return [Stored(**row) for row in connection.execute(chosen).mappings()]
+
+
+def broken_at(connection: Connection) -> int | None:
+    """The number of the first record that is not as it was written, or is missing; None when all are whole."""
+    number, last = 0, ""
+    for stored in _everything(connection):
+        number += 1
+        if stored.number != number or not stored.is_whole(last):
+            return number
+        last = stored.hash
+    end = connection.execute(select(AUDIT_END.c.number, AUDIT_END.c.hash)).one_or_none()
+    if end is None or end.number > number:
+        return number + 1
+    return None if tuple(end) == (number, last) else number
+
+
+def _everything(connection: Connection) -> Iterator[Stored]:
+    number = _BELOW_ALL
+    while page := page_after(connection, number):
+        yield from page
+        number = page[-1].number

@@ -1,0 +1,52 @@
+"""What the record of who did what is made of."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from pydantic import BaseModel, ConfigDict, Field, JsonValue
+
+from sequence_planner.actor import Actor
+
+LONGEST_REASON = 500  # characters
+
+
+class Outcome(StrEnum):
+    """How far an act has come. A command on the station is recorded before its effect, and again when it is known."""
+
+    REQUESTED = "requested"
+    DONE = "done"
+    REFUSED = "refused"
+    FAILED = "failed"
+
+
+class Entry(BaseModel):
+    """Somebody does something.
+
+    `action` is what, as in `set-mode` or `person-created`; `subject` is on what, as in `task 4-1` or `person Eva`;
+    `details` are its data, without anything secret; `reason` is why, in the person's words. `about` is the number of
+    the record of which this one tells the outcome.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    actor: Actor
+    action: str = Field(min_length=1, max_length=100)
+    subject: str = Field(default="", max_length=400)
+    details: dict[str, JsonValue] = Field(default_factory=dict)
+    reason: str | None = Field(default=None, max_length=LONGEST_REASON)
+    outcome: Outcome = Outcome.DONE
+    about: int | None = None
+
+
+class Record(BaseModel):
+    """An entry as it was written: `number` counts from 1 without gaps, `time` is in seconds since the epoch.
+
+    `hash` is the SHA-256 over the hash of the record before and this one's contents, so that a record that was changed
+    or taken out shows.
+    """
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    number: int
+    time: float
+    entry: Entry
+    hash: str

@@ -1,0 +1,60 @@
+"""Where a database is, as its URL says."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from sqlalchemy import URL, make_url
+from sqlalchemy.exc import ArgumentError
+
+from sequence_planner.storage.error import StorageError
+
+_SQLITE = ("sqlite", "sqlite+pysqlite")
+_POSTGRESQL = ("postgresql", "postgres", "postgresql+psycopg")
+_FORMS = "sqlite:////folder/station.sqlite or postgresql://user:password@host/database"
+
+
+@dataclass(frozen=True)
+class SqliteFile:
+    """A file of SQLite; `path` is absolute."""
+
+    path: Path
+
+    def __str__(self) -> str:
+        return str(self.path)
+
+
+@dataclass(frozen=True)
+class PostgresqlServer:
+    """A database on a PostgreSQL server. `url` may hold a password and is never shown."""
+
+    url: URL
+
+    def __str__(self) -> str:
+        """The place for people: host, port and database, and nothing else of the URL."""
+        host = self.url.host or self.url.query.get("host") or "this machine"
+        port = f":{self.url.port}" if self.url.port else ""
+        return f"PostgreSQL database {self.url.database or '(default)'} at {host}{port}"
+
+
+def address(url: str) -> SqliteFile | PostgresqlServer:
+    """What a URL names. Raises `StorageError`, which never quotes the URL, as it may hold a password."""
+    try:
+        read = make_url(url)
+    except (ArgumentError, ValueError):
+        raise StorageError(f"the database's URL cannot be read: write {_FORMS}") from None
+    if read.drivername in _SQLITE:
+        return _sqlite_file(read)
+    if read.drivername in _POSTGRESQL:
+        if url.count("@") > (read.username is not None):
+            # What is taken for the host may be a part of the password.
+            raise StorageError("the database's URL has a sign in its user or password to be escaped: write @ as %40")
+        return PostgresqlServer(read.set(drivername="postgresql+psycopg"))
+    raise StorageError(f"a database of the kind `{read.drivername}` is not supported: write {_FORMS}")
+
+
+def _sqlite_file(url: URL) -> SqliteFile:
+    if not url.database or url.database == ":memory:" or url.database.startswith("file:") or url.query or url.host:
+        raise StorageError("the database's URL must name a file: write sqlite:////folder/station.sqlite")
+    return SqliteFile(Path(url.database).absolute())

@@ -1,0 +1,35 @@
+"""Where a station's database is if nobody says so."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from pathlib import Path
+from urllib.parse import quote
+
+from sequence_planner.storage.error import StorageError
+
+
+def default_url(model: Path) -> str:
+    """The URL of a SQLite file for the station in the folder `model`, the same from wherever the folder is named.
+
+    It is in `$XDG_STATE_HOME`, or else in `~/.local/state`, in a folder of `sequence-planner` that is named after the
+    model's folder and the first 8 hexadecimal digits of the SHA-256 of its path. Raises `StorageError` where there is
+    no home.
+    """
+    resolved = model.resolve()
+    mark = hashlib.sha256(os.fsencode(resolved)).hexdigest()[:8]
+    name = re.sub(r"[^\w.-]", "_", resolved.name)
+    file = _state_home() / "sequence-planner" / f"{name}-{mark}" / "station.sqlite"
+    return f"sqlite:///{quote(str(file))}"
+
+
+def _state_home() -> Path:
+    base = os.environ.get("XDG_STATE_HOME", "")
+    if Path(base).is_absolute():
+        return Path(base)
+    try:
+        return Path.home() / ".local" / "state"
+    except RuntimeError as error:
+        raise StorageError("there is no home folder to keep the database in: say where with --database URL") from error
