@@ -61,7 +61,9 @@ async def controller(folder: Path, socket: Path) -> None:
         return open_transport("cyclonedds", station.registry, node, loop)
 
     asking = asyncio.create_task(_tell_memory())
-    living = asyncio.create_task(control(Running(station, socket, connect, emulated=True, start=True)))
+    database = f"sqlite:///{socket.parent}/station.sqlite"
+    running = Running(station, socket, connect, emulated=True, start=True, database=database)
+    living = asyncio.create_task(control(running))
     await asyncio.wait({asking, living}, return_when=asyncio.FIRST_COMPLETED)
     living.cancel()
     await asyncio.gather(living, return_exceptions=True)

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.commands import StartProduction
 from sequence_planner.control.controller import Controller
@@ -86,7 +87,7 @@ class Bench:
     running: asyncio.Task[None]
 
     async def start(self) -> None:
-        await self.controller.command(StartProduction(actor="local"))
+        await self.controller.command(StartProduction(actor=SYSTEM))
 
     async def until(self, what: Callable[[], bool], seconds: float = 20) -> None:
         """Wait until `what` is true."""

@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 import pytest
 
 from control.rig import truck_engine
+from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.structure import Kind
 from sequence_planner.control.commands import AcknowledgeTask, CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
@@ -111,7 +112,7 @@ class Trouble:
                 if self.chance.random() < 0.7:
                     try:
                         await self.controller.command(
-                            AcknowledgeTask(actor="local", task=task.id, revision=task.revision)
+                            AcknowledgeTask(actor=SYSTEM, task=task.id, revision=task.revision)
                         )
                     except CommandRefused:
                         continue
@@ -178,7 +179,7 @@ async def disturbed(seconds: float, seed: str, clock: Clock = time.perf_counter)
         living = [asyncio.create_task(devices.live()), asyncio.create_task(controller.run())]
         try:
             await asyncio.sleep(1.0)
-            await controller.command(StartProduction(actor="local"))
+            await controller.command(StartProduction(actor=SYSTEM))
             living.append(asyncio.create_task(trouble.live()))
             done, _ = await asyncio.wait(living, timeout=seconds, return_when=asyncio.FIRST_EXCEPTION)
             for task in done:

@@ -13,6 +13,7 @@ from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
+from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.commands import StartProduction
 from sequence_planner.control.controller import Controller
@@ -122,7 +123,7 @@ def living(devices: EmulatedDevices) -> Iterator[None]:
 
 async def start(controller: Controller) -> None:
     """Start production."""
-    await controller.command(StartProduction(actor="local"))
+    await controller.command(StartProduction(actor=SYSTEM))
 
 
 async def until(holds: Callable[[], object], what: str) -> None:

@@ -12,6 +12,7 @@ import pytest
 
 from control.bench import COMMAND, COMMAND_TYPE, IDENTITY, Arm, Bench, bench, cell, until
 from core.building import Does, automaton
+from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.control.commands import CommandRefused, SetMode, StartProduction
 from sequence_planner.control.controller import Controller
@@ -183,7 +184,7 @@ def test_production_starts_by_itself_with_emulated_devices_only(real: str) -> No
             device.subscribe(COMMAND, COMMAND_TYPE, QualityOfService.RELIABLE, lambda samples: None)
         else:
             Arm(on.network, "other_arm")
-        starting = asyncio.create_task(start_when_alone(on.controller, look_every=0.02))
+        starting = asyncio.create_task(start_when_alone(on.controller, on.controller.command, look_every=0.02))
         await asyncio.sleep(0.2)
         Arm(on.network)
         await asyncio.sleep(0.2)
@@ -227,7 +228,7 @@ def test_what_was_said_while_the_controller_stood_still_counts_and_is_then_old()
 def test_a_mode_is_taken_at_once_and_keeps_the_plan() -> None:
     async def scenario(on: Bench) -> None:
         arm = Arm(on.network)
-        await on.controller.command(SetMode(actor="local", mode=Mode.PAUSED))
+        await on.controller.command(SetMode(actor=SYSTEM, mode=Mode.PAUSED))
         with arm.saying("home"):
             await on.start()
             await on.until(lambda: on.controller.execution.plan.status is PlanStatus.FOLLOWED)
@@ -235,7 +236,7 @@ def test_a_mode_is_taken_at_once_and_keeps_the_plan() -> None:
             assert set(arm.commands) == {"home"}
             (step,) = on.controller.view().plan.steps
             assert step.waits_for == ["automatic mode: the station is paused"]
-            await on.controller.command(SetMode(actor="local", mode=Mode.AUTOMATIC))
+            await on.controller.command(SetMode(actor=SYSTEM, mode=Mode.AUTOMATIC))
             await on.until(lambda: "out" in arm.commands, seconds=1)
 
     run(scenario)
@@ -260,7 +261,7 @@ def test_production_is_started_once() -> None:
     async def scenario(on: Bench) -> None:
         await on.start()
         with pytest.raises(CommandRefused) as refused:
-            await on.controller.command(StartProduction(actor="local"))
+            await on.controller.command(StartProduction(actor=SYSTEM))
         assert refused.value.slug == "production-started"
 
     run(scenario)

@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 
 from control.bench import IDENTITY, until
+from core.actors import EVA
 from pipelines.station_writing import station_with
+from sequence_planner.actor import SYSTEM
 from sequence_planner.control.clients import Clients
 from sequence_planner.control.commander import Commander
-from sequence_planner.control.commands import ClearOverride, CommandRefused, SetOverride, StartProduction
+from sequence_planner.control.commands import ClearOverride, CommandRefused, SetOverride, StartProduction, TakeControl
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
@@ -154,14 +156,15 @@ def test_the_controller_sets_shows_and_tells_what_passes(tmp_path: Path) -> None
         controller = Controller(IDENTITY, station, supervisor, transport)
         running = asyncio.create_task(controller.run())
         await asyncio.sleep(0)
-        await controller.command(StartProduction(actor="local"))
+        await controller.command(StartProduction(actor=SYSTEM))
         await until(lambda: len(orders) == 1)
-        await controller.command(SetOverride(actor="eva", name="tank.speed", fields={"speed": 0.1}))
+        await controller.command(TakeControl(actor=EVA))
+        await controller.command(SetOverride(actor=EVA, name="tank.speed", fields={"speed": 0.1}))
         await until(lambda: len(orders) == 2)
-        assert controller.view().overrides["tank.speed"].actor == "eva"
+        assert controller.view().overrides["tank.speed"].actor == "Eva"
         with pytest.raises(CommandRefused):
-            await controller.command(SetOverride(actor="eva", name="tank.speed", fields={"speed": 9}))
-        await controller.command(ClearOverride(actor="eva", name="tank.speed"))
+            await controller.command(SetOverride(actor=EVA, name="tank.speed", fields={"speed": 9}))
+        await controller.command(ClearOverride(actor=EVA, name="tank.speed"))
         await until(lambda: len(orders) == 3)
         check_told(controller, station)
         running.cancel()

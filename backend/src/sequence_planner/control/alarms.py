@@ -42,6 +42,7 @@ class Alarms:
         self._conflicts: set[tuple[str, str, str]] = set()
         self._reacted: set[int] = set()  # the running steps that have been seen executing
         self.restless: tuple[str, ...] = ()  # abilities that finish again and again although nothing new is measured
+        self.unrecorded: str | None = None  # why commands cannot be recorded
         self.failures: dict[str, str] = {}  # what of the controller's own work fails, and how
 
     def note(self, outcome: TickOutcome) -> None:
@@ -86,6 +87,13 @@ class Alarms:
                 Priority.HIGH,
                 f"The controller fails at {what}: {how}",
                 "It goes on trying. Bring the station to rest, and give the controller's log to its maintainers.",
+            )
+        if self.unrecorded is not None:
+            yield Cause(
+                "unrecorded",
+                Priority.HIGH,
+                f"Commands cannot be recorded: {self.unrecorded}",
+                "They are refused, but for pausing. Make room for the station's database, or bring it back.",
             )
         if self.restless:
             yield Cause(

@@ -20,15 +20,11 @@ from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.alarms import Alarms
 from sequence_planner.control.clients import Clients
+from sequence_planner.control.command_desk import CommandDesk
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.commands import (
-    AcknowledgeTask,
-    ClearOverride,
     Command,
     CommandRefused,
-    SetMode,
-    SetOverride,
-    StartProduction,
 )
 from sequence_planner.control.execution import Execution, TickOutcome
 from sequence_planner.control.feeds import Feeds
@@ -45,6 +41,7 @@ from sequence_planner.control.questions import Questions
 from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.view import Production, StationIdentity, StationView
 from sequence_planner.control.viewing import Viewing
+from sequence_planner.emulation.process import NODE as EMULATED_DEVICES
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.plan import Circumstances
 from sequence_planner.ros.service_graph import TellsServices
@@ -82,6 +79,9 @@ class Controller:
         self._clients = Clients(pipelines, registry, transport, self.feeds, self._hear)
         self._commander = Commander(pipelines.outgoing, registry, transport)
         self._overrides = Overrides(pipelines, self.feeds, self._commander, self._clients)
+        self._orders = CommandDesk(
+            self.execution, self.desk, self._overrides, self._start_production, self._real_devices
+        )
         self._observing = Observing()
         self._pipelines = pipelines
         self._outside = Outside(self.execution)
@@ -121,17 +121,7 @@ class Controller:
 
     async def command(self, command: Command) -> None:
         """Carry out a command. Raises `CommandRefused`."""
-        match command:
-            case SetMode(mode=mode):
-                self.execution.mode = mode
-            case StartProduction():
-                self._start_production()
-            case AcknowledgeTask(task=task, revision=revision):
-                self.desk.acknowledge(task, revision)
-            case SetOverride(name=name, fields=fields, actor=actor):
-                self._overrides.set(name, fields, actor, time.monotonic())
-            case ClearOverride(name=name):
-                self._overrides.clear(name, time.monotonic())
+        self._orders.carry_out(command, Moment.now())
         LOG.info("command", **command.model_dump(mode="json"))
         self._tick_again()
 
@@ -139,7 +129,8 @@ class Controller:
         """What there is to show now."""
         moment = Moment.now()
         alarms = self._alarms.current(self._questions.trouble, moment)
-        return self._viewing.view(self.desk, self._commander, self._overrides.view(moment), alarms, moment)
+        overrides, control = self._overrides.view(moment), self._orders.in_control.view()
+        return self._viewing.view(self.desk, self._commander, overrides, alarms, control, moment)
 
     def answer(self, about: About) -> PipelinesView | FlowsView:
         """What is told only when somebody asks for it."""
@@ -155,6 +146,13 @@ class Controller:
     def strangers(self, node: str) -> list[str]:
         """What speaks against the station's devices being those of `node` alone, as the network is now."""
         return self.network.strangers(self._transport.graph(), node)
+
+    def _real_devices(self) -> list[str]:
+        return self.network.others(self._transport.graph(), f"/{EMULATED_DEVICES}")
+
+    def note_unrecorded(self, why: str | None) -> None:
+        """Commands cannot be recorded, for this reason; None when they can again."""
+        self._alarms.unrecorded = why
 
     def _start_production(self) -> None:
         if self.execution.production is Production.STARTED:

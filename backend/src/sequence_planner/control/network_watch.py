@@ -51,14 +51,19 @@ class NetworkWatch:
 
         A node that does not tell its name counts as somebody else; one that only listens to devices does not count.
         """
-        foreign = [
+        there = {(e.topic, e.direction) for e in self._foreign(graph) if e.node == node}
+        missing = [f"{node} is not yet on {t}" for t, use in self.uses.items() if (t, use.peer) not in there]
+        return [*missing, *self.others(graph, node)]
+
+    def others(self, graph: Sequence[Endpoint], node: str) -> list[str]:
+        """Who but `node` is there to be commanded, or reports as a device does, in words."""
+        return sorted({f"{e.node or 'another node'} is on {e.topic}" for e in self._foreign(graph) if e.node != node})
+
+    def _foreign(self, graph: Sequence[Endpoint]) -> list[Endpoint]:
+        return [
             e
             for e in graph
             if not e.own
             and (use := self.uses.get(e.topic)) is not None
             and (e.direction == "publisher" or use.own == "publisher")
         ]
-        there = {(e.topic, e.direction) for e in foreign if e.node == node}
-        missing = [f"{node} is not yet on {t}" for t, use in self.uses.items() if (t, use.peer) not in there]
-        others = {f"{e.node or 'another node'} is on {e.topic}" for e in foreign if e.node != node}
-        return [*missing, *sorted(others)]

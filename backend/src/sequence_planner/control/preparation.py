@@ -23,6 +23,7 @@ from sequence_planner.control.view import (
     Production,
     StationIdentity,
     StationView,
+    TaskView,
 )
 from sequence_planner.synthesis.guards import Guard
 
@@ -57,6 +58,15 @@ class Preparation:
         self.controller = controller
         if self.analysis is not None:
             controller.know(self.analysis, self._guards)
+
+    def tasks(self) -> dict[str, TaskView]:
+        """The open tasks by now."""
+        return {} if self.controller is None else self.controller.view().tasks
+
+    def note_unrecorded(self, why: str | None) -> None:
+        """Commands cannot be recorded, for this reason; None when they can again."""
+        if self.controller is not None:
+            self.controller.note_unrecorded(why)
 
     def end(self, why: SynthesisEndedError) -> None:
         """No more will be found."""
@@ -102,6 +112,7 @@ def preparing_view(
         time=now,
         mode=Mode.AUTOMATIC,
         production=Production.PREPARING,
+        control=None,
         resources={},
         variables={},
         abilities={},

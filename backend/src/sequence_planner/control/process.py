@@ -11,22 +11,25 @@ from pathlib import Path
 
 import structlog
 
+from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.collection import keep_everything
 from sequence_planner.control.commands import Command, CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
-from sequence_planner.control.link import ControllerLink
+from sequence_planner.control.link import ControllerLink, Handle
 from sequence_planner.control.link_messages import About
 from sequence_planner.control.network_graph import network_steps
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.preparation import Preparation, analyse, preparing_view
+from sequence_planner.control.recording import Recording
 from sequence_planner.control.view import Production, StationIdentity
 from sequence_planner.emulation.process import NODE as EMULATED_DEVICES
 from sequence_planner.ros.exclusivity import require_sole_publisher
 from sequence_planner.ros.transport import Transport
 from sequence_planner.station import ReadyStation
+from sequence_planner.storage.database import Database
 
 LOG = structlog.get_logger(__name__)
 
@@ -39,7 +42,7 @@ class Running:
     """What shall run, and how.
 
     `start` starts production without a person, for demonstrations: as soon as emulated devices and nothing else are
-    there to be commanded.
+    there to be commanded. `database` is the URL of where commands are recorded.
     """
 
     station: ReadyStation
@@ -47,20 +50,35 @@ class Running:
     connect: Callable[[str], Transport]
     emulated: bool
     start: bool
+    database: str
 
 
 async def control(running: Running) -> None:
     """Run the controller until cancelled. Without a supervisor it only shows why there is none.
 
-    Raises `SynthesisEndedError` when that could not be computed, and `TransportError` when the network cannot be joined
-    or somebody else commands the devices.
+    Raises `SynthesisEndedError` when that could not be computed, `TransportError` when the network cannot be joined or
+    somebody else commands the devices, and `StorageError` when the database cannot be used.
     """
     preparation = Preparation()
+    database = Database.open(running.database)
+    async with contextlib.AsyncExitStack() as kept:
+        kept.callback(database.close)
+        database.upgrade()
+        recording = Recording(database, preparation.note_unrecorded)
+        kept.push_async_callback(recording.close)
+        await _live(running, preparation, recording)
 
-    async def handle(command: Command) -> None:
+
+async def _live(running: Running, preparation: Preparation, recording: Recording) -> None:
+    """Prepare the station, then run it."""
+
+    async def act(command: Command) -> None:
         if preparation.controller is None:
             raise preparation.refusal()
         await preparation.controller.command(command)
+
+    async def handle(command: Command) -> None:
+        await recording.carry_out(command, preparation.tasks, act)
 
     def answer(about: About) -> PipelinesView | FlowsView:
         if preparation.controller is None:
@@ -86,20 +104,20 @@ async def control(running: Running) -> None:
                 await stack.enter_async_context(_beside(_show(controller, link)))
                 await stack.enter_async_context(_beside(show_network(controller.network, link)))
                 if running.start:
-                    await stack.enter_async_context(_beside(start_when_alone(controller)))
+                    await stack.enter_async_context(_beside(start_when_alone(controller, handle)))
                 await controller.run()
         finally:
             transport.close()
 
 
-async def start_when_alone(controller: Controller, look_every: float = 0.2) -> None:
-    """Start production without a person once emulated devices, and nobody else, are there to be commanded."""
+async def start_when_alone(controller: Controller, handle: Handle, look_every: float = 0.2) -> None:
+    """Let production be started by `handle`, without a person, once emulated devices and nobody else are there."""
     said: list[str] = []
     while controller.execution.production is Production.WAITING:
         strangers = controller.strangers(f"/{EMULATED_DEVICES}")
         if not strangers:
             with contextlib.suppress(CommandRefused):  # since the network was looked at, somebody has come
-                await controller.command(StartProduction(actor="local"))
+                await handle(StartProduction(actor=SYSTEM, reason="started with --start"))
         elif strangers != said:
             said = strangers
             LOG.info("production is not started by itself", because=strangers)

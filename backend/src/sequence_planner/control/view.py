@@ -77,6 +77,16 @@ class StationIdentity(View):
     emulated: bool
 
 
+class ControlView(View):
+    """The session that is in control; `taken_from` is who was before it, where control was taken over."""
+
+    session: str
+    person: str
+    name: str
+    since: float
+    taken_from: str | None
+
+
 class ResourceView(View):
     """A resource and whether all its topics speak."""
 
@@ -167,6 +177,7 @@ class TaskView(View):
     """A task that waits for a person. An acknowledgement must carry its id and revision."""
 
     revision: int
+    resource: str
     ability: str
     title: str
     text: str
@@ -245,6 +256,7 @@ class StationView(View):
     time: float
     mode: Mode
     production: Production
+    control: ControlView | None  # null while nobody is in control
     resources: dict[str, ResourceView]
     variables: dict[str, VariableView]
     abilities: dict[str, AbilityView]

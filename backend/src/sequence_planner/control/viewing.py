@@ -18,6 +18,7 @@ from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
+    ControlView,
     DiagnosisView,
     OperationView,
     PlanStepView,
@@ -77,6 +78,7 @@ class Viewing:
         commander: Commander,
         overrides: dict[str, OverrideView],
         alarms: dict[str, AlarmView],
+        control: ControlView | None,
         moment: Moment,
     ) -> StationView:
         """The whole document."""
@@ -87,6 +89,7 @@ class Viewing:
             time=moment.epoch,
             mode=execution.mode,
             production=execution.production,
+            control=control,
             resources=self._resources(moment),
             variables=self._variables(),
             abilities=self._abilities(),
@@ -204,6 +207,7 @@ class Viewing:
         return {
             id_: TaskView(
                 revision=task.revision,
+                resource=abilities[task.ability].resource,
                 ability=task.ability,
                 title=task.title,
                 text=task.text,

@@ -1,0 +1,115 @@
+"""Commands and what became of them, recorded before and after their effect.
+
+A command that cannot be recorded is refused, and an alarm says why. What only ever stops devices is the exception: it
+is carried out first and recorded then, because neither a full nor a slow disk must keep anybody from pausing a station.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Awaitable, Callable
+from concurrent.futures import ThreadPoolExecutor
+
+import structlog
+from sqlalchemy.exc import SQLAlchemyError
+
+from sequence_planner.control.commands import AcknowledgeTask, Command, CommandRefused
+from sequence_planner.control.view import TaskView
+from sequence_planner.journal.audit import append
+from sequence_planner.journal.entry import Entry, Outcome
+from sequence_planner.storage.database import Database, StorageError
+
+LOG = structlog.get_logger(__name__)
+PATIENCE = 4.0  # seconds for a record; the server waits a little longer for the answer to a command
+
+
+class Recording:
+    """Records commands in `database`, one after the other; `told` hears why the last could not be, or None."""
+
+    def __init__(self, database: Database, told: Callable[[str | None], None]) -> None:
+        self._database = database
+        self._told = told
+        # One thread, so that records come in the order in which commands were given; ticks go on meanwhile.
+        self._thread = ThreadPoolExecutor(1, "recording")
+        self._late: set[asyncio.Task[int | None]] = set()
+
+    async def close(self) -> None:
+        """Write what is under way, then end."""
+        await asyncio.gather(*self._late)
+        self._thread.shutdown(wait=False)
+
+    async def carry_out(
+        self, command: Command, tasks: Callable[[], dict[str, TaskView]], act: Callable[[Command], Awaitable[None]]
+    ) -> None:
+        """Record the command, let `act` carry it out, and record what became of it.
+
+        `tasks` are the open ones, for what an acknowledgement is about. Raises what `act` raises, and `CommandRefused`
+        when the command cannot be recorded.
+        """
+        entry = _entry(command, tasks)
+        if command.harmless:
+            await act(command)
+            late = asyncio.create_task(self._record(_end(entry, None, Outcome.DONE)))
+            self._late.add(late)
+            late.add_done_callback(self._late.discard)
+            return
+        number = await self._record(entry)
+        if number is None:
+            detail = "What cannot be recorded is not done. See the alarms for the cause; pausing is possible."
+            raise CommandRefused("not-recorded", "The command cannot be recorded", detail, 503)
+        try:
+            await act(command)
+        except CommandRefused as refused:
+            await self._record(_end(entry, number, Outcome.REFUSED, refused.slug))
+            raise
+        except BaseException as error:
+            await self._record(_end(entry, number, Outcome.FAILED, type(error).__name__))
+            raise
+        await self._record(_end(entry, number, Outcome.DONE))
+
+    async def _record(self, entry: Entry) -> int | None:
+        """The number of the new record; None when there is none."""
+        try:
+            async with asyncio.timeout(PATIENCE):
+                number = await asyncio.get_running_loop().run_in_executor(self._thread, self._append, entry)
+        except TimeoutError:
+            # It may be written yet, and then says what was asked for and not done.
+            LOG.error("a command is not recorded in time", action=entry.action, outcome=entry.outcome)
+            self._told(f"the database does not answer within {PATIENCE:g} s")
+            return None
+        except (SQLAlchemyError, StorageError, OSError) as error:
+            LOG.exception("a command is not recorded", action=entry.action, outcome=entry.outcome)
+            self._told(_why(error))
+            return None
+        self._told(None)
+        return number
+
+    def _append(self, entry: Entry) -> int:
+        with self._database.writing() as connection:
+            return append(connection, entry, time.time()).number
+
+
+def _entry(command: Command, tasks: Callable[[], dict[str, TaskView]]) -> Entry:
+    details = command.model_dump(mode="json", exclude={"actor", "reason", "kind"})
+    if isinstance(command, AcknowledgeTask) and (task := tasks().get(command.task)) is not None:
+        details |= {"ability": task.ability, "title": task.title}
+    return Entry(
+        actor=command.actor,
+        action=command.kind,
+        subject=command.subject,
+        details=details,
+        reason=command.reason,
+        outcome=Outcome.REQUESTED,
+    )
+
+
+def _end(entry: Entry, number: int | None, outcome: Outcome, because: str | None = None) -> Entry:
+    details = entry.details if because is None else {**entry.details, "because": because}
+    return entry.model_copy(update={"outcome": outcome, "about": number, "details": details})
+
+
+def _why(error: Exception) -> str:
+    """In the words of the database, which name the cause: a full disk, a lock, a server that is away."""
+    cause = getattr(error, "orig", None) or error
+    return str(cause).strip().splitlines()[0] if str(cause).strip() else type(cause).__name__

@@ -1,0 +1,13 @@
+"""People who act in tests."""
+
+from __future__ import annotations
+
+from sequence_planner.actor import Actor, ActorKind
+
+
+def person(name: str, *, kind: ActorKind = ActorKind.PERSON, session: str | None = None) -> Actor:
+    """Somebody signed in from this machine, in a session of their own."""
+    return Actor(kind=kind, id=name.lower(), name=name, session=session or f"session of {name}", address="127.0.0.1")
+
+
+EVA, ADAM = person("Eva"), person("Adam")
