@@ -21,7 +21,7 @@ help: ## Say what there is
 	@sed -n 's/^\([a-z-]*\):.*## /\1	/p' $(MAKEFILE_LIST) | expand -t 14
 
 run: install page ## Start the station with emulated devices and its page at http://127.0.0.1:8000
-	$(BIN)/sequence-planner run $(STATION) --emulator --start
+	$(BIN)/sequence-planner run $(STATION) --emulator --start --demonstration
 
 emulator: install ## Start the emulated devices again
 	$(BIN)/sequence-planner emulate $(STATION)
@@ -37,7 +37,7 @@ lint: install-test
 typecheck: install-test
 	cd backend && .venv/bin/mypy --strict
 
-pytest: install-test foreign
+pytest: install-test foreign postgresql
 	cd backend && .venv/bin/pytest --junitxml=../.ci/results/pytest.xml
 
 svelte-check: frontend/node_modules/done.stamp
@@ -131,9 +131,15 @@ foreign: install-test
 	echo "Tests with Fast DDS are skipped. For them: sudo apt-get install $(FAST_DDS_PACKAGES)" >&2
 	cd backend && PYTHONPATH=tests .venv/bin/python -m foreign.peers
 
+# A PostgreSQL, of which the tests start a server of their own. Where it cannot be had its tests are skipped, and say so.
+postgresql:
+	@command -v initdb >/dev/null || ls /usr/lib/postgresql/*/bin/initdb >/dev/null 2>&1 || { [ "$$(id -u)" = 0 ] && \
+	grep -q '^ID=debian' /etc/os-release && { apt-get install -y postgresql || { apt-get update && apt-get install -y postgresql; }; }; } || \
+	echo "Tests with PostgreSQL are skipped. For them: sudo apt-get install postgresql" >&2
+
 chromium:
 	@for each in "$$CHROMIUM" chromium chromium-browser google-chrome; do command -v "$$each" >/dev/null && exit 0; done; \
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator hall test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign chromium
+.PHONY: help run emulator hall test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium

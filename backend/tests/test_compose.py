@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
 import pytest
 from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
+from sqlalchemy import make_url
+from typer.core import TyperGroup
+from typer.main import get_command
+
+from sequence_planner.cli import app
 
 ROOT = Path(__file__).parents[2]
 
@@ -17,7 +23,8 @@ DURATION = {"type": "string", "pattern": "^([0-9]+(ms|s|m|h))+$"}
 SERVICE = {
     "type": "object",
     "additionalProperties": False,
-    "required": ["build", "healthcheck"],
+    "required": ["healthcheck"],
+    "oneOf": [{"required": ["build"]}, {"required": ["image"]}],
     "properties": {
         "build": {
             "type": "object",
@@ -26,6 +33,15 @@ SERVICE = {
             "properties": {"context": {"type": "string"}, "dockerfile": {"type": "string"}},
         },
         "command": STRINGS,
+        "depends_on": {
+            "type": "object",
+            "additionalProperties": {
+                "type": "object",
+                "additionalProperties": False,
+                "required": ["condition"],
+                "properties": {"condition": {"enum": ["service_started", "service_healthy"]}},
+            },
+        },
         "environment": {"type": "object", "additionalProperties": {"type": ["string", "number", "null"]}},
         "healthcheck": {
             "type": "object",
@@ -39,17 +55,23 @@ SERVICE = {
                 "retries": {"type": "integer", "minimum": 1},
             },
         },
+        "image": {"type": "string", "pattern": "^[a-z]+:[0-9]+$"},
         "init": {"type": "boolean"},
         "network_mode": {"type": "string"},
         "ports": STRINGS,
+        "profiles": STRINGS,
         "restart": {"enum": ["no", "always", "on-failure", "unless-stopped"]},
+        "volumes": STRINGS,
     },
 }
 COMPOSE = {
     "type": "object",
     "additionalProperties": False,
     "required": ["services"],
-    "properties": {"services": {"type": "object", "minProperties": 1, "additionalProperties": SERVICE}},
+    "properties": {
+        "services": {"type": "object", "minProperties": 1, "additionalProperties": SERVICE},
+        "volumes": {"type": "object", "additionalProperties": {"type": "object", "additionalProperties": False}},
+    },
 }
 
 
@@ -59,33 +81,95 @@ def compose() -> dict[str, Any]:
     return loaded
 
 
+@pytest.fixture
+def guide() -> str:
+    return (ROOT / "docs" / "deployment.md").read_text(encoding="utf-8")
+
+
+def stations(compose: dict[str, Any]) -> list[dict[str, Any]]:
+    """The services that run a station of this repository."""
+    return [service for service in compose["services"].values() if "build" in service]
+
+
+def run_options(command: list[str]) -> dict[str, Any]:
+    """What the options of a command that runs a station are read as."""
+    assert command[:2] == ["sequence-planner", "run"]
+    read = get_command(app)
+    assert isinstance(read, TyperGroup)
+    return read.commands["run"].make_context("run", command[2:]).params
+
+
 def test_compose_reads_it(compose: dict[str, Any]) -> None:
     Draft202012Validator.check_schema(COMPOSE)
     Draft202012Validator(COMPOSE).validate(compose)
+    for service in compose["services"].values():
+        assert all(each.partition(":")[0] in compose["volumes"] for each in service.get("volumes", []))
+        for needed in service.get("depends_on", {}):
+            assert set(service["profiles"]) <= set(compose["services"][needed]["profiles"])
 
 
 def test_nothing_is_published_beyond_the_loopback(compose: dict[str, Any]) -> None:
     for service in compose["services"].values():
         assert all(port.startswith("127.0.0.1:") for port in service.get("ports", []))
+        assert service.get("network_mode") in (None, "host")
+    for service in stations(compose):
+        assert service["network_mode"] == "host"
         assert service["environment"]["ROS_AUTOMATIC_DISCOVERY_RANGE"] == "LOCALHOST"
-        if service.get("network_mode") == "host":
-            assert "--host=127.0.0.1" in service["command"]
+        assert "--host=127.0.0.1" in service["command"]
 
 
-def test_it_says_whether_it_is_well(compose: dict[str, Any]) -> None:
-    for service in compose["services"].values():
+def test_they_say_whether_they_are_well(compose: dict[str, Any]) -> None:
+    for service in stations(compose):
         assert "http://127.0.0.1:8000/healthz" in " ".join(service["healthcheck"]["test"])
+    assert "pg_isready" in compose["services"]["postgresql"]["healthcheck"]["test"]
 
 
-def test_it_runs_a_model_of_this_repository_on_rclpy(compose: dict[str, Any]) -> None:
-    command = compose["services"]["station"]["command"]
-    assert command[:2] == ["sequence-planner", "run"]
-    assert (ROOT / command[2]).is_dir()
-    assert "--transport=rclpy" in command
+def test_each_runs_a_model_of_this_repository_on_rclpy(compose: dict[str, Any]) -> None:
+    for service in stations(compose):
+        options = run_options(service["command"])
+        assert (ROOT / options["model"]).is_dir()
+        assert options["transport"] == "rclpy"
+
+
+def test_only_the_demonstration_is_without_sign_in(compose: dict[str, Any]) -> None:
+    trying, kept = (compose["services"][name] for name in ("station", "station-with-postgresql"))
+    options = run_options(trying["command"])
+    assert options["demonstration"]
+    assert options["emulator"]
+    assert "SEQUENCE_PLANNER_DATABASE" not in trying["environment"]
+    assert not run_options(kept["command"])["demonstration"]
+
+
+def test_the_station_finds_its_database_and_no_password_is_in_the_file(compose: dict[str, Any]) -> None:
+    kept, server = (compose["services"][name] for name in ("station-with-postgresql", "postgresql"))
+    url = make_url(kept["environment"]["SEQUENCE_PLANNER_DATABASE"])
+    there = server["environment"]
+    assert (url.username, url.database, url.password) == (there["POSTGRES_USER"], there["POSTGRES_DB"], None)
+    assert server["ports"] == [f"{url.host}:{url.port}:5432"]
+    # Not `${...:?}`, which Compose asks for also when the services of the profile are not started.
+    assert kept["environment"]["PGPASSWORD"] == there["POSTGRES_PASSWORD"] == "${POSTGRES_PASSWORD-}"
+    assert kept["profiles"] == server["profiles"] == ["postgresql"]
+    assert kept["depends_on"] == {"postgresql": {"condition": "service_healthy"}}
+    for ignored in (".gitignore", ".dockerignore"):
+        assert ".env" in (ROOT / ignored).read_text().splitlines()
+
+
+def test_the_way_beyond_the_loopback_fits_the_file(compose: dict[str, Any], guide: str) -> None:
+    written = re.search(r"```yaml\n(services:\n.*?)```", guide, re.DOTALL)
+    assert written is not None
+    more = YAML(typ="safe").load(written[1])["services"]
+    for name, service in more.items():
+        merged = {**compose["services"][name], **service}
+        Draft202012Validator(SERVICE).validate(merged)
+        options = run_options(merged["command"])
+        assert options["name"]
+        folders = [each.split(":")[1] for each in merged["volumes"] if each.endswith(":ro")]
+        for file in (options["certificate"], options["private_key"]):
+            assert any(file.is_relative_to(folder) for folder in folders)
 
 
 def test_the_image_is_ros_jazzy(compose: dict[str, Any]) -> None:
-    build = compose["services"]["station"]["build"]
-    recipe = ROOT / build["context"] / build["dockerfile"]
-    bases = [line.split()[1] for line in recipe.read_text().splitlines() if line.startswith("FROM ")]
-    assert bases == ["ros:jazzy"]
+    for service in stations(compose):
+        recipe = ROOT / service["build"]["context"] / service["build"]["dockerfile"]
+        bases = [line.split()[1] for line in recipe.read_text().splitlines() if line.startswith("FROM ")]
+        assert bases == ["ros:jazzy"]

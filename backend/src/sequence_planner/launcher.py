@@ -7,19 +7,25 @@ waits for one. None of them outlives this process, even if it is killed: each ho
 
 from __future__ import annotations
 
+import contextlib
+import os
 import signal
 import subprocess
 import sys
 import tempfile
 import threading
 import time
-import urllib.error
-import urllib.request
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
+from sequence_planner.announcement import announced, answers, first_start
 from sequence_planner.control.unix_socket import LONGEST_PATH
-from sequence_planner.web.settings import SettingsError, check_port
+from sequence_planner.lifeline import DEMONSTRATION_DATABASE
+from sequence_planner.storage.database import Database
+from sequence_planner.storage.environment import DATABASE
+from sequence_planner.web.binding import check_demonstration, check_free
+from sequence_planner.web.settings import Endpoint, SettingsError
 
 # The page as the build leaves it, beside the backend in the repository.
 PAGE = Path(__file__).resolve().parents[3] / "frontend" / "build"
@@ -33,11 +39,11 @@ PATIENCE = 5.0  # seconds in which a process may end in good order
 
 @dataclass(frozen=True)
 class Launch:
-    """What to run, and how."""
+    """What to run, and how; without the URL of a `database` a demonstration, whose own is forgotten at the end."""
 
     model: Path
-    host: str
-    port: int
+    endpoint: Endpoint
+    database: str | None
     transport: str
     rosbridge: str | None
     emulator: bool
@@ -46,10 +52,11 @@ class Launch:
 
 
 class Part:
-    """A process of the station, which is started again when it dies."""
+    """A process of the station, which is started again when it dies; `more` are variables of its environment."""
 
-    def __init__(self, name: str, command: list[str]) -> None:
+    def __init__(self, name: str, command: list[str], more: Mapping[str, str] | None = None) -> None:
         self.name = name
+        self._environment = {**os.environ, **(more or {})}
         self.process: subprocess.Popen[bytes] | None = None
         self._command = command
         self._pause = FIRST_PAUSE
@@ -65,7 +72,9 @@ class Part:
     def spawn(self, *more: str) -> None:
         """Start it; `more` arguments are for this time only."""
         # A session of its own: an interrupt from the terminal reaches the launcher alone, which then ends the others.
-        self.process = subprocess.Popen([*self._command, *more], stdin=subprocess.PIPE, start_new_session=True)
+        self.process = subprocess.Popen(
+            [*self._command, *more], stdin=subprocess.PIPE, start_new_session=True, env=self._environment
+        )
         self._begun = time.monotonic()
 
     def look_after(self) -> int:
@@ -116,9 +125,12 @@ class Part:
 def launch(request: Launch) -> int:
     """Run all processes until SIGTERM, SIGINT or SIGHUP; returns the exit code.
 
-    Raises `SettingsError` when host or port cannot be used, or the folder for temporary files has too long a name.
+    Raises `SettingsError` when host, port or certificate cannot be used, or the folder for temporary files has too long
+    a name, and `StorageError` when the database cannot be used.
     """
-    check_port(request.host, request.port)
+    check_free(request.endpoint)
+    if request.database is None:
+        check_demonstration(request.endpoint)
     stop = threading.Event()
     for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
         if signal.getsignal(number) is not signal.SIG_IGN:  # as it is under `nohup`
@@ -127,22 +139,28 @@ def launch(request: Launch) -> int:
         socket = Path(folder) / "controller.socket"
         if len(str(socket).encode()) > LONGEST_PATH:
             raise SettingsError(f"the path of {socket} is too long for a socket; set TMPDIR to a shorter folder")
-        return _Launcher(request, socket, stop).run()
+        url = request.database or f"sqlite:///{socket.parent / DEMONSTRATION_DATABASE}"
+        with contextlib.closing(Database.open(url)) as database:
+            database.upgrade()
+        return _Launcher(request, url, socket, stop).run()
 
 
 class _Launcher:
-    def __init__(self, request: Launch, socket: Path, stop: threading.Event) -> None:
+    def __init__(self, request: Launch, url: str, socket: Path, stop: threading.Event) -> None:
         self._request = request
+        self._url = url
         self._stop = stop
         model, transport = str(request.model), ["--transport", request.transport]
         transport += ["--rosbridge", request.rosbridge] if request.rosbridge else []
         controller = [model, "--socket", str(socket), *transport]
         controller += ["--emulated"] if request.emulator else []
-        address = ["--host", request.host, "--port", str(request.port)]
         speed = ["--speed", str(request.emulator_speed)]
-        self._controller = Part("controller", _command("controller", *controller))
+        # Not as an argument: the URL may hold a password, and everybody on this machine may read what `ps` shows.
+        database = {DATABASE: url}
+        self._controller = Part("controller", _command("controller", *controller), database)
         server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
-        self._server = Part("server", _command("server", *server, *address))
+        server += ["--demonstration"] if request.database is None else []
+        self._server = Part("server", _command("server", *server, *_options(request.endpoint)), database)
         self._emulator = Part("emulated devices", _command("emulate", model, *speed, *transport))
 
     def run(self) -> int:
@@ -180,18 +198,23 @@ class _Launcher:
         return 0
 
     def _announce(self) -> None:
-        """Print the address as soon as somebody answers there."""
-        address = f"http://{self._request.host}:{self._request.port}"
-        direct = urllib.request.build_opener(urllib.request.ProxyHandler({}))  # the loopback is nothing for a proxy
-        while not self._stop.wait(0.1):
-            try:
-                with direct.open(f"{address}/healthz", timeout=1):
-                    break
-            except (urllib.error.URLError, OSError):
-                continue
-        else:
-            return
-        _say(f"{self._request.model} runs: open {address} (operator's watch: {address}/watch)")
+        """Print the address as soon as somebody answers there, and how to begin where there are no people yet."""
+        endpoint, model = self._request.endpoint, self._request.model
+        while not answers(endpoint):
+            if self._stop.wait(0.1):
+                return
+        _say(announced(endpoint, model))
+        if self._request.database is not None and (how := first_start(self._url, endpoint, model)):
+            _say(how)
+
+
+def _options(endpoint: Endpoint) -> list[str]:
+    """The options of `server` that mean `endpoint`."""
+    options = [f"--host={endpoint.host}", f"--port={endpoint.port}"]
+    if endpoint.certificate is not None:
+        options += [f"--certificate={endpoint.certificate}", f"--private-key={endpoint.private_key}"]
+    options += [f"--proxy={proxy}" for proxy in endpoint.proxies]
+    return [*options, *(f"--name={name}" for name in endpoint.names)]
 
 
 def _command(*arguments: str) -> list[str]:

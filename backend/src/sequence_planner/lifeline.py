@@ -18,18 +18,21 @@ from collections.abc import Callable
 from pathlib import Path
 
 STANDARD_INPUT = 0
+DEMONSTRATION_DATABASE = "demonstration.sqlite"  # in the launcher's folder; nothing of it is kept
 LAST_WORDS = 5.0  # seconds in which a process may end in good order
 
 
 def end_with_launcher(folder: Path | None = None) -> None:
     """End this process like SIGTERM does as soon as its standard input, a pipe from the launcher, is closed.
 
-    `folder` is the launcher's; it is removed then, if it is empty.
+    `folder` is the launcher's; it is removed then, if it is empty but for the database of a demonstration.
     """
 
     def remove() -> None:
         if folder is not None:
             with contextlib.suppress(OSError):
+                for left in folder.glob(f"{DEMONSTRATION_DATABASE}*"):  # and what SQLite writes beside it
+                    left.unlink(missing_ok=True)
                 folder.rmdir()
 
     def end() -> None:

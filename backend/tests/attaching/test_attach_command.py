@@ -10,6 +10,8 @@ import httpx
 import pytest
 
 from cli.commands import as_json, command
+from sequence_planner.identity.roles import Role
+from sequence_planner.journal.audit import read
 from sequence_planner.station import prepare_station
 from sequence_planner.web.settings import Settings
 from web.running import Loop, Server, free_port
@@ -82,11 +84,17 @@ def test_the_same_is_done_over_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     cell, loop = station(tmp_path), Loop()
     page = tmp_path / "page"
     page.mkdir()
-    settings = Settings(tmp_path / "no.sock", page, port=free_port())
+    settings = Settings(
+        controller_socket=tmp_path / "no.sock",
+        page=page,
+        database=f"sqlite:///{tmp_path / 'station.sqlite'}",
+        port=free_port(),
+    )
     server = Server(loop, replace(settings, model=cell, transport="cyclonedds"))
     server.start()
     try:
-        with httpx.Client(base_url=server.address, timeout=60) as client:
+        with server.client(Role.ENGINEER) as client:
+            client.timeout = httpx.Timeout(60)
             body = {"topic": "/press/state", "resource": "press"}
             answer = client.post("/api/v1/ros/attachments", json=body).json()
             assert (answer["made"], answer["direction"]) == (True, "in")
@@ -94,6 +102,9 @@ def test_the_same_is_done_over_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             assert {finding["severity"] for finding in answer["findings"]} == {"warning"}
             again = client.post("/api/v1/ros/attachments", json=body | {"dry_run": True})
             assert (again.status_code, again.json()["type"]) == (409, "/problems/attached")
+        with server.identity.database.reading() as connection:
+            done, asked = read(connection, action="attach-topic")
+        assert (asked.entry.outcome, done.entry.outcome, done.entry.about) == ("requested", "done", asked.number)
     finally:
         server.stop()
         loop.close()

@@ -16,6 +16,7 @@ from jsonschema import Draft202012Validator
 from ruamel.yaml import YAML
 
 from cli.commands import as_json, command
+from running.signing_in import signed_in
 from running.stations import DOMAIN
 
 
@@ -67,16 +68,16 @@ def test_a_new_station_runs(gate: Path) -> None:
     with (gate / "log").open("wb") as log:
         running = subprocess.Popen([*program, "--port", str(port)], stdout=log, stderr=log, env=environment)
     try:
-        assert _completed(port, time.monotonic() + 60), (gate / "log").read_text()
+        assert _completed(signed_in(gate, port), time.monotonic() + 60), (gate / "log").read_text()
     finally:
         running.send_signal(signal.SIGTERM)
         assert running.wait(timeout=20) == 0
 
 
-def _completed(port: int, end: float) -> bool:
+def _completed(browser: httpx.Client, end: float) -> bool:
     while time.monotonic() < end:
         try:
-            operations = httpx.get(f"http://127.0.0.1:{port}/api/v1/operations").json()["operations"]
+            operations = browser.get("operations").json()["operations"]
             if operations["let_through"]["completed"] == 1:
                 return True
         except (httpx.HTTPError, KeyError):

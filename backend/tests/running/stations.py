@@ -12,11 +12,13 @@ import time
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import asynccontextmanager, contextmanager
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
 import httpx
 
+from running.signing_in import signed_in
 from sequence_planner.ros.choice import open_transport
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import Transport
@@ -66,19 +68,31 @@ class RunningStation:
     port: int
     log: Path
 
+    @cached_property
+    def browser(self) -> httpx.Client:
+        """Somebody is signed in there, and may do whatever there is to do at a station."""
+        arguments = self.process.args
+        assert isinstance(arguments, list)
+        return signed_in(REPOSITORY / str(arguments[arguments.index("run") + 1]), self.port)
+
     def get(self, part: str, path: str = "") -> Any:  # noqa: ANN401 - JSON
         """The `part` of the answer at `path`, which mostly bears its name."""
-        answer = httpx.get(f"http://127.0.0.1:{self.port}/api/v1/{path or part}")
+        answer = self.browser.get(path or part)
         answer.raise_for_status()
         return answer.json()[part]
 
     def post(self, path: str, body: object) -> httpx.Response:
-        return httpx.post(f"http://127.0.0.1:{self.port}/api/v1/{path}", json=body)
+        """What is answered; control is taken where it is needed."""
+        answer = self.browser.post(path, json=body)
+        if answer.status_code == httpx.codes.CONFLICT and answer.json()["type"] == "/problems/control-needed":
+            self.browser.put("control", json={"over": None}).raise_for_status()
+            answer = self.browser.post(path, json=body)
+        return answer
 
     def up(self) -> bool:
         assert self.process.poll() is None, "the station has ended"
         try:
-            station = httpx.get(f"http://127.0.0.1:{self.port}/api/v1/station").json()
+            station = self.browser.get("station").json()
         except httpx.HTTPError:
             return False
         return station.get("production") in ("waiting", "started")
@@ -87,7 +101,7 @@ class RunningStation:
         """What synthesis has found of the station; None before that is all."""
         assert self.process.poll() is None, "the station has ended"
         try:
-            answer = httpx.get(f"http://127.0.0.1:{self.port}/api/v1/analysis")
+            answer = self.browser.get("analysis")
         except httpx.HTTPError:
             return None
         analysis = answer.json().get("analysis") if answer.status_code == httpx.codes.OK else None

@@ -59,12 +59,21 @@ def test_nothing_is_published_until_a_person_starts_production(tmp_path: Path) -
         assert running.get("production", "station") == "waiting"
 
 
+DEMONSTRATION = ("run", str(MODEL), "--emulator", "--demonstration")
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
         (("run", str(MODEL), "--start"), "--start is for emulated devices"),
-        (("run", str(MODEL), "--host", "0.0.0.0"), "cannot serve on 0.0.0.0"),
+        (("run", str(MODEL), "--host", "0.0.0.0"), "cannot serve on 0.0.0.0 without HTTPS"),
         (("run", str(MODEL), "--port", "70000"), "70000 is not a port"),
+        (("run", str(MODEL), "--database", "oracle://station"), "a database of the kind `oracle` is not supported"),
+        (("run", str(MODEL), "--demonstration"), "--demonstration is for emulated devices"),
+        ((*DEMONSTRATION, "--host", "192.0.2.7"), "cannot serve on 192.0.2.7 without HTTPS"),
+        ((*DEMONSTRATION, "--proxy", "127.0.0.1", "--name", "a.example"), "--demonstration is for this machine alone"),
+        ((*DEMONSTRATION, "--name", "a.example"), "--demonstration is for this machine alone"),
+        ((*DEMONSTRATION, "--database", "sqlite:////tmp/kept"), "--demonstration has a database of its own"),
         (("run", "models"), "a station is a folder with a station.yaml"),
         (("run", str(MODEL), "--transport", "rclpy"), "source the setup file of a ROS 2 installation"),
         (("by-hand", "robot.pose := home"), "no emulated devices are running"),

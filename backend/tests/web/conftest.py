@@ -6,9 +6,11 @@ from pathlib import Path
 import httpx
 import pytest
 
+from sequence_planner.identity.roles import Role
 from sequence_planner.web.settings import Settings, StreamLimits
 
 from .running import Controller, Loop, Server, free_port, until
+from .watching import Device, station
 
 
 @pytest.fixture
@@ -23,7 +25,13 @@ def settings(tmp_path: Path) -> Settings:
     page = tmp_path / "page"
     page.mkdir()
     limits = StreamLimits(queue=8, send_seconds=1.5, clients=10)
-    return Settings(controller_socket=tmp_path / "controller.sock", page=page, port=free_port(), stream=limits)
+    return Settings(
+        controller_socket=tmp_path / "controller.sock",
+        page=page,
+        database=f"sqlite:///{tmp_path / 'station.sqlite'}",
+        port=free_port(),
+        stream=limits,
+    )
 
 
 @pytest.fixture
@@ -52,5 +60,28 @@ def server(controller: Controller, lonely_server: Server) -> Server:
 
 @pytest.fixture
 def client(server: Server) -> Iterator[httpx.Client]:
-    with httpx.Client(base_url=server.address) as client:
+    """The browser of an operator who has signed in."""
+    with server.client(Role.OPERATOR) as client:
         yield client
+
+
+@pytest.fixture
+def administrator(server: Server) -> Iterator[httpx.Client]:
+    """The browser of an administrator who has signed in."""
+    with server.client(Role.ADMINISTRATOR) as client:
+        yield client
+
+
+@pytest.fixture
+def device(server: Server, controller: Controller) -> Iterator[Device]:
+    """A watch, at a station with tasks for two people."""
+    controller.show(station())
+    with Device(server) as device:
+        yield device
+
+
+@pytest.fixture
+def another(server: Server) -> Iterator[Device]:
+    """Another watch."""
+    with Device(server) as device:
+        yield device

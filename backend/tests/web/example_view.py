@@ -123,6 +123,7 @@ def example_view(**changes: object) -> StationView:
             "7": TaskView(
                 revision=3,
                 ability="operator.place",
+                resource="operator",
                 title="Place bolt pair 1",
                 text="Place it on the cover plate",
                 created=995.0,
@@ -151,6 +152,7 @@ def example_view(**changes: object) -> StationView:
                 until=1030.0,
             )
         },
+        control=None,
         alarms={"slow": AlarmView(priority=Priority.LOW, text="The robot is slow", action="Look at it", since=998.0)},
         way_back=None,
         analysis=None,

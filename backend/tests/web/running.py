@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import secrets
 import socket
 import threading
 import time
@@ -11,13 +12,24 @@ from collections.abc import Callable, Coroutine
 from pathlib import Path
 from typing import Any, TypeVar
 
+import httpx
 import uvicorn
+from fastapi import FastAPI
+from websockets.sync.client import ClientConnection, connect
 
+from sequence_planner.actor import SYSTEM, ActorKind
 from sequence_planner.control.commands import AcknowledgeTask, Command, CommandRefused
 from sequence_planner.control.link import ControllerLink
 from sequence_planner.control.view import StationView
+from sequence_planner.identity import people
+from sequence_planner.identity.people import Person
+from sequence_planner.identity.roles import Role
+from sequence_planner.identity.sessions import SignedIn, open_session
+from sequence_planner.web.binding import bind
+from sequence_planner.web.cookies import session_cookie
+from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.server import uvicorn_config
-from sequence_planner.web.settings import Settings, bind
+from sequence_planner.web.settings import Settings
 
 from .example_view import example_view
 
@@ -118,18 +130,51 @@ class Server:
         self.settings = settings
         self.address = f"http://127.0.0.1:{settings.port}"
         self.stream = f"ws://127.0.0.1:{settings.port}/api/v1/stream"
-        self._uvicorn = uvicorn.Server(uvicorn_config(settings))
+        config = uvicorn_config(settings)
+        assert isinstance(config.app, FastAPI)
+        self.app = config.app
+        self._uvicorn = uvicorn.Server(config)
         self._task: asyncio.Task[None] | None = None
 
     def start(self) -> None:
-        listener = bind(self.settings.host, self.settings.port)
+        listener = bind(self.settings)
 
         async def begin() -> None:
             # `_serve` is `serve` without the signal handlers, which belong to the main thread.
             self._task = asyncio.create_task(self._uvicorn._serve([listener]))
 
         self.loop.run(begin())
-        until(lambda: self._uvicorn.started)
+        until(lambda: self._uvicorn.started, 15)
+
+    @property
+    def identity(self) -> IdentityOffice:
+        """The server's own way to the database; use it from this thread through `reading` and `writing` alone."""
+        office: IdentityOffice = self.app.state.identity
+        return office
+
+    def person(self, role: Role = Role.OPERATOR, *, name: str | None = None, temporary: bool = False) -> Person:
+        """A new person, who cannot sign in with any password."""
+        name = name or f"{role.value.capitalize()} {secrets.token_hex(4)}"
+        with self.identity.database.writing() as connection:
+            return people.create(connection, name, role, "none", SYSTEM, time.time(), temporary=temporary)
+
+    def session(self, person: Person, now: float | None = None) -> tuple[str, SignedIn]:
+        """A new session and its token, without a password; opened at `now`."""
+        when = time.time() if now is None else now
+        with self.identity.database.writing() as connection:
+            kind = ActorKind.PERSON
+            return open_session(connection, person, when, kind=kind, address="127.0.0.1", agent="tests")
+
+    def cookie(self, token: str) -> dict[str, str]:
+        """The header that shows the token of a session."""
+        return {"Cookie": f"{session_cookie(self.settings)}={token}"}
+
+    def client(self, role: Role | None = None, *, token: str | None = None) -> httpx.Client:
+        """A browser in which somebody with `role` is signed in, or nobody."""
+        if role is not None:
+            token = self.session(self.person(role))[0]
+        cookies = {} if token is None else {session_cookie(self.settings): token}
+        return httpx.Client(base_url=self.address, cookies=cookies)
 
     def stop(self) -> None:
         async def end() -> None:
@@ -139,3 +184,25 @@ class Server:
                     await self._task
 
         self.loop.run(end())
+
+
+def listen(
+    server: Server,
+    address: str | None = None,
+    *,
+    headers: dict[str, str] | None = None,
+    sock: socket.socket | None = None,
+    max_queue: int | None = 16,
+    max_size: int | None = 1024 * 1024,
+    close_timeout: float = 10,
+) -> ClientConnection:
+    """A stream of `server` as a viewer listens to it."""
+    shown = server.cookie(server.session(server.person(Role.VIEWER))[0]) | (headers or {})
+    return connect(
+        address or server.stream,
+        additional_headers=shown,
+        sock=sock,
+        max_queue=max_queue,
+        max_size=max_size,
+        close_timeout=close_timeout,
+    )

@@ -10,8 +10,17 @@ from typing import Any
 import httpx
 import pytest
 
-from sequence_planner.control.commands import AcknowledgeTask, Command, SetMode, StartProduction
+from sequence_planner.actor import ActorKind
+from sequence_planner.control.commands import (
+    AcknowledgeTask,
+    Command,
+    ReleaseControl,
+    SetMode,
+    StartProduction,
+    TakeControl,
+)
 from sequence_planner.control.view import Mode
+from sequence_planner.identity.roles import Role
 
 from .example_view import example_view
 from .running import Controller, Server, until
@@ -30,14 +39,26 @@ def problem(answer: httpx.Response, status: int, slug: str) -> dict[str, Any]:
 
 
 def test_each_action_is_a_command_with_its_actor(client: httpx.Client, controller: Controller) -> None:
-    assert client.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204
+    assert client.put("/api/v1/mode", json={"mode": "paused", "reason": "the tool sticks"}).status_code == 204
     assert client.post("/api/v1/production/start", json={}).status_code == 204
     assert client.post("/api/v1/tasks/7/acknowledgement", json={"revision": 3}).status_code == 204
+    assert client.put("/api/v1/control", json={"over": None, "reason": "my shift"}).status_code == 204
+    assert client.delete("/api/v1/control").status_code == 204
+    actor = controller.commands[0].actor
     assert controller.commands == [
-        SetMode(actor="local", mode=Mode.PAUSED),
-        StartProduction(actor="local"),
-        AcknowledgeTask(actor="local", task="7", revision=3),
+        SetMode(actor=actor, mode=Mode.PAUSED, reason="the tool sticks"),
+        StartProduction(actor=actor),
+        AcknowledgeTask(actor=actor, task="7", revision=3),
+        TakeControl(actor=actor, over=None, reason="my shift"),
+        ReleaseControl(actor=actor),
     ]
+    session = client.get("/api/v1/session").json()
+    assert (actor.kind, actor.address) == (ActorKind.PERSON, "127.0.0.1")
+    assert (actor.session, actor.id, actor.name) == (
+        session["session"],
+        session["person"]["id"],
+        session["person"]["name"],
+    )
 
 
 def test_a_refusal_comes_in_the_controllers_words(client: httpx.Client, controller: Controller) -> None:
@@ -110,7 +131,8 @@ def test_a_method_that_an_address_does_not_know_is_a_problem_that_names_those_it
 
 
 def test_without_a_controller_a_command_is_refused_at_once(lonely_server: Server) -> None:
-    answer = httpx.put(f"{lonely_server.address}/api/v1/mode", json={"mode": "paused"})
+    with lonely_server.client(Role.OPERATOR) as client:
+        answer = client.put("/api/v1/mode", json={"mode": "paused"})
     problem(answer, 503, "controller-unavailable")
 
 
@@ -133,4 +155,4 @@ def test_a_controller_that_dies_over_a_command_leaves_its_outcome_open(
     assert "not known" in problem(answers[0], 504, "controller-no-answer")["detail"]
     controller.link = type(controller.link)(controller.link.path, controller.handle)
     controller.start()
-    until(lambda: httpx.put(f"{server.address}/api/v1/mode", json={"mode": "paused"}).status_code == 204)
+    until(lambda: client.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204)

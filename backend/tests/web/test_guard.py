@@ -8,9 +8,8 @@ from collections.abc import Iterator
 import httpx
 import pytest
 from websockets.exceptions import InvalidStatus
-from websockets.sync.client import connect
 
-from .running import Controller, Server
+from .running import Controller, Server, listen
 from .test_acting import problem
 
 MODE = {"mode": "paused"}
@@ -19,8 +18,11 @@ MODE = {"mode": "paused"}
 @pytest.mark.parametrize("path", ["/", "/healthz", "/api/v1/station", "/api/v1/nothing"])
 @pytest.mark.parametrize("host", ["evil.example:{port}", "127.0.0.1", "127.0.0.1:1", "localhost.evil.example:{port}"])
 def test_a_foreign_host_is_refused_everywhere(server: Server, client: httpx.Client, path: str, host: str) -> None:
-    headers = {"Host": host.format(port=server.settings.port)}
-    problem(client.get(path, headers=headers), 421, "wrong-host")
+    answer = client.get(path, headers={"Host": host.format(port=server.settings.port)})
+    if path == "/healthz" and host.startswith("127.0.0.1"):
+        assert answer.status_code == 200  # what this machine asks about its own health may name any of its ports
+    else:
+        problem(answer, 421, "wrong-host")
 
 
 @pytest.mark.parametrize("name", ["127.0.0.1", "localhost", "LOCALHOST", "[::1]"])
@@ -55,7 +57,7 @@ def test_a_foreign_page_changes_nothing_and_opens_no_stream(
     problem(client.post("/api/v1/production/start", json={}, headers=sent), 403, "foreign-origin")
     problem(client.post("/api/v1/tasks/7/acknowledgement", json={"revision": 3}, headers=sent), 403, "foreign-origin")
     assert controller.commands == []
-    with pytest.raises(InvalidStatus) as refused, connect(server.stream, additional_headers=sent):
+    with pytest.raises(InvalidStatus) as refused, listen(server, headers=sent):
         pass
     assert refused.value.response.status_code == 403
     assert b"/problems/foreign-origin" in (refused.value.response.body or b"")
@@ -74,7 +76,7 @@ def test_our_own_page_may_act(server: Server, client: httpx.Client, controller: 
     for name in ("127.0.0.1", "localhost"):
         headers = {"Origin": f"http://{name}:{server.settings.port}", "Sec-Fetch-Site": "same-origin"}
         assert client.put("/api/v1/mode", json=MODE, headers=headers).status_code == 204
-        with connect(server.stream, additional_headers=headers) as stream:
+        with listen(server, headers=headers) as stream:
             assert '"snapshot"' in str(stream.recv(2))
     assert len(controller.commands) == 2
 
@@ -100,13 +102,13 @@ def test_json_may_name_its_encoding(client: httpx.Client) -> None:
     assert client.put("/api/v1/mode", content=b'{"mode": "paused"}', headers=headers).status_code == 204
 
 
-def test_every_route_that_changes_something_reads_json_only(client: httpx.Client) -> None:
-    paths = client.get("/api/v1/openapi.json").json()["paths"]
+def test_every_route_that_changes_something_reads_json_only(administrator: httpx.Client) -> None:
+    paths = administrator.get("/api/v1/openapi.json").json()["paths"]
     changing = [(path, verb) for path, verbs in paths.items() for verb in verbs if verb not in ("get", "delete")]
-    assert len(changing) == 5
+    assert len(changing) == 17
     for path, verb in changing:
-        address = path.replace("{task}", "7").replace("{name}", "robot.speed")
-        answer = client.request(verb.upper(), address, headers={"Content-Type": "text/plain"})
+        address = path.replace("{", "").replace("}", "")
+        answer = administrator.request(verb.upper(), address, headers={"Content-Type": "text/plain"})
         problem(answer, 415, "not-json")
 
 

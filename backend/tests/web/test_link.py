@@ -15,6 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sequence_planner.actor import Actor, ActorKind
 from sequence_planner.control.commands import Command, CommandRefused, SetMode
 from sequence_planner.control.lines import read_lines
 from sequence_planner.control.link import ControllerLink
@@ -25,7 +26,13 @@ from sequence_planner.web.controller_client import ControllerClient
 
 from .example_view import example_view
 
-COMMAND = {"kind": "set-mode", "actor": "local", "mode": "paused"}
+
+def named(name: str) -> Actor:
+    return Actor(kind=ActorKind.PERSON, id=name, name=name, session="1")
+
+
+ACTOR = named("Ada")
+COMMAND = {"kind": "set-mode", "actor": ACTOR.model_dump(mode="json"), "mode": "paused"}
 
 
 class Peer:
@@ -176,7 +183,7 @@ def test_a_line_that_is_no_command_is_answered_and_the_connection_goes_on(
             assert (reply["ok"], reply["id"]) == (True, 17)
 
     asyncio.run(scenario())
-    assert heard == [SetMode(actor="local", mode=Mode.PAUSED)]
+    assert heard == [SetMode(actor=ACTOR, mode=Mode.PAUSED)]
 
 
 def test_a_command_that_was_begun_is_carried_out_though_its_sender_leaves(path: Path) -> None:
@@ -200,7 +207,7 @@ def test_a_command_that_was_begun_is_carried_out_though_its_sender_leaves(path: 
 
 def test_replies_find_their_commands_whatever_their_order(path: Path) -> None:
     async def handle(command: Command) -> None:
-        if command.actor == "slow":
+        if command.actor.name == "slow":
             await asyncio.sleep(0.1)
             raise CommandRefused("too-slow", "Too slow", "Be quicker.")
 
@@ -209,9 +216,9 @@ def test_replies_find_their_commands_whatever_their_order(path: Path) -> None:
             link.publish(example_view())
             client = ControllerClient(path)
             running = await connected(client)
-            slow = asyncio.create_task(client.send(SetMode(actor="slow", mode=Mode.PAUSED)))
+            slow = asyncio.create_task(client.send(SetMode(actor=named("slow"), mode=Mode.PAUSED)))
             await asyncio.sleep(0)
-            await client.send(SetMode(actor="quick", mode=Mode.PAUSED))
+            await client.send(SetMode(actor=named("quick"), mode=Mode.PAUSED))
             assert not slow.done()
             with pytest.raises(CommandRefused, match="Be quicker") as refused:
                 await slow
@@ -231,7 +238,7 @@ def test_a_controller_that_never_answers_is_given_up(path: Path) -> None:
             client = ControllerClient(path, reply_deadline=0.2)
             running = await connected(client)
             with pytest.raises(CommandRefused, match="not known") as refused:
-                await client.send(SetMode(actor="local", mode=Mode.PAUSED))
+                await client.send(SetMode(actor=ACTOR, mode=Mode.PAUSED))
             assert (refused.value.slug, refused.value.status) == ("controller-no-answer", 504)
             running.cancel()
 
@@ -253,7 +260,7 @@ def test_a_command_that_nobody_waits_for_any_more_is_not_carried_out(path: Path)
             assert (await peer.ask(json.dumps(in_time).encode()))["ok"]
 
     asyncio.run(scenario())
-    assert heard == [SetMode(actor="local", mode=Mode.PAUSED)]
+    assert heard == [SetMode(actor=ACTOR, mode=Mode.PAUSED)]
 
 
 def test_a_view_that_cannot_be_dealt_with_does_not_deafen_the_server(path: Path) -> None:

@@ -11,7 +11,7 @@ from dataclasses import replace
 import httpx
 import pytest
 from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import ClientConnection
 
 from control.bench import COMMAND, STATE, cell
 from control.test_network_watch import REPORTS
@@ -26,7 +26,7 @@ from sequence_planner.control.pipeline_view import EdgeFlowView, FlowsView, Pipe
 from sequence_planner.ros.transport import Endpoint
 from sequence_planner.web.settings import Settings
 
-from .running import Controller, Loop, Server, until
+from .running import Controller, Loop, Server, listen, until
 from .test_acting import problem
 from .test_stream import hear, hear_kind, slow_client
 
@@ -75,7 +75,7 @@ def path(server: Server, name: str) -> str:
 
 @pytest.fixture
 def graphs(server: Server) -> Iterator[ClientConnection]:
-    with connect(path(server, "ros"), close_timeout=1) as stream:
+    with listen(server, path(server, "ros"), close_timeout=1) as stream:
         yield stream
 
 
@@ -120,7 +120,7 @@ def test_a_slow_client_of_the_graph_gets_the_newest_or_is_dropped_and_slows_nobo
 ) -> None:
     many = [replace(REPORTS, topic=f"/topic_{n}", node=f"/node_{n}") for n in range(500)]
     shown = network(*many)
-    with slow_client(server, path(server, "ros")), connect(path(server, "ros"), max_size=None) as quick:
+    with slow_client(server, path(server, "ros")), listen(server, path(server, "ros"), max_size=None) as quick:
         for number in range(20):
             begun = time.monotonic()
             controller.tell(network(*many, REPORTS) if number % 2 else shown)
@@ -143,7 +143,7 @@ def test_the_pipelines_are_told_to_who_asks(client: httpx.Client, controller: Te
 
 
 def test_edges_are_asked_for_only_while_somebody_looks(server: Server, controller: Telling) -> None:
-    with connect(path(server, "pipelines")) as one, connect(path(server, "pipelines")) as two:
+    with listen(server, path(server, "pipelines")) as one, listen(server, path(server, "pipelines")) as two:
         first = hear_kind(one, "flows")["flows"]["time"]
         assert hear_kind(one, "flows")["flows"]["time"] > first
         hear_kind(two, "flows")
@@ -162,7 +162,7 @@ def server_is_quiet(controller: Telling) -> bool:
 
 def test_edges_of_a_station_that_is_being_prepared_come_later(server: Server, controller: Telling) -> None:
     controller.preparing = True
-    with connect(path(server, "pipelines")) as stream:
+    with listen(server, path(server, "pipelines")) as stream:
         assert hear(stream) == {"kind": "link", "controller": "heard"}
         controller.preparing = False
         assert hear(stream)["kind"] == "flows"
@@ -171,18 +171,18 @@ def test_edges_of_a_station_that_is_being_prepared_come_later(server: Server, co
 def test_too_many_clients_of_the_graph_are_told_to_come_later(server: Server) -> None:
     with ExitStack() as streams:
         for _ in range(server.settings.stream.clients):
-            streams.enter_context(connect(path(server, "ros")))
-        with connect(path(server, "ros")) as late, pytest.raises(ConnectionClosed):
+            streams.enter_context(listen(server, path(server, "ros")))
+        with listen(server, path(server, "ros")) as late, pytest.raises(ConnectionClosed):
             late.recv(2)
 
 
 def test_an_override_is_a_command_with_its_actor(client: httpx.Client, controller: Telling) -> None:
     assert client.put("/api/v1/overrides/robot.speed", json={"fields": {"speed": 0.2}}).status_code == 204
     assert client.delete("/api/v1/overrides/robot.speed").status_code == 204
-    assert controller.commands == [
-        SetOverride(actor="local", name="robot.speed", fields={"speed": 0.2}),
-        ClearOverride(actor="local", name="robot.speed"),
-    ]
+    put, deleted = controller.commands
+    assert put == SetOverride(actor=put.actor, name="robot.speed", fields={"speed": 0.2})
+    assert deleted == ClearOverride(actor=put.actor, name="robot.speed")
+    assert put.actor.name.startswith("Operator")
     bodies: list[dict[str, object]] = [{}, {"fields": {}}, {"fields": {"speed": [1]}}, {"fields": {"speed": None}}]
     for body in bodies:
         problem(client.put("/api/v1/overrides/robot.speed", json=body), 422, "invalid-request")
@@ -192,8 +192,8 @@ def test_an_override_is_a_command_with_its_actor(client: httpx.Client, controlle
     assert len(controller.commands) == 2
 
 
-def test_nothing_is_attached_where_the_model_is_not_known(client: httpx.Client) -> None:
+def test_nothing_is_attached_where_the_model_is_not_known(administrator: httpx.Client) -> None:
     body = {"topic": "/arm/state", "resource": "arm"}
-    problem(client.post("/api/v1/ros/attachments", json=body), 409, "no-model")
+    problem(administrator.post("/api/v1/ros/attachments", json=body), 409, "no-model")
     for wrong in ({"topic": "--help"}, {"resource": "../arm"}, {"direction": "up"}):
-        problem(client.post("/api/v1/ros/attachments", json=body | wrong), 422, "invalid-request")
+        problem(administrator.post("/api/v1/ros/attachments", json=body | wrong), 422, "invalid-request")

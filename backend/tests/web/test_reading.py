@@ -5,6 +5,8 @@ from __future__ import annotations
 import httpx
 import pytest
 
+from sequence_planner.identity.roles import Role
+
 from .running import Controller, Server, until
 
 PARTS = ["resources", "operations", "abilities", "plan", "tasks", "topics", "overrides", "alarms"]
@@ -32,7 +34,8 @@ def test_the_station_tells_what_runs_and_how(client: httpx.Client) -> None:
 
 @pytest.mark.parametrize("part", ["station", "state", *PARTS])
 def test_nothing_is_told_before_the_controller_was_heard(lonely_server: Server, part: str) -> None:
-    answer = httpx.get(f"{lonely_server.address}/api/v1/{part}")
+    with lonely_server.client(Role.VIEWER) as client:
+        answer = client.get(f"/api/v1/{part}")
     assert answer.status_code == 503
     assert answer.headers["content-type"] == "application/problem+json"
     assert answer.json()["type"] == "/problems/controller-unavailable"

@@ -11,12 +11,12 @@ from typing import Any
 
 import pytest
 from websockets.exceptions import ConnectionClosed
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import ClientConnection
 
 from sequence_planner.control.view import Mode
 
 from .example_view import example_view
-from .running import Controller, Server, until
+from .running import Controller, Server, listen, until
 from .test_difference import apply
 
 Message = dict[str, Any]
@@ -38,7 +38,7 @@ def hear_kind(stream: ClientConnection, kind: str) -> Message:
 @pytest.fixture
 def stream(server: Server) -> Iterator[ClientConnection]:
     # A client that does not read cannot hear the answer to its goodbye, so it does not wait long for it.
-    with connect(server.stream, close_timeout=1) as stream:
+    with listen(server, close_timeout=1) as stream:
         yield stream
 
 
@@ -47,7 +47,7 @@ def slow_client(server: Server, address: str | None = None) -> ClientConnection:
     sock = socket.socket()
     sock.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 16 * 1024)
     sock.connect(("127.0.0.1", server.settings.port))
-    return connect(address or server.stream, sock=sock, max_queue=1, max_size=None, close_timeout=1)
+    return listen(server, address, sock=sock, max_queue=1, max_size=None, close_timeout=1)
 
 
 def test_a_snapshot_and_its_deltas_are_the_view(stream: ClientConnection, controller: Controller) -> None:
@@ -105,7 +105,7 @@ def test_no_old_view_is_shown_to_who_comes_or_asks_while_the_controller_is_lost(
 ) -> None:
     controller.publishing = False
     hear_kind(stream, "link")
-    with connect(server.stream) as late:
+    with listen(server) as late:
         assert hear(late)["controller"] == "lost"
         late.send('{"kind": "resync"}')
         assert hear(late)["controller"] == "lost"
@@ -114,7 +114,7 @@ def test_no_old_view_is_shown_to_who_comes_or_asks_while_the_controller_is_lost(
 
 
 def test_who_comes_before_the_controller_gets_its_first_view(lonely_server: Server, controller: Controller) -> None:
-    with connect(lonely_server.stream) as stream:
+    with listen(lonely_server) as stream:
         assert hear_kind(stream, "snapshot")["view"]["station"]["name"] == "bolting"
 
 
@@ -149,7 +149,7 @@ def test_a_wrong_frame_is_answered_and_the_stream_goes_on(stream: ClientConnecti
 
 
 def test_many_wrong_frames_harm_nobody_else(server: Server, stream: ClientConnection) -> None:
-    with connect(server.stream) as calm:
+    with listen(server) as calm:
         for _ in range(2000):
             stream.send("nonsense")
         hear(calm)
@@ -158,7 +158,7 @@ def test_many_wrong_frames_harm_nobody_else(server: Server, stream: ClientConnec
 
 
 def test_every_client_sees_the_same_numbers(server: Server) -> None:
-    with connect(server.stream) as one, connect(server.stream) as two:
+    with listen(server) as one, listen(server) as two:
         numbers = [{hear(stream)["sequence"] for _ in range(8)} for stream in (one, two)]
         assert len(numbers[0] & numbers[1]) >= 6
 
@@ -169,7 +169,7 @@ def test_a_slow_client_is_given_a_snapshot_then_dropped_and_slows_nobody(
     def large(number: int) -> str:
         return f"{number} " * 60_000
 
-    with slow_client(server) as slow, connect(server.stream, max_size=None) as quick:
+    with slow_client(server) as slow, listen(server, max_size=None) as quick:
         hear(quick)
         begun = time.monotonic()
         for number in range(60):
@@ -213,10 +213,10 @@ def test_a_slow_client_that_catches_up_goes_on_from_a_fresh_snapshot(server: Ser
 def test_too_many_clients_are_told_to_come_later(server: Server) -> None:
     with ExitStack() as streams:
         for _ in range(server.settings.stream.clients):
-            streams.enter_context(connect(server.stream))
-        with connect(server.stream) as late, pytest.raises(ConnectionClosed) as closed:
+            streams.enter_context(listen(server))
+        with listen(server) as late, pytest.raises(ConnectionClosed) as closed:
             late.recv(2)
         assert closed.value.rcvd is not None
         assert closed.value.rcvd.code == 1013
-    with connect(server.stream) as stream:
+    with listen(server) as stream:
         assert hear(stream)["kind"] == "snapshot"

@@ -10,12 +10,14 @@ import sys
 
 import typer
 
-from sequence_planner.cli import running
+from sequence_planner.cli import running, serving
 from sequence_planner.cli.attach import attach
 from sequence_planner.cli.check import check
 from sequence_planner.cli.edit import edit
 from sequence_planner.cli.export import export
+from sequence_planner.cli.journal import journal
 from sequence_planner.cli.new import new
+from sequence_planner.cli.people import people
 from sequence_planner.cli.plan import plan
 from sequence_planner.cli.show import show
 from sequence_planner.cli.synthesize import synthesize
@@ -24,13 +26,28 @@ from sequence_planner.cli.topics import topics
 
 app = typer.Typer(no_args_is_help=True, add_completion=False, help="Model and control automation stations on ROS 2.")
 
-for command in (new, check, synthesize, show, edit, tick, plan, export, running.run, running.messages, topics, attach):
+for command in (
+    new,
+    check,
+    synthesize,
+    show,
+    edit,
+    tick,
+    plan,
+    export,
+    serving.run,
+    running.messages,
+    topics,
+    attach,
+    journal,
+):
     app.command()(command)
 app.command("emulate")(running.emulate_command)
 app.command("by-hand")(running.by_hand)
 app.command("fault")(running.fault)
+app.add_typer(people, name="people")
 app.command(hidden=True)(running.controller)
-app.command(hidden=True)(running.server)
+app.command(hidden=True)(serving.server)
 
 
 def main() -> None:

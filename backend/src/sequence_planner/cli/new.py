@@ -42,7 +42,7 @@ def new(
         return
     for path in written:
         typer.echo(str(path))
-    typer.echo(f"\nNow: sequence-planner check {folder}\n     sequence-planner run {folder} --emulator")
+    typer.echo(f"\nNow: sequence-planner check {folder}\n     sequence-planner run {folder} --emulator --demonstration")
 
 
 def _named_after(folder: Path) -> str:

@@ -8,6 +8,8 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from sequence_planner.storage.environment import DATABASE
+
 FINE, FINDINGS, UNUSABLE = 0, 1, 2  # exit codes
 
 StationFolder = Annotated[Path, typer.Argument(metavar="MODEL", help="The station's folder.")]
@@ -15,6 +17,16 @@ AnyModel = Annotated[
     Path, typer.Argument(metavar="MODEL", help="A station's folder, or the file of a plain automaton (*.efa.json).")
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on standard output, for programs.")]
+DatabaseOption = Annotated[
+    str | None,
+    typer.Option(
+        "--database",
+        envvar=DATABASE,
+        metavar="URL",
+        help="Where people, keys and the journal are kept: sqlite:////folder/file or postgresql://user@host/name. "
+        "By default a file in the user's state folder, for each station its own.",
+    ),
+]
 
 
 def refuse(message: str) -> NoReturn:

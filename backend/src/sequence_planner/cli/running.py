@@ -1,4 +1,4 @@
-"""Running a station and its parts. What keeps one from running is said on standard error, with exit code 2."""
+"""Running a station's parts. What keeps one from running is said on standard error, with exit code 2."""
 
 from __future__ import annotations
 
@@ -14,14 +14,13 @@ import typer
 
 from sequence_planner.analysis.process import SynthesisEndedError
 from sequence_planner.cli.emulated import say
-from sequence_planner.cli.options import StationFolder, refuse
+from sequence_planner.cli.options import DatabaseOption, StationFolder, refuse
 from sequence_planner.control.unix_socket import SocketTakenError
 from sequence_planner.emulation.fault_script import read_script
 from sequence_planner.emulation.live import BY_HAND_TOPIC, FAULTS_TOPIC
 from sequence_planner.emulation.possible import emulation_findings
 from sequence_planner.emulation.process import Emulation, emulate
 from sequence_planner.expressions.resolution import suggestion
-from sequence_planner.launcher import Launch, launch
 from sequence_planner.lifeline import end_with_launcher
 from sequence_planner.logs import configure_logs
 from sequence_planner.model.loading import load_station
@@ -32,7 +31,8 @@ from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.routing import ROSBRIDGE, open_routed
 from sequence_planner.ros.transport import Transport, TransportError
 from sequence_planner.station import ReadyStation, prepare_station
-from sequence_planner.web.settings import Settings, SettingsError
+from sequence_planner.storage.error import StorageError
+from sequence_planner.storage.location import default_url
 
 TransportOption = Annotated[
     TransportChoice, typer.Option(help="How to speak ROS 2; auto takes rclpy where it can be imported.")
@@ -51,26 +51,6 @@ Launched = Annotated[
 Socket = Annotated[Path, typer.Option(help="The local socket between controller and server.")]
 
 
-def run(
-    model: StationFolder,
-    host: Annotated[str, typer.Option(help="Address of the page; the loopback only.")] = "127.0.0.1",
-    port: Annotated[int, typer.Option(help="Port of the page.")] = 8000,
-    transport: TransportOption = "auto",
-    rosbridge: RosbridgeOption = None,
-    emulator: Annotated[bool, typer.Option("--emulator", help="Run emulated devices beside it.")] = False,
-    start: Annotated[bool, typer.Option("--start", help="Start production at once; only with --emulator.")] = False,
-    emulator_speed: Annotated[float, typer.Option(min=0.1, max=100, help="Emulated devices go so much faster.")] = 1.0,
-) -> None:
-    """Run a station: controller, server and page."""
-    if start and not emulator:
-        refuse("--start is for emulated devices: with real ones a person starts production on the page")
-    _prepare(model)
-    try:
-        raise typer.Exit(launch(Launch(model, host, port, transport, rosbridge, emulator, start, emulator_speed)))
-    except SettingsError as error:
-        refuse(str(error))
-
-
 def emulate_command(
     model: StationFolder,
     transport: TransportOption = "auto",
@@ -85,8 +65,8 @@ def emulate_command(
     launched: Launched = False,
 ) -> None:
     """Run emulated devices for a station, in place of real ones."""
-    _begin(launched)
-    station = _prepare(model)
+    begin(launched)
+    station = prepare(model)
     if findings := emulation_findings(station):
         refuse("\n".join(map(str, findings)))
     emulation = Emulation(station, speed, seed, jitter, frozenset(resource) if resource else None)
@@ -144,42 +124,37 @@ def controller(
     rosbridge: RosbridgeOption = None,
     emulated: Annotated[bool, typer.Option("--emulated")] = False,
     start: Annotated[bool, typer.Option("--start")] = False,
+    database: DatabaseOption = None,
     launched: Launched = False,
 ) -> None:
     """Run the controller alone; `run` does this."""
     # Each process imports what it runs: the controller no web server, the server no planner, `check` neither.
     from sequence_planner.control.process import Running, control  # noqa: PLC0415
 
-    _begin(launched, socket.parent)
-    station = _prepare(model)
+    begin(launched, socket.parent)
+    station = prepare(model)
     network = _Network(station, transport, rosbridge)
-    _until_interrupted(lambda connect: control(Running(station, socket, connect, emulated, start)), network)
+    url = database_url(model, database)
+    _until_interrupted(lambda connect: control(Running(station, socket, connect, emulated, start, url)), network)
 
 
-def server(
-    socket: Socket,
-    page: Annotated[Path, typer.Option()],
-    model: Annotated[Path | None, typer.Option()] = None,
-    transport: TransportOption = "auto",
-    host: Annotated[str, typer.Option()] = "127.0.0.1",
-    port: Annotated[int, typer.Option()] = 8000,
-    launched: Launched = False,
-) -> None:
-    """Run the server alone; `run` does this."""
-    from sequence_planner.web.server import serve  # noqa: PLC0415
-
-    _begin(launched)
-    serve(Settings(socket, page, host, port, model, transport))
+def database_url(model: Path, given: str | None) -> str:
+    """Where the database of the station in the folder `model` is."""
+    try:
+        return default_url(model) if given is None else given
+    except StorageError as error:
+        refuse(str(error))
 
 
-def _begin(launched: bool, folder: Path | None = None) -> None:
+def begin(launched: bool, folder: Path | None = None) -> None:
     """Set up a process of the station; `folder` is one that the launcher has made for it."""
     configure_logs()
     if launched:
         end_with_launcher(folder)
 
 
-def _prepare(folder: Path) -> ReadyStation:
+def prepare(folder: Path) -> ReadyStation:
+    """The station in `folder`, or the end of this process."""
     try:
         return prepare_station(folder)
     except ModelError as error:
@@ -220,5 +195,5 @@ def _until_interrupted(life: Callable[[Callable[[str], Transport]], Awaitable[No
 
     try:
         asyncio.run(live())
-    except (TransportError, SynthesisEndedError, SocketTakenError) as error:
+    except (TransportError, SynthesisEndedError, SocketTakenError, StorageError) as error:
         refuse(str(error))

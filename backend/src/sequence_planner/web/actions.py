@@ -1,42 +1,45 @@
 """What a person may do: change the mode, start production, acknowledge a task, set an override.
 
 Each endpoint makes one command with its actor and waits for the controller's word. 204 means that it was done; a
-refusal is a problem whose `type` ends in the controller's own slug.
+refusal is a problem whose `type` ends in the controller's own slug. A body may say why, which is recorded.
 """
 
 from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path
-from pydantic import BaseModel, ConfigDict, Field, StrictInt
+from fastapi import APIRouter, Path, Request
+from pydantic import Field, StrictInt
 
 from sequence_planner.control.commands import AcknowledgeTask, ClearOverride, SetMode, SetOverride, StartProduction
 from sequence_planner.control.override_view import FieldValue
 from sequence_planner.control.view import Mode
-from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
+from sequence_planner.identity.roles import Role
+from sequence_planner.identity.watches import Watch
+from sequence_planner.web.access import allowed
+from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.problems import ProblemFound
+from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, live_view
 
 LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader keeps
+OPERATOR = allowed(Role.OPERATOR)
 
 router = APIRouter(tags=["actions"], dependencies=[JSON_ONLY])
 bodiless = APIRouter(tags=["actions"])
 Name = Annotated[str, Path(max_length=200)]
 
 
-class Body(BaseModel):
-    """Base of all bodies: nothing beside what is declared."""
-
-    model_config = ConfigDict(extra="forbid")
-
-
 class ModeBody(Body):
     """The mode that is wanted."""
 
     mode: Mode
+    reason: Reason = None
 
 
 class StartBody(Body):
-    """Nothing: to start production is all that there is to say."""
+    """To start production is all that there is to say, but perhaps why."""
+
+    reason: Reason = None
 
 
 class AcknowledgementBody(Body):
@@ -49,38 +52,54 @@ class OverrideBody(Body):
     """The values of the fields that are to be set; others are as they come."""
 
     fields: Annotated[dict[str, FieldValue], Field(min_length=1, max_length=100)]
+    reason: Reason = None
 
 
-@router.put("/mode", status_code=204)
+@router.put("/mode", status_code=204, dependencies=[OPERATOR])
 async def set_mode(body: ModeBody, client: Controller, actor: Actor) -> None:
-    """Change the mode of execution."""
-    await client.send(SetMode(actor=actor, mode=body.mode))
+    """Change the mode of execution; to go on takes control, to pause does not."""
+    await client.send(SetMode(actor=actor, mode=body.mode, reason=body.reason))
 
 
-@router.post("/production/start", status_code=204)
+@router.post("/production/start", status_code=204, dependencies=[OPERATOR])
 async def start_production(body: StartBody, client: Controller, actor: Actor) -> None:
-    """Allow outputs to be published; nothing else implies it."""
-    await client.send(StartProduction(actor=actor))
+    """Allow outputs to be published; nothing else implies it. It takes control."""
+    await client.send(StartProduction(actor=actor, reason=body.reason))
 
 
-@router.post("/tasks/{task}/acknowledgement", status_code=204)
+@router.post("/tasks/{task}/acknowledgement", status_code=204, dependencies=[allowed(Role.OPERATOR, watch=True)])
 async def acknowledge(
-    task: Annotated[str, Path(max_length=200)], body: AcknowledgementBody, client: Controller, actor: Actor
+    task: Annotated[str, Path(max_length=200)],
+    body: AcknowledgementBody,
+    request: Request,
+    client: Controller,
+    actor: Actor,
 ) -> None:
-    """Say that a task is done; refused when the task or its revision is gone."""
+    """Say that a task is done; refused when the task or its revision is gone, or a watch is not for its resource."""
+    if request.state.watch is not None:
+        await _check_own(request.state.watch, task, client)
     await client.send(AcknowledgeTask(actor=actor, task=task, revision=body.revision))
 
 
-@router.put("/overrides/{name}", status_code=204)
+async def _check_own(watch: Watch, task: str, client: Controller) -> None:
+    found = (await live_view(client)).tasks.get(task)
+    if found is None:
+        raise ProblemFound(409, "task-gone", "The task is gone", "Look at what is asked for now.")
+    if found.resource != watch.resource:
+        detail = f"{watch.name} is for the tasks of {watch.resource}, and this is none of them."
+        raise ProblemFound(403, "not-your-task", "The task is somebody else's", detail)
+
+
+@router.put("/overrides/{name}", status_code=204, dependencies=[OPERATOR])
 async def set_override(name: Name, body: OverrideBody, client: Controller, actor: Actor) -> None:
     """Set fields of an override, such as `ur10.speed`, within the bounds of the model; they expire as it says.
 
-    422 `out-of-bounds` names the field and what is allowed; nothing has changed then.
+    It takes control. 422 `out-of-bounds` names the field and what is allowed; nothing has changed then.
     """
-    await client.send(SetOverride(actor=actor, name=name, fields=body.fields))
+    await client.send(SetOverride(actor=actor, name=name, fields=body.fields, reason=body.reason))
 
 
-@bodiless.delete("/overrides/{name}", status_code=204)
+@bodiless.delete("/overrides/{name}", status_code=204, dependencies=[OPERATOR])
 async def clear_override(name: Name, client: Controller, actor: Actor) -> None:
-    """Take back what is set, if anything is."""
+    """Take back what is set, if anything is. It takes control."""
     await client.send(ClearOverride(actor=actor, name=name))

@@ -1,7 +1,7 @@
 """The server's parts put together: routes, guards, problems, the stream, the page.
 
-From the outside in, a request passes the security headers, the last resort for errors, the guard, and then the route
-for its address; what no route knows is a file of the page, or nothing.
+From the outside in, a request passes the security headers, the last resort for errors, what knows proxies where there
+are any, the guard, and then the route for its address; what no route knows is a file of the page, or nothing.
 """
 
 from __future__ import annotations
@@ -12,19 +12,62 @@ from contextlib import asynccontextmanager
 from typing import Any
 
 from fastapi import APIRouter, FastAPI
+from starlette.concurrency import run_in_threadpool
 
-from sequence_planner.web import actions, attachments, health, pipelines, problems, ros, station, stream
+from sequence_planner.web import (
+    actions,
+    attachments,
+    audit,
+    control_routes,
+    health,
+    keys,
+    openapi_document,
+    people,
+    pipelines,
+    problems,
+    ros,
+    session,
+    station,
+    stream,
+    watch_stream,
+    watches,
+)
+from sequence_planner.web.access import check_declared
+from sequence_planner.web.binding import check_endpoint
 from sequence_planner.web.broadcast import Broadcast
 from sequence_planner.web.controller_client import ControllerClient
+from sequence_planner.web.forwarded import Forwarded
 from sequence_planner.web.guard import Guard
+from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.looking import FlowsShow, NetworkShow
 from sequence_planner.web.openapi_document import PROBLEM_RESPONSES, describe
 from sequence_planner.web.problems import LastResort
 from sequence_planner.web.security_headers import SecurityHeaders
-from sequence_planner.web.settings import Settings, check_host
+from sequence_planner.web.settings import Settings
 from sequence_planner.web.static import PageFiles
+from sequence_planner.web.sweeper import Sweeper
+from sequence_planner.web.watch_show import WatchShow
 
 PREFIX = "/api/v1"
+PARTS = (
+    session.router,
+    station.router,
+    actions.router,
+    actions.bodiless,
+    control_routes.router,
+    attachments.router,
+    ros.router,
+    pipelines.router,
+    stream.router,
+    people.router,
+    people.bodiless,
+    keys.router,
+    keys.bodiless,
+    watches.router,
+    watch_stream.router,
+    audit.router,
+    openapi_document.router,
+)
 
 
 class StationServer(FastAPI):
@@ -38,29 +81,35 @@ class StationServer(FastAPI):
 
 
 def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
-    """The application for `settings`; while it is up it keeps `controller` connected.
+    """The application for `settings`; while it is up it keeps `controller` connected and has the database open.
 
-    Raises `SettingsError` for a host that is not allowed.
+    Raises `SettingsError` for an endpoint that is not allowed, and `RuntimeError` when a route does not declare who may
+    use it. Its lifespan raises `StorageError` when the database cannot be used.
     """
-    check_host(settings.host)
+    check_endpoint(settings)
     broadcast = Broadcast(controller, settings.stream)
     network, flows = NetworkShow(controller, settings.stream), FlowsShow(controller, settings.stream)
+    watch_show = WatchShow(controller, settings.stream)
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        running = [asyncio.create_task(each.run()) for each in (controller, broadcast, network, flows)]
+        office = await run_in_threadpool(IdentityOffice.open, settings.database, demonstration=settings.demonstration)
+        app.state.identity = office
+        parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller))
+        running = [asyncio.create_task(each.run()) for each in parts]
         try:
             yield
         finally:
             for task in running:
                 task.cancel()
             await asyncio.gather(*running, return_exceptions=True)
+            await run_in_threadpool(office.close)
 
     app = StationServer(
         title="Sequence Planner",
         version="1",
         description="The running station: what it does, and what a person or a system may ask of it.",
-        openapi_url=f"{PREFIX}/openapi.json",
+        openapi_url=None,  # it has a route like others, which declares who may read it
         docs_url=None,  # the usual viewers load their scripts from the network
         redoc_url=None,
         redirect_slashes=False,
@@ -68,16 +117,20 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         lifespan=lifespan,
     )
     app.state.controller = controller
-    app.state.broadcast, app.state.network_show, app.state.flows_show = broadcast, network, flows
+    app.state.broadcast, app.state.watch_show = broadcast, watch_show
+    app.state.network_show, app.state.flows_show = network, flows
     app.state.settings, app.state.attaching = settings, asyncio.Lock()
     problems.install(app)
     api = APIRouter(prefix=PREFIX)
-    acting = (actions.router, actions.bodiless, attachments.router)
-    for part in (station.router, *acting, ros.router, pipelines.router, stream.router):
+    for part in PARTS:
         api.include_router(part)
     app.include_router(api)
     app.include_router(health.router)
+    check_declared(app.routes)
     app.router.default = PageFiles(settings.page)
-    for layer in (Guard, LastResort, SecurityHeaders):  # the last is outermost
-        app.add_middleware(layer, **({"port": settings.port} if layer is Guard else {}))
+    app.add_middleware(Guard, endpoint=settings)
+    if settings.proxies:
+        app.add_middleware(Forwarded, proxies=settings.proxies)
+    app.add_middleware(LastResort)
+    app.add_middleware(SecurityHeaders, https=settings.https)  # the last is outermost
     return app

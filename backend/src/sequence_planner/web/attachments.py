@@ -11,20 +11,25 @@ import json
 import sys
 from asyncio.subprocess import PIPE
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Request
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
 from sequence_planner.analysis.document import FindingDocument
+from sequence_planner.identity.roles import Role
+from sequence_planner.journal.audit import append
+from sequence_planner.journal.entry import Entry, Outcome
+from sequence_planner.web.access import allowed
+from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.problems import ProblemFound
-from sequence_planner.web.request_parts import JSON_ONLY
+from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
 from sequence_planner.web.settings import Settings
 
 LONGEST = 60.0  # seconds
 STATUS = {"no-topic": 404, "attached": 409, "not-written": 409}  # of refusals; others are 422
 
-router = APIRouter(prefix="/ros", tags=["ros"], dependencies=[JSON_ONLY])
+router = APIRouter(prefix="/ros", tags=["ros"], dependencies=[allowed(Role.ENGINEER), JSON_ONLY])
 
 
 class AttachmentBody(BaseModel):
@@ -56,15 +61,39 @@ class AttachmentAnswer(BaseModel):
 
 
 @router.post("/attachments")
-async def attach(body: AttachmentBody, request: Request) -> AttachmentAnswer:
-    """Enter a topic that is on the network into the station's model; what runs does not change before a restart."""
+async def attach(body: AttachmentBody, request: Request, identity: Identity, actor: Actor) -> AttachmentAnswer:
+    """Enter a topic that is on the network into the station's model; what runs does not change before a restart.
+
+    It is recorded before anything is changed, and again when its outcome is known.
+    """
     settings: Settings = request.app.state.settings
     if settings.model is None:
         detail = "This server does not know where the station's model is. Use `sequence-planner attach`."
         raise ProblemFound(409, "no-model", "The model is not known", detail)
     lock: asyncio.Lock = request.app.state.attaching
     async with lock:
-        answer = await _run(_arguments(settings.model, settings.transport, body))
+        if body.dry_run:
+            return _told(await _run(_arguments(settings.model, settings.transport, body)))
+        details: dict[str, JsonValue] = {"resource": body.resource, "direction": body.direction}
+        entry = Entry(actor=actor, action="attach-topic", subject=f"topic {body.topic}", details=details)
+        asked = await _record(identity, entry.model_copy(update={"outcome": Outcome.REQUESTED}))
+        outcome = Outcome.FAILED
+        try:
+            answer = await _run(_arguments(settings.model, settings.transport, body))
+            outcome = Outcome.DONE if answer.get("made") else Outcome.REFUSED
+        finally:
+            await _record(identity, entry.model_copy(update={"outcome": outcome, "about": asked}))
+    return _told(answer)
+
+
+async def _record(identity: IdentityOffice, entry: Entry) -> int:
+    """Write an entry; its number."""
+    now = identity.now()
+    record = await identity.write(lambda connection: append(connection, entry, now))
+    return record.number
+
+
+def _told(answer: dict[str, Any]) -> AttachmentAnswer:
     if "refused" in answer:
         slug, detail = answer["refused"]["slug"], answer["refused"]["detail"]
         raise ProblemFound(STATUS.get(slug, 422), slug, "The topic cannot be attached", detail)
@@ -77,7 +106,7 @@ def _arguments(model: Path, transport: str, body: AttachmentBody) -> list[str]:
     return [*arguments, "--dry-run"] if body.dry_run else arguments
 
 
-async def _run(arguments: list[str]) -> dict[str, dict[str, str]]:
+async def _run(arguments: list[str]) -> dict[str, Any]:
     """What the command says."""
     command = [sys.executable, "-m", "sequence_planner.cli", "attach", *arguments]
     process = await asyncio.create_subprocess_exec(*command, stdout=PIPE, stderr=PIPE)
@@ -92,7 +121,7 @@ async def _run(arguments: list[str]) -> dict[str, dict[str, str]]:
             process.kill()
             await process.wait()
     try:
-        found: dict[str, dict[str, str]] = json.loads(out)
+        found: dict[str, Any] = json.loads(out)
     except ValueError:
         raise RuntimeError(f"attach ended with code {process.returncode}: {err.decode(errors='replace')}") from None
     return found

@@ -1,30 +1,34 @@
 """What a request must be to be looked at: meant for this server, and not sent by somebody else's page.
 
-The server listens on this machine only, but every page that a person opens in a browser here can reach it too. Three
-checks keep those pages out: the Host header must name us (a foreign name that resolves to 127.0.0.1 does not), an
-Origin, where the request can change something or opens the stream, must be one of ours, and a browser that says the
-request crosses sites is believed. Programs that send no Origin (curl, a MES) pass: they are not a page.
+Every page that a person opens in a browser can reach whatever that browser reaches. Three checks keep those pages out:
+the Host header must name us (a foreign name that resolves to our address does not), an Origin, where the request can
+change something or opens a stream, must be one of ours, and a browser that says the request crosses sites is believed.
+Programs that send no Origin (curl, a MES) pass: they are not a page. So does, on this machine, the question whether
+the server is alive, by whatever name it is opened otherwise.
 """
 
 from __future__ import annotations
+
+import asyncio
 
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from sequence_planner.web.problems import ProblemFound, problem_response
+from sequence_planner.web.settings import LOOPBACK_NAMES, Endpoint, SettingsError, address_of, split_name
 
-NAMES = ("127.0.0.1", "localhost", "[::1]")
 READING = ("GET", "HEAD", "OPTIONS")
 LARGEST_BODY = 64 * 1024  # bytes
+BODY_SECONDS = 20.0  # in which a body must have come
 
 
 class Guard:
-    """Refuses requests from elsewhere and bodies that are too large; `port` is the one that is served."""
+    """Refuses requests that do not mean `endpoint`, and bodies that are too large or too slow."""
 
-    def __init__(self, app: ASGIApp, port: int) -> None:
+    def __init__(self, app: ASGIApp, endpoint: Endpoint) -> None:
         self.app = app
-        self.hosts = {f"{name}:{port}" for name in NAMES} | (set(NAMES) if port == 80 else set())
-        self.origins = {f"http://{host}" for host in self.hosts}
+        self.hosts = endpoint.hosts
+        self.origins = endpoint.origins
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Serve or refuse one request or connection."""
@@ -32,7 +36,7 @@ class Guard:
             await self.app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        refused = self._host(headers) or self._origin(scope, headers) or _announced_length(headers)
+        refused = self._host(scope, headers) or self._origin(scope, headers) or _announced_length(headers)
         if refused is None:
             await self.app(scope, _bounded(receive), send)
             return
@@ -40,11 +44,11 @@ class Guard:
         # Starlette turns the answer to a handshake into the messages of the "websocket.http.response" extension.
         await response(scope, receive, send)
 
-    def _host(self, headers: Headers) -> ProblemFound | None:
+    def _host(self, scope: Scope, headers: Headers) -> ProblemFound | None:
         hosts = headers.getlist("host")
         if len(hosts) != 1:
             return ProblemFound(400, "no-host", "No single Host header", "Send one Host header.")
-        if hosts[0].lower() in self.hosts:
+        if hosts[0].lower() in self.hosts or is_own_health_check(scope):
             return None
         detail = f"This server answers to {', '.join(sorted(self.hosts))} only."
         return ProblemFound(421, "wrong-host", "Another host was meant", detail)
@@ -70,17 +74,39 @@ def _too_large() -> ProblemFound:
     return ProblemFound(413, "body-too-large", "The body is too large", detail)
 
 
-def _bounded(receive: Receive) -> Receive:
-    """Count a body that did not say its length as it comes, and stop reading when it is too large."""
-    size = 0
+def is_own_health_check(scope: Scope) -> bool:
+    """Whether this machine itself asks by a name of the loopback if the server is alive, as containers do."""
+    if scope["type"] != "http" or scope["method"] not in ("GET", "HEAD") or scope["path"] != "/healthz":
+        return False
+    client = address_of(scope["client"][0]) if scope.get("client") else None
+    hosts = Headers(scope=scope).getlist("host")
+    return client is not None and client.is_loopback and len(hosts) == 1 and _means_loopback(hosts[0])
 
-    async def counted() -> Message:
-        nonlocal size
-        message = await receive()
-        if message["type"] == "http.request":
-            size += len(message.get("body", b""))
-            if size > LARGEST_BODY:
-                raise _too_large()
+
+def _means_loopback(host: str) -> bool:
+    try:
+        return split_name(host)[0] in LOOPBACK_NAMES
+    except SettingsError:
+        return False
+
+
+def _bounded(receive: Receive) -> Receive:
+    """Count a body that did not say its length as it comes, and stop reading when it is too large or too slow."""
+    size, complete = 0, False
+    due = asyncio.get_running_loop().time() + BODY_SECONDS
+
+    async def bounded() -> Message:
+        nonlocal size, complete
+        try:
+            async with asyncio.timeout_at(None if complete else due):
+                message = await receive()
+        except TimeoutError:
+            detail = f"A body must be there within {BODY_SECONDS:g} s."
+            raise ProblemFound(408, "body-too-slow", "The body did not come in time", detail) from None
+        complete = not message.get("more_body", False)
+        size += len(message.get("body", b""))
+        if size > LARGEST_BODY:
+            raise _too_large()
         return message
 
-    return counted
+    return bounded

@@ -7,6 +7,7 @@ from typing import Literal
 from fastapi import APIRouter
 from pydantic import BaseModel
 
+from sequence_planner.web.access import allowed
 from sequence_planner.web.request_parts import Controller
 from sequence_planner.web.stream_messages import ControllerState
 
@@ -20,7 +21,7 @@ class Health(BaseModel):
     controller: ControllerState
 
 
-@router.get("/healthz")
+@router.get("/healthz", dependencies=[allowed(None)])
 async def healthz(client: Controller) -> Health:
     """Alive, and whether the controller is heard."""
     return Health(status="alive", controller=ControllerState.HEARD if client.heard else ControllerState.LOST)

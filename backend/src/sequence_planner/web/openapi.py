@@ -17,7 +17,8 @@ from sequence_planner.web.settings import Settings
 def document() -> str:
     """The OpenAPI document as sorted, indented JSON with a final newline."""
     nowhere = Path("controller.sock")
-    app = create_app(Settings(controller_socket=nowhere, page=Path("page")), ControllerClient(nowhere))
+    settings = Settings(controller_socket=nowhere, page=Path("page"), database="sqlite:////nowhere/station.sqlite")
+    app = create_app(settings, ControllerClient(nowhere))
     return json.dumps(app.openapi(), indent=2, sort_keys=True, ensure_ascii=False) + "\n"
 
 

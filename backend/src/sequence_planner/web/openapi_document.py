@@ -1,20 +1,27 @@
 """The OpenAPI document, from which other programs and the page's TypeScript types are made.
 
-FastAPI describes the REST routes; this adds what it cannot know: the messages of the WebSocket as components, and
-that every refusal is a problem document.
+FastAPI describes the REST routes; this adds what it cannot know: the messages of the WebSockets as components, that
+every refusal is a problem document, and who may use a route. `x-role` is the least role of a person, or `public`, or
+`watch` where watches alone may; `x-scope` is the scope of a key that may too, null where none does.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from fastapi import FastAPI
+from fastapi import APIRouter, FastAPI, Request
 from fastapi.openapi.utils import get_openapi
+from fastapi.responses import JSONResponse
+from fastapi.routing import iter_route_contexts
 from pydantic.json_schema import models_json_schema
 
+from sequence_planner.identity.roles import Role, Scope
+from sequence_planner.web.access import Access, allowed, declared
+from sequence_planner.web.cookies import NAME, SESSION_COOKIE, WATCH_COOKIE
 from sequence_planner.web.looking_messages import FlowsStreamMessage, NetworkStreamMessage
 from sequence_planner.web.problems import MEDIA_TYPE, Problem
 from sequence_planner.web.stream_messages import ClientMessage, StreamMessage
+from sequence_planner.web.watch_messages import WatchStreamMessage
 
 REFERENCE = "#/components/schemas/{model}"
 PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
@@ -26,19 +33,60 @@ PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
 }
 
 
+ON_THE_LOOPBACK = "Over plain HTTP, on the loopback alone, it is called `{name}-` and the server's port."
+SCHEMES = {
+    "session": {
+        "type": "apiKey",
+        "in": "cookie",
+        "name": SESSION_COOKIE,
+        "description": f"What signing in gives. {ON_THE_LOOPBACK.format(name=NAME)}",
+    },
+    "watch": {
+        "type": "apiKey",
+        "in": "cookie",
+        "name": WATCH_COOKIE,
+        "description": f"What pairing gives a watch. {ON_THE_LOOPBACK.format(name=f'{NAME}-watch')}",
+    },
+    "key": {"type": "http", "scheme": "bearer", "description": "A key for other systems; `x-scope` is what it needs."},
+}
+
+router = APIRouter()
+
+
+@router.get("/openapi.json", include_in_schema=False, dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
+async def openapi(request: Request) -> JSONResponse:
+    """The document of this server."""
+    app: FastAPI = request.app
+    return JSONResponse(app.openapi())
+
+
 def describe(app: FastAPI) -> dict[str, Any]:
-    """The document of `app`, with the components of the stream and of problems."""
+    """The document of `app`, with the components of the streams and of problems, and who may use what."""
     document = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
     _, definitions = models_json_schema(
         [
             (StreamMessage, "serialization"),
             (NetworkStreamMessage, "serialization"),
             (FlowsStreamMessage, "serialization"),
+            (WatchStreamMessage, "serialization"),
             (ClientMessage, "validation"),
             (Problem, "serialization"),
         ],
         ref_template=REFERENCE,
     )
-    components = document.setdefault("components", {}).setdefault("schemas", {})
-    components.update(definitions["$defs"])
+    components = document.setdefault("components", {})
+    components.setdefault("schemas", {}).update(definitions["$defs"])
+    components["securitySchemes"] = SCHEMES
+    for route in iter_route_contexts(app.routes):
+        operations = document["paths"].get(route.path_format, {})
+        for method in route.methods or ():
+            if method.lower() in operations:
+                operations[method.lower()].update(_who(declared(route)))
     return document
+
+
+def _who(access: Access) -> dict[str, Any]:
+    ways = {"session": access.role is not None, "watch": access.watch, "key": access.scope is not None}
+    security: list[dict[str, list[str]]] = [{way: []} for way, open_to in ways.items() if open_to]
+    scope = None if access.scope is None else access.scope.value
+    return {"x-role": access.who, "x-scope": scope, "security": security}

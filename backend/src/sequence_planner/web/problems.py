@@ -18,6 +18,8 @@ from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from sequence_planner.control.commands import CommandRefused
+from sequence_planner.identity.refusal import IdentityRefused
+from sequence_planner.storage.error import StorageError
 
 LOG = structlog.get_logger(__name__)
 MEDIA_TYPE = "application/problem+json"
@@ -55,8 +57,10 @@ class Problem(BaseModel):
 class ProblemFound(HTTPException):
     """Raised anywhere in a request to answer it with a problem."""
 
-    def __init__(self, status: int, slug: str, title: str, detail: str) -> None:
-        super().__init__(status, detail)
+    def __init__(
+        self, status: int, slug: str, title: str, detail: str, headers: Mapping[str, str] | None = None
+    ) -> None:
+        super().__init__(status, detail, headers)
         self.slug = slug
         self.title = title
 
@@ -83,12 +87,14 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(HTTPException, _http)
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(CommandRefused, _refused)
+    app.add_exception_handler(IdentityRefused, _identity_refused)
+    app.add_exception_handler(StorageError, _storage_unavailable)
 
 
 async def _http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     if isinstance(error, ProblemFound):
-        return problem_response(error.status_code, error.slug, error.title, error.detail)
+        return problem_response(error.status_code, error.slug, error.title, error.detail, headers=error.headers)
     status = error.status_code
     title = HTTPStatus(status).phrase
     detail = DETAILS.get(status, str(error.detail))
@@ -110,6 +116,20 @@ async def _invalid(request: Request, error: Exception) -> Response:
 async def _refused(request: Request, error: Exception) -> Response:
     assert isinstance(error, CommandRefused)
     return problem_response(error.status, error.slug, error.title, error.detail)
+
+
+async def _identity_refused(request: Request, error: Exception) -> Response:
+    assert isinstance(error, IdentityRefused)
+    headers = {} if error.retry_after is None else {"Retry-After": str(error.retry_after)}
+    if error.status == 401:
+        headers["WWW-Authenticate"] = "Bearer"  # RFC 9110 wants a challenge; this one makes no browser ask by itself
+    return problem_response(error.status, error.slug, error.title, error.detail, headers=headers)
+
+
+async def _storage_unavailable(request: Request, error: Exception) -> Response:
+    LOG.error("the database is not available", says=str(error))  # it names the place: not for who asks
+    detail = "The station's database does not answer, so nobody can be let in and nothing is recorded. Try again."
+    return problem_response(503, "storage-unavailable", "The database is not available", detail)
 
 
 class LastResort:

@@ -10,9 +10,15 @@ from typing import Annotated
 
 from fastapi import Depends, Request
 
+from sequence_planner.actor import Actor as Acting
 from sequence_planner.control.view import StationView
+from sequence_planner.identity.sessions import SignedIn
+from sequence_planner.web.access import address_of
 from sequence_planner.web.controller_client import ControllerClient
+from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.problems import ProblemFound
+
+LONGEST_AGENT = 200  # characters
 
 
 async def controller(request: Request) -> ControllerClient:
@@ -35,12 +41,47 @@ async def live_view(client: Controller) -> StationView:
 LiveView = Annotated[StationView, Depends(live_view)]
 
 
-async def actor() -> str:
-    """Who acts: always `local` until there is sign-in."""
-    return "local"
+async def actor(request: Request) -> Acting:
+    """Who acts, as `access.allowed` has found out; a public route has nobody."""
+    found: Acting = request.state.actor
+    return found
 
 
-Actor = Annotated[str, Depends(actor)]
+Actor = Annotated[Acting, Depends(actor)]
+
+
+async def signed_in(request: Request) -> SignedIn:
+    """The session that acts, on a route that is for people alone."""
+    found: SignedIn = request.state.signed_in
+    return found
+
+
+Session = Annotated[SignedIn, Depends(signed_in)]
+
+
+async def identity(request: Request) -> IdentityOffice:
+    """The way to people, sessions, watches and keys."""
+    office: IdentityOffice = request.app.state.identity
+    return office
+
+
+Identity = Annotated[IdentityOffice, Depends(identity)]
+
+
+async def address(request: Request) -> str:
+    """The address of the other end, as far as it can be believed."""
+    return address_of(request)
+
+
+Address = Annotated[str, Depends(address)]
+
+
+async def agent(request: Request) -> str:
+    """What the other end calls itself: `User-Agent`, cut at 200 characters."""
+    return request.headers.get("user-agent", "")[:LONGEST_AGENT]
+
+
+Agent = Annotated[str, Depends(agent)]
 
 
 async def json_only(request: Request) -> None:

@@ -13,6 +13,8 @@ from starlette.responses import HTMLResponse, Response
 from starlette.staticfiles import StaticFiles
 from starlette.types import Receive, Scope, Send
 
+from sequence_planner.web.security_headers import document_policy
+
 IMMUTABLE = "_app/immutable/"
 FOR_EVER = "public, max-age=31536000, immutable"
 NOT_BUILT = """<!doctype html>
@@ -51,6 +53,8 @@ class PageFiles:
         response = await self._files.get_response(path, scope)
         kept = path.startswith(IMMUTABLE) and response.status_code in (200, 206, 304)
         response.headers["Cache-Control"] = FOR_EVER if kept else "no-cache"
+        if path.endswith(".html"):  # also when it has not changed: a browser then takes the new headers
+            response.headers["Content-Security-Policy"] = document_policy(self.folder / path)
         return response
 
 

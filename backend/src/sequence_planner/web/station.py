@@ -24,9 +24,11 @@ from sequence_planner.control.view import (
     TopicView,
     VariableView,
 )
+from sequence_planner.identity.roles import Role, Scope
+from sequence_planner.web.access import allowed
 from sequence_planner.web.request_parts import LiveView
 
-router = APIRouter(tags=["station"])
+router = APIRouter(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
 
 
 class Answer(BaseModel):

@@ -1,7 +1,8 @@
 """The WebSocket `/api/v1/stream`: the station as it changes.
 
-Two tasks serve a client: one sends what its subscriber holds, one reads what the client says. A client that takes no
-message for too long is closed with code 1013 ("try again later"); it may come back and gets a snapshot.
+Three tasks serve a client: one sends what its subscriber holds, one reads what the client says, and one sees whether
+it still may listen. A client that takes no message for too long is closed with code 1013 ("try again later"); it may
+come back and gets a snapshot. One whose session, key or watch has ended is closed with code 4401.
 """
 
 from __future__ import annotations
@@ -9,20 +10,36 @@ from __future__ import annotations
 import asyncio
 import contextlib
 from contextlib import AbstractContextManager
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 from starlette.types import Message
 
+from sequence_planner.identity.roles import Role, Scope
+from sequence_planner.storage.error import StorageError
+from sequence_planner.web.access import Access, allowed
 from sequence_planner.web.broadcast import Broadcast, Subscriber
+from sequence_planner.web.problems import ProblemFound
 from sequence_planner.web.settings import StreamLimits
 from sequence_planner.web.stream_messages import ClientMessage
 
-TRY_AGAIN_LATER = 1013
+LOOK_EVERY = 1.0  # seconds between looks at whether a client still may listen
 LAST_WORDS = 30.0  # seconds in which a dropped client may still learn why
 
 router = APIRouter()
+
+
+class Ending(NamedTuple):
+    """Why the server closes a stream; `code` is that of RFC 6455, or of ours from 4000 on."""
+
+    code: int
+    reason: str
+
+
+TOO_MANY, TOO_SLOW = Ending(1013, "too many clients"), Ending(1013, "too slow")
+NO_DATABASE = Ending(1013, "the database is not available")
+SIGNED_OUT = Ending(4401, "signed out")
 
 
 class Source(Protocol):
@@ -34,7 +51,7 @@ class Source(Protocol):
         """A subscriber for as long as the block lasts; None when there are too many already."""
 
 
-@router.websocket("/stream")
+@router.websocket("/stream", dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
 async def stream(websocket: WebSocket) -> None:
     """Serve one client until it leaves or is dropped."""
     broadcast: Broadcast = websocket.app.state.broadcast
@@ -42,32 +59,47 @@ async def stream(websocket: WebSocket) -> None:
 
 
 async def serve(websocket: WebSocket, source: Source) -> None:
-    """Serve one client of `source` until it leaves or is dropped."""
+    """Serve one client of `source` until it leaves, is dropped, or may no longer listen."""
     await websocket.accept()
     with source.subscription() as subscriber:
-        if subscriber is not None:
-            dropped = await _converse(websocket, subscriber, source.limits)
-        reason = "too many clients" if subscriber is None else "too slow"
-    if subscriber is None or dropped:
+        ending = TOO_MANY if subscriber is None else await _converse(websocket, subscriber, source.limits)
+    if ending is not None:
         with contextlib.suppress(TimeoutError, WebSocketDisconnect, RuntimeError):
             async with asyncio.timeout(LAST_WORDS):
-                await websocket.close(TRY_AGAIN_LATER, reason)
+                await websocket.close(ending.code, ending.reason)
 
 
-async def _converse(websocket: WebSocket, subscriber: Subscriber, limits: StreamLimits) -> bool:
-    """Send and listen until one of them ends; true if the client is too slow."""
+async def _converse(websocket: WebSocket, subscriber: Subscriber, limits: StreamLimits) -> Ending | None:
+    """Serve until one of the tasks ends; why the server ends it, None if the client has left."""
     sending = asyncio.create_task(_send(websocket, subscriber, limits))
     listening = asyncio.create_task(_listen(websocket, subscriber, limits))
+    watching = asyncio.create_task(_watch_over(websocket))
+    tasks = (sending, listening, watching)
     try:
-        await asyncio.wait({sending, listening}, return_when=asyncio.FIRST_COMPLETED)
+        await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
     finally:
-        sending.cancel()
-        listening.cancel()
-        ended = await asyncio.gather(sending, listening, return_exceptions=True)
-    for outcome in ended:
+        for task in tasks:
+            task.cancel()
+        sent, listened, watched = await asyncio.gather(*tasks, return_exceptions=True)
+    for outcome in (sent, listened, watched):
         if isinstance(outcome, Exception) and not isinstance(outcome, TimeoutError | WebSocketDisconnect):
             raise outcome
-    return isinstance(ended[0], TimeoutError)
+    if isinstance(watched, Ending):
+        return watched
+    return TOO_SLOW if isinstance(sent, TimeoutError) else None
+
+
+async def _watch_over(websocket: WebSocket) -> Ending:
+    """Look whether the client still may listen; why not, as soon as it may not."""
+    access: Access = websocket.state.access
+    while True:
+        await asyncio.sleep(LOOK_EVERY)
+        try:
+            await access.admit(websocket)
+        except ProblemFound:
+            return SIGNED_OUT
+        except StorageError:
+            return NO_DATABASE
 
 
 async def _send(websocket: WebSocket, subscriber: Subscriber, limits: StreamLimits) -> None:

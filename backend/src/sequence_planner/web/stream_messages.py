@@ -18,6 +18,7 @@ from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
+    ControlView,
     Mode,
     OperationView,
     PlanView,
@@ -40,6 +41,7 @@ class StationChange(TypedDict, total=False):
     time: float
     mode: Mode
     production: Production
+    control: ControlView | None
     resources: dict[str, ResourceView]
     variables: dict[str, VariableView]
     abilities: dict[str, AbilityView]

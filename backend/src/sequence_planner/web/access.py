@@ -1,0 +1,178 @@
+"""Who may use a route: every route and WebSocket declares it, by `allowed` or `watch_only`, where it is defined.
+
+A request shows a key, or else a session's cookie, or else a watch's. What it shows is looked up once; then only what
+the route declares decides. The application is not built when a route declares nothing (`check_declared`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from fastapi import Depends, params
+from fastapi.routing import RouteContext, iter_route_contexts
+from starlette.requests import HTTPConnection
+from starlette.routing import BaseRoute
+
+from sequence_planner.actor import Actor, ActorKind
+from sequence_planner.identity.keys import Key
+from sequence_planner.identity.roles import Role, Scope
+from sequence_planner.identity.sessions import SignedIn
+from sequence_planner.identity.watches import Watch, WatchState
+from sequence_planner.web.bearer_memory import Bearer
+from sequence_planner.web.cookies import Credentials, credentials
+from sequence_planner.web.demonstration import may_be_demonstration
+from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.problems import ProblemFound
+
+PUBLIC, WATCH = "public", "watch"  # in the place of a role: everybody, and watches alone
+
+
+@dataclass(frozen=True)
+class Admitted:
+    """Who has been let in: `actor`, and of the other three the one that it is."""
+
+    actor: Actor
+    signed_in: SignedIn | None = None
+    watch: Watch | None = None
+    key: Key | None = None
+
+
+@dataclass(frozen=True)
+class Access:
+    """What a route declares. Without `role` no person may use it; `public` lets everybody in.
+
+    `scope` is that of the keys which may; `watch` lets active watches in, `waiting` those too that nobody has
+    confirmed yet; `unready` lets people in who must change their password first.
+    """
+
+    role: Role | None = None
+    public: bool = False
+    scope: Scope | None = None
+    watch: bool = False
+    waiting: bool = False
+    unready: bool = False
+
+    @property
+    def who(self) -> str:
+        """The role, or what stands in its place."""
+        return PUBLIC if self.public else WATCH if self.role is None else self.role.value
+
+    async def __call__(self, connection: HTTPConnection) -> None:
+        """Let a request in, and keep in its `state` who it is; or raise `ProblemFound`."""
+        if self.public:
+            return
+        admitted = await self.admit(connection)
+        connection.state.access = self
+        connection.state.actor = admitted.actor
+        connection.state.signed_in, connection.state.watch = admitted.signed_in, admitted.watch
+        connection.state.key = admitted.key
+
+    async def admit(self, connection: HTTPConnection) -> Admitted:
+        """Who shows what is asked for here. Raises `ProblemFound` 401 or 403, and 503 when nobody can be looked up."""
+        shown = self._asked_for(credentials(connection))
+        return self._judge(shown, await bearer_of(connection, shown), address_of(connection))
+
+    def _asked_for(self, shown: Credentials) -> Credentials:
+        """Of what is shown, what matters here."""
+        if shown.key is not None:
+            return Credentials(key=shown.key)
+        session = None if self.role is None else shown.session
+        return Credentials(session=session, watch=shown.watch if self.watch else None)
+
+    def _judge(self, shown: Credentials, bearer: Bearer, address: str) -> Admitted:
+        if shown.key is not None:
+            return self._judge_key(bearer.key, address)
+        if self.watch and bearer.watch is not None and (bearer.signed_in is None or self._wrong(bearer.signed_in)):
+            return self._judge_watch(bearer.watch, address)
+        if bearer.signed_in is None:
+            raise _signed_out()
+        if (wrong := self._wrong(bearer.signed_in)) is not None:
+            raise wrong
+        return Admitted(bearer.signed_in.actor(address), signed_in=bearer.signed_in)
+
+    def _wrong(self, signed_in: SignedIn) -> ProblemFound | None:
+        person = signed_in.person
+        if person.must_change_password and not self.unready:
+            detail = "Your password was set by somebody else. Choose one of your own first."
+            return ProblemFound(403, "password-must-change", "The password must be changed", detail)
+        if self.role is None or not person.role.includes(self.role):
+            needed = "a paired watch" if self.role is None else f"the role {self.role.value}"
+            detail = f"This takes {needed}; you have the role {person.role.value}. Ask an administrator."
+            return ProblemFound(403, "role-too-low", "You may not do this", detail)
+        return None
+
+    def _judge_key(self, key: Key | None, address: str) -> Admitted:
+        if key is None:
+            detail = "The key is unknown, has expired or was revoked. Ask an administrator for another."
+            raise _signed_out(detail)
+        if self.scope is None or self.scope not in key.scopes:
+            needed = "no key may do this" if self.scope is None else f"it takes one with the scope {self.scope.value}"
+            detail = f"The key {key.name} may not do this: {needed}."
+            raise ProblemFound(403, "scope-missing", "The key may not do this", detail)
+        return Admitted(key.actor(address), key=key)
+
+    def _judge_watch(self, watch: Watch, address: str) -> Admitted:
+        if watch.state is not WatchState.ACTIVE and not (self.waiting and watch.state is WatchState.WAITING):
+            detail = "Whoever made the code must first confirm this watch."
+            raise ProblemFound(403, "watch-waiting", "The watch is not confirmed yet", detail)
+        return Admitted(watch.actor(address), watch=watch)
+
+
+def allowed(
+    role: Role | None, *, scope: Scope | None = None, watch: bool = False, unready: bool = False
+) -> params.Depends:
+    """Declares in the `dependencies` of a route who may use it: people with `role`, or everybody (None).
+
+    Keys with `scope` may too, and active watches with `watch`. People who must change their password first may only
+    use what is `unready`. Raises `ValueError` where everybody may, and more is said all the same.
+    """
+    if role is None and (scope is not None or watch or unready):
+        raise ValueError("what is public is so for everybody; for watches alone there is `watch_only`")
+    access = Access(role, public=role is None, scope=scope, watch=watch, unready=unready)
+    declared: params.Depends = Depends(access)
+    return declared
+
+
+def watch_only(*, waiting: bool = False) -> params.Depends:
+    """Declares that active watches alone may use a route; with `waiting` also those that are not confirmed yet."""
+    declared: params.Depends = Depends(Access(watch=True, waiting=waiting))
+    return declared
+
+
+def declared(route: RouteContext) -> Access:
+    """What a route declares. Raises `RuntimeError` when it declares nothing, or more than once."""
+    found = [each.dependency for each in getattr(route, "dependencies", None) or []]
+    accesses = [each for each in found if isinstance(each, Access)]
+    if len(accesses) != 1:
+        raise RuntimeError(f"{route.path} must declare once who may use it; see `allowed`")
+    return accesses[0]
+
+
+def check_declared(routes: Sequence[BaseRoute]) -> None:
+    """Raise `RuntimeError` when one of the routes does not declare once who may use it."""
+    for route in iter_route_contexts(routes):
+        declared(route)
+
+
+def address_of(connection: HTTPConnection) -> str:
+    """The address of the other end, as far as it can be believed; empty where there is none."""
+    return "" if connection.client is None else connection.client.host
+
+
+async def bearer_of(connection: HTTPConnection, shown: Credentials) -> Bearer:
+    """Who shows these credentials here. A session of a demonstration ends with what allowed it.
+
+    Raises `StorageError`.
+    """
+    office: IdentityOffice = connection.app.state.identity
+    bearer = await office.find(shown)
+    if bearer.signed_in is None or bearer.signed_in.kind is not ActorKind.DEMONSTRATION:
+        return bearer
+    state = connection.app.state
+    may_go_on = may_be_demonstration(connection, state.settings, state.controller)
+    return bearer if may_go_on else replace(bearer, signed_in=None)
+
+
+def _signed_out(detail: str = "Sign in, then try again.") -> ProblemFound:
+    return ProblemFound(401, "signed-out", "Nobody is signed in", detail, {"WWW-Authenticate": "Bearer"})

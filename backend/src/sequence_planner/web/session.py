@@ -1,0 +1,248 @@
+"""Signing in and out: sessions of people and of demonstrations, their own password, and the first administrator.
+
+A session begins with a token that was drawn for it and travels in a cookie that no script can read. Whatever cookie a
+browser had before is never taken over: its session ends.
+"""
+
+from __future__ import annotations
+
+import contextlib
+from typing import Annotated, Literal
+
+from fastapi import APIRouter, Request, Response
+from pydantic import BaseModel, Field
+from sqlalchemy import Connection
+
+from sequence_planner.actor import ActorKind
+from sequence_planner.control.commands import CommandRefused
+from sequence_planner.identity import first_start, people, sessions
+from sequence_planner.identity.passwords import check_password
+from sequence_planner.identity.people import DEMONSTRATOR
+from sequence_planner.identity.roles import Role
+from sequence_planner.identity.sessions import SignedIn
+from sequence_planner.identity.watches import WatchState
+from sequence_planner.journal.audit import append
+from sequence_planner.journal.entry import Entry
+from sequence_planner.web.access import allowed, bearer_of
+from sequence_planner.web.body import Body, Name
+from sequence_planner.web.cookies import Credentials, credentials, forget_session, keep_session
+from sequence_planner.web.demonstration import may_open_demonstration
+from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.problems import ProblemFound
+from sequence_planner.web.request_parts import JSON_ONLY, Actor, Address, Agent, Controller, Identity, Session
+from sequence_planner.web.sweeper import withdraw_control
+
+EVERYBODY = allowed(None)
+ONESELF = allowed(Role.VIEWER, unready=True)
+LONGEST = 1000  # characters of what somebody typed; what may be a password is a matter of `check_password`
+
+router = APIRouter(tags=["session"])
+Typed = Annotated[str, Field(min_length=1, max_length=LONGEST)]
+
+
+class SessionPerson(BaseModel):
+    """Who is signed in."""
+
+    id: str
+    name: str
+    role: Role
+
+
+class SessionWatch(BaseModel):
+    """The watch that this device is, apart from who is signed in."""
+
+    id: str
+    name: str
+    resource: str
+    state: WatchState
+
+
+class SessionAnswer(BaseModel):
+    """Who the browser is for this server.
+
+    `first-start`: nobody is signed in, and there is no administrator yet. `session` is the id that holds control where
+    this session does; `expires` is when it ends at the latest, in seconds since the epoch. `demonstration` says that
+    one may be opened here.
+    """
+
+    state: Literal["signed-out", "signed-in", "first-start"]
+    person: SessionPerson | None
+    session: str | None
+    kind: Literal["person", "demonstration"] | None
+    must_change_password: bool
+    expires: float | None
+    demonstration: bool
+    watch: SessionWatch | None
+
+
+class SignInBody(Body):
+    """Who wants to sign in."""
+
+    name: Typed
+    password: Typed
+
+
+class DemonstrationBody(Body):
+    """Nothing: to open a demonstration is all that there is to say."""
+
+
+class PasswordBody(Body):
+    """One's own password as it is, and as it is to be."""
+
+    old: Typed
+    new: Typed
+
+
+class FirstAdministratorBody(Body):
+    """The token of the link that the first start has shown, and who the administrator is to be."""
+
+    token: Typed
+    name: Name
+    password: Typed
+
+
+@router.get("/session", dependencies=[EVERYBODY])
+async def session(request: Request) -> SessionAnswer:
+    """Who is signed in here; nobody is an answer too."""
+    shown = credentials(request)
+    bearer = await bearer_of(request, Credentials(session=shown.session))
+    return await _answer(request, bearer.signed_in)
+
+
+@router.post("/session", dependencies=[EVERYBODY, JSON_ONLY])
+async def sign_in(
+    body: SignInBody, request: Request, response: Response, identity: Identity, address: Address, agent: Agent
+) -> SessionAnswer:
+    """Sign in; the session that the browser had ends. 401 whatever was wrong, 429 after too many attempts."""
+    before = credentials(request).session
+    token, signed_in = await identity.sign_in.sign_in(
+        body.name, body.password, now=identity.now(), address=address, agent=agent, before=before
+    )
+    return await _begin(request, response, token, signed_in)
+
+
+@router.post("/session/demonstration", dependencies=[EVERYBODY, JSON_ONLY])
+async def open_demonstration(
+    body: DemonstrationBody,
+    request: Request,
+    response: Response,
+    identity: Identity,
+    client: Controller,
+    address: Address,
+    agent: Agent,
+) -> SessionAnswer:
+    """Open a demonstration, at the machine itself and with emulated devices alone; else 403 `no-demonstration`."""
+    if not may_open_demonstration(request, request.app.state.settings, client):
+        detail = "A demonstration can be opened at the machine itself, while all devices are emulated. Sign in instead."
+        raise ProblemFound(403, "no-demonstration", "No demonstration here", detail)
+    before, now = credentials(request).session, identity.now()
+
+    def write(connection: Connection) -> tuple[str, SignedIn]:
+        if before is not None:
+            sessions.end_session_of_token(connection, before)
+        kind = ActorKind.DEMONSTRATION
+        token, opened = sessions.open_session(connection, DEMONSTRATOR, now, kind=kind, address=address, agent=agent)
+        append(connection, Entry(actor=opened.actor(address), action="demonstration-opened"), now)
+        return token, opened
+
+    token, opened = await identity.write(write)
+    return await _begin(request, response, token, opened)
+
+
+@router.delete("/session", status_code=204, dependencies=[ONESELF])
+async def sign_out(
+    request: Request, response: Response, identity: Identity, client: Controller, actor: Actor, signed_in: Session
+) -> None:
+    """Sign out; control that the session has is given up."""
+    now = identity.now()
+    await identity.write(lambda connection: sessions.end_session(connection, signed_in.session, actor, now))
+    forget_session(response, request.app.state.settings)
+    with contextlib.suppress(CommandRefused):  # the sweeper tries again
+        await withdraw_control(client, signed_in.session)
+
+
+@router.put("/session/password", dependencies=[ONESELF, JSON_ONLY])
+async def change_password(
+    body: PasswordBody,
+    request: Request,
+    response: Response,
+    identity: Identity,
+    signed_in: Session,
+    address: Address,
+    agent: Agent,
+) -> SessionAnswer:
+    """Change one's own password; all sessions of the person end, and this browser gets a new one."""
+    token, again = await identity.sign_in.change_password(
+        signed_in, body.old, body.new, now=identity.now(), address=address, agent=agent
+    )
+    return await _begin(request, response, token, again)
+
+
+@router.post("/first-administrator", status_code=201, dependencies=[EVERYBODY, JSON_ONLY])
+async def first_administrator(
+    body: FirstAdministratorBody,
+    request: Request,
+    response: Response,
+    identity: Identity,
+    address: Address,
+    agent: Agent,
+) -> SessionAnswer:
+    """Make the first administrator with the link of the first start, which works once and for 15 minutes.
+
+    403 `link-unusable` when it does not.
+    """
+    begun = identity.now()
+    if not await identity.read(lambda connection: first_start.link_usable(connection, body.token, begun)):
+        raise first_start.unusable()
+    check_password(body.password, body.name)
+    hashed = await identity.passwords.hash(body.password)
+    before, now = credentials(request).session, identity.now()
+
+    def write(connection: Connection) -> tuple[str, SignedIn]:
+        person = first_start.use_link(connection, body.token, body.name, hashed, now, address=address)
+        if before is not None:
+            sessions.end_session_of_token(connection, before)
+        kind = ActorKind.PERSON
+        return sessions.open_session(connection, person, now, kind=kind, address=address, agent=agent)
+
+    token, signed_in = await identity.write(write)
+    return await _begin(request, response, token, signed_in)
+
+
+async def _begin(request: Request, response: Response, token: str, signed_in: SignedIn) -> SessionAnswer:
+    office: IdentityOffice = request.app.state.identity
+    office.forget()  # whatever session was there before has ended
+    keep_session(response, request.app.state.settings, token)
+    return await _answer(request, signed_in)
+
+
+async def _answer(request: Request, signed_in: SignedIn | None) -> SessionAnswer:
+    """What the browser is told where `signed_in` is its session."""
+    state = request.app.state
+    watch = (await bearer_of(request, Credentials(watch=credentials(request).watch))).watch
+    answer = SessionAnswer(
+        state="signed-out",
+        person=None,
+        session=None,
+        kind=None,
+        must_change_password=False,
+        expires=None,
+        demonstration=may_open_demonstration(request, state.settings, state.controller),
+        watch=None if watch is None else SessionWatch.model_validate(watch, from_attributes=True),
+    )
+    if signed_in is not None:
+        return answer.model_copy(update=_said_of(signed_in))
+    office: IdentityOffice = state.identity
+    has_administrator = await office.read(people.administrator_exists)
+    return answer if has_administrator else answer.model_copy(update={"state": "first-start"})
+
+
+def _said_of(signed_in: SignedIn) -> dict[str, object]:
+    return {
+        "state": "signed-in",
+        "person": SessionPerson.model_validate(signed_in.person, from_attributes=True),
+        "session": signed_in.session,
+        "kind": "demonstration" if signed_in.kind is ActorKind.DEMONSTRATION else "person",
+        "must_change_password": signed_in.person.must_change_password,
+        "expires": signed_in.expires,
+    }
