@@ -1,5 +1,5 @@
 /**
- * How the page is built: two prerendered documents (`/` and `/watch`) and their scripts, served as plain files.
+ * How the pages are built: one prerendered document for each and their scripts, served as plain files.
  *
  * Nothing comes from another host and no script is written into the page unhashed, so the Content-Security-Policy
  * that SvelteKit puts into each document allows only what was built here.

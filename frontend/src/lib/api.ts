@@ -64,6 +64,116 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/audit": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read
+         * @description What was done, refused or failed; only that of one action or of one actor (by id), where these are named.
+         */
+        get: operations["read_api_v1_audit_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/control": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Take
+         * @description Put this session in control; 409 `control-moved` when by now another is than the one that was seen.
+         */
+        put: operations["take_api_v1_control_put"];
+        post?: never;
+        /**
+         * Release
+         * @description Give control up.
+         */
+        delete: operations["release_api_v1_control_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/first-administrator": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * First Administrator
+         * @description Make the first administrator with the link of the first start, which works once and for 15 minutes.
+         *
+         *     403 `link-unusable` when it does not.
+         */
+        post: operations["first_administrator_api_v1_first_administrator_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/keys": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * All Keys
+         * @description All keys, without their secrets.
+         */
+        get: operations["all_keys_api_v1_keys_get"];
+        put?: never;
+        /**
+         * Make
+         * @description Make a key. Its secret is answered this once: only a hash of it is kept.
+         */
+        post: operations["make_api_v1_keys_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/keys/{key}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Revoke
+         * @description Revoke a key: whoever bears it is refused from now on.
+         */
+        delete: operations["revoke_api_v1_keys__key__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/mode": {
         parameters: {
             query?: never;
@@ -74,7 +184,7 @@ export interface paths {
         get?: never;
         /**
          * Set Mode
-         * @description Change the mode of execution.
+         * @description Change the mode of execution; to go on takes control, to pause does not.
          */
         put: operations["set_mode_api_v1_mode_put"];
         post?: never;
@@ -136,15 +246,102 @@ export interface paths {
          * Set Override
          * @description Set fields of an override, such as `ur10.speed`, within the bounds of the model; they expire as it says.
          *
-         *     422 `out-of-bounds` names the field and what is allowed; nothing has changed then.
+         *     It takes control. 422 `out-of-bounds` names the field and what is allowed; nothing has changed then.
          */
         put: operations["set_override_api_v1_overrides__name__put"];
         post?: never;
         /**
          * Clear Override
-         * @description Take back what is set, if anything is.
+         * @description Take back what is set, if anything is. It takes control.
          */
         delete: operations["clear_override_api_v1_overrides__name__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/people": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Everybody
+         * @description Everybody, by name; those who may no longer sign in too.
+         */
+        get: operations["everybody_api_v1_people_get"];
+        put?: never;
+        /**
+         * Create
+         * @description Enter a person, who signs in with the temporary password and then has to choose another.
+         */
+        post: operations["create_api_v1_people_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/people/{person}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        /**
+         * Change
+         * @description Change the role, or whether the person may sign in; either ends all of that person's sessions.
+         *
+         *     428 without `If-Match`; 412 `person-changed` when another has changed the person meanwhile; 409
+         *     `last-administrator` when nobody would be left to administer.
+         */
+        patch: operations["change_api_v1_people__person__patch"];
+        trace?: never;
+    };
+    "/api/v1/people/{person}/password": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Give Password
+         * @description Give a temporary password; it ends all of that person's sessions.
+         */
+        put: operations["give_password_api_v1_people__person__password_put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/people/{person}/sessions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * End Sessions
+         * @description Sign the person out everywhere.
+         */
+        delete: operations["end_sessions_api_v1_people__person__sessions_delete"];
         options?: never;
         head?: never;
         patch?: never;
@@ -221,7 +418,7 @@ export interface paths {
         put?: never;
         /**
          * Start Production
-         * @description Allow outputs to be published; nothing else implies it.
+         * @description Allow outputs to be published; nothing else implies it. It takes control.
          */
         post: operations["start_production_api_v1_production_start_post"];
         delete?: never;
@@ -262,6 +459,8 @@ export interface paths {
         /**
          * Attach
          * @description Enter a topic that is on the network into the station's model; what runs does not change before a restart.
+         *
+         *     It is recorded before anything is changed, and again when its outcome is known.
          */
         post: operations["attach_api_v1_ros_attachments_post"];
         delete?: never;
@@ -285,6 +484,74 @@ export interface paths {
          */
         get: operations["graph_api_v1_ros_graph_get"];
         put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/session": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Session
+         * @description Who is signed in here; nobody is an answer too.
+         */
+        get: operations["session_api_v1_session_get"];
+        put?: never;
+        /**
+         * Sign In
+         * @description Sign in; the session that the browser had ends. 401 whatever was wrong, 429 after too many attempts.
+         */
+        post: operations["sign_in_api_v1_session_post"];
+        /**
+         * Sign Out
+         * @description Sign out; control that the session has is given up.
+         */
+        delete: operations["sign_out_api_v1_session_delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/session/demonstration": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Open Demonstration
+         * @description Open a demonstration, at the machine itself and with emulated devices alone; else 403 `no-demonstration`.
+         */
+        post: operations["open_demonstration_api_v1_session_demonstration_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/session/password": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Change Password
+         * @description Change one's own password; all sessions of the person end, and this browser gets a new one.
+         */
+        put: operations["change_password_api_v1_session_password_put"];
         post?: never;
         delete?: never;
         options?: never;
@@ -363,7 +630,7 @@ export interface paths {
         put?: never;
         /**
          * Acknowledge
-         * @description Say that a task is done; refused when the task or its revision is gone.
+         * @description Say that a task is done; refused when the task or its revision is gone, or a watch is not for its resource.
          */
         post: operations["acknowledge_api_v1_tasks__task__acknowledgement_post"];
         delete?: never;
@@ -386,6 +653,148 @@ export interface paths {
         get: operations["topics_api_v1_topics_get"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/watches": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * All Watches
+         * @description The watches there are or were, the offers that are open, and the resources that a watch can serve.
+         */
+        get: operations["all_watches_api_v1_watches_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/watches/offers": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Offer
+         * @description Offer a pairing. Its code is answered this once and can be redeemed once, within two minutes.
+         */
+        post: operations["offer_api_v1_watches_offers_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/watches/offers/{offer}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Withdraw Offer
+         * @description Take an offer back: its code is worth nothing any more.
+         */
+        delete: operations["withdraw_offer_api_v1_watches_offers__offer__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/watches/pairing": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Pair
+         * @description Redeem a code. The device gets its credential, which is worth nothing before an operator has confirmed it.
+         *
+         *     403 `wrong-code` whatever is wrong with it; 429 `too-many-attempts`.
+         */
+        post: operations["pair_api_v1_watches_pairing_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/watches/self": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Itself
+         * @description What the watch that asks is called, whose tasks it shows, and whether it was confirmed yet.
+         */
+        get: operations["itself_api_v1_watches_self_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/watches/{watch}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Revoke
+         * @description Refuse a device that waits, or revoke one that was confirmed; within two seconds it is told nothing any more.
+         */
+        delete: operations["revoke_api_v1_watches__watch__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/watches/{watch}/confirmation": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Confirm
+         * @description Confirm that the device that has redeemed the code is the one that was meant; within two minutes.
+         */
+        post: operations["confirm_api_v1_watches__watch__confirmation_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -460,6 +869,30 @@ export interface components {
             /** Revision */
             revision: number;
         };
+        /**
+         * Actor
+         * @description Who does something, and from where.
+         *
+         *     `id` never changes and is never used again; `name` is what people read. `session` is the public id of a person's
+         *     session, which is what holds control; `address` is that of the other end of the connection.
+         */
+        Actor: {
+            /** Address */
+            address?: string | null;
+            /** Id */
+            id: string;
+            kind: components["schemas"]["ActorKind"];
+            /** Name */
+            name: string;
+            /** Session */
+            session?: string | null;
+        };
+        /**
+         * ActorKind
+         * @description What kind of somebody acts.
+         * @enum {string}
+         */
+        ActorKind: "person" | "demonstration" | "watch" | "key" | "system";
         /**
          * AlarmView
          * @description Something that wants a person's attention, for as long as it lasts.
@@ -566,6 +999,16 @@ export interface components {
             topic: string;
         };
         /**
+         * AuditAnswer
+         * @description Records, newest first; `next` is the `before` with which older ones follow, null when there are none.
+         */
+        AuditAnswer: {
+            /** Next */
+            next: number | null;
+            /** Records */
+            records: components["schemas"]["Record"][];
+        };
+        /**
          * CallView
          * @description A service or an action: who answers it and who asks, by node; null stands for one that does not tell its name.
          */
@@ -583,11 +1026,42 @@ export interface components {
          */
         ClientMessage: components["schemas"]["Resync"];
         /**
+         * ConfirmationBody
+         * @description Nothing: to confirm is all that there is to say.
+         */
+        ConfirmationBody: Record<string, never>;
+        /**
          * Contract
          * @description What is wanted of a plan.
          * @enum {string}
          */
         Contract: "minimal" | "fast";
+        /**
+         * ControlBody
+         * @description The session from which control is taken over, null where nobody is in control as far as the person sees.
+         */
+        ControlBody: {
+            /** Over */
+            over: string | null;
+            /** Reason */
+            reason?: string | null;
+        };
+        /**
+         * ControlView
+         * @description The session that is in control; `taken_from` is who was before it, where control was taken over.
+         */
+        ControlView: {
+            /** Name */
+            name: string;
+            /** Person */
+            person: string;
+            /** Session */
+            session: string;
+            /** Since */
+            since: number;
+            /** Taken From */
+            taken_from: string | null;
+        };
         /**
          * ControllerState
          * @description Whether the server hears the controller. While it is lost, what was shown before is old.
@@ -609,6 +1083,11 @@ export interface components {
             /** Sequence */
             sequence: number;
         };
+        /**
+         * DemonstrationBody
+         * @description Nothing: to open a demonstration is all that there is to say.
+         */
+        DemonstrationBody: Record<string, never>;
         /**
          * DiagnosisView
          * @description Why there is no plan at all: nothing is possible as long as all `members` stay as they are.
@@ -694,6 +1173,34 @@ export interface components {
             vendor: string | null;
         };
         /**
+         * Entry
+         * @description Somebody does something.
+         *
+         *     `action` is what, as in `set-mode` or `person-created`; `subject` is on what, as in `task 4-1` or `person Eva`;
+         *     `details` are its data, without anything secret; `reason` is why, in the person's words. `about` is the number of
+         *     the record of which this one tells the outcome.
+         */
+        Entry: {
+            /** About */
+            about?: number | null;
+            /** Action */
+            action: string;
+            actor: components["schemas"]["Actor"];
+            /** Details */
+            details?: {
+                [key: string]: components["schemas"]["JsonValue"];
+            };
+            /** @default done */
+            outcome: components["schemas"]["Outcome"];
+            /** Reason */
+            reason?: string | null;
+            /**
+             * Subject
+             * @default
+             */
+            subject: string;
+        };
+        /**
          * FieldError
          * @description One place in a request that is not as it must be, e.g. `body.mode`, and what was expected there.
          */
@@ -721,6 +1228,18 @@ export interface components {
             /** Severity */
             severity: string;
             trace: components["schemas"]["TraceDocument"] | null;
+        };
+        /**
+         * FirstAdministratorBody
+         * @description The token of the link that the first start has shown, and who the administrator is to be.
+         */
+        FirstAdministratorBody: {
+            /** Name */
+            name: string;
+            /** Password */
+            password: string;
+            /** Token */
+            token: string;
         };
         /**
          * FlowsSnapshot
@@ -797,6 +1316,48 @@ export interface components {
         };
         JsonValue: unknown;
         /**
+         * KeyAnswer
+         * @description A key without its secret. Times are in seconds since the epoch; `created_by` is the person's name.
+         */
+        KeyAnswer: {
+            /** Created */
+            created: number;
+            /** Created By */
+            created_by: string;
+            /** Expires */
+            expires: number;
+            /** Id */
+            id: string;
+            /** Last Used */
+            last_used: number | null;
+            /** Name */
+            name: string;
+            /** Revoked */
+            revoked: number | null;
+            /** Scopes */
+            scopes: components["schemas"]["Scope"][];
+        };
+        /**
+         * KeyBody
+         * @description A new key: what its bearer may do, and for how many days.
+         */
+        KeyBody: {
+            /** Days */
+            days: number;
+            /** Name */
+            name: string;
+            /** Scopes */
+            scopes: components["schemas"]["Scope"][];
+        };
+        /**
+         * KeysAnswer
+         * @description All keys, the newest first; those that work no more are among them for 90 days.
+         */
+        KeysAnswer: {
+            /** Keys */
+            keys: components["schemas"]["KeyAnswer"][];
+        };
+        /**
          * Link
          * @description The controller fell silent, or is back; then a snapshot follows.
          */
@@ -847,6 +1408,8 @@ export interface components {
          */
         ModeBody: {
             mode: components["schemas"]["Mode"];
+            /** Reason */
+            reason?: string | null;
         };
         /**
          * NetworkSnapshot
@@ -890,6 +1453,27 @@ export interface components {
             };
         };
         /**
+         * NewKeyAnswer
+         * @description A key and its secret, which is shown this once.
+         */
+        NewKeyAnswer: {
+            key: components["schemas"]["KeyAnswer"];
+            /** Secret */
+            secret: string;
+        };
+        /**
+         * NewOfferAnswer
+         * @description The code to type in on the watch until `expires`; it is shown this once.
+         */
+        NewOfferAnswer: {
+            /** Code */
+            code: string;
+            /** Expires */
+            expires: number;
+            /** Id */
+            id: string;
+        };
+        /**
          * NodeView
          * @description A node, and the names of what it uses and serves.
          */
@@ -906,6 +1490,32 @@ export interface components {
             subscribes: string[];
             /** Vendor */
             vendor: string | null;
+        };
+        /**
+         * OfferAnswer
+         * @description A pairing that nobody has redeemed yet. Its code is not told again.
+         */
+        OfferAnswer: {
+            /** Expires */
+            expires: number;
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Offered By */
+            offered_by: string;
+            /** Resource */
+            resource: string;
+        };
+        /**
+         * OfferBody
+         * @description A watch is to be paired: what it will be called, and whose tasks it shows.
+         */
+        OfferBody: {
+            /** Name */
+            name: string;
+            /** Resource */
+            resource: string;
         };
         /**
          * OperationView
@@ -942,6 +1552,12 @@ export interface components {
             time: number;
         };
         /**
+         * Outcome
+         * @description How far an act has come. A command on the station is recorded before its effect, and again when it is known.
+         * @enum {string}
+         */
+        Outcome: "requested" | "done" | "refused" | "failed";
+        /**
          * OverrideBody
          * @description The values of the fields that are to be set; others are as they come.
          */
@@ -950,6 +1566,8 @@ export interface components {
             fields: {
                 [key: string]: boolean | number | string;
             };
+            /** Reason */
+            reason?: string | null;
         };
         /**
          * OverrideFieldView
@@ -1005,6 +1623,75 @@ export interface components {
             tick: number;
             /** Time */
             time: number;
+        };
+        /**
+         * PairingBody
+         * @description The code that an operator has read out.
+         */
+        PairingBody: {
+            /** Code */
+            code: string;
+        };
+        /**
+         * PasswordBody
+         * @description One's own password as it is, and as it is to be.
+         */
+        PasswordBody: {
+            /** New */
+            new: string;
+            /** Old */
+            old: string;
+        };
+        /**
+         * PeopleAnswer
+         * @description Everybody, by name.
+         */
+        PeopleAnswer: {
+            /** People */
+            people: components["schemas"]["PersonAnswer"][];
+        };
+        /**
+         * PersonAnswer
+         * @description A person. `created` is in seconds since the epoch; `sessions` counts those that are open now.
+         *
+         *     `revision` is what a change has to name in `If-Match`, in double quotes.
+         */
+        PersonAnswer: {
+            /** Created */
+            created: number;
+            /** Disabled */
+            disabled: boolean;
+            /** Id */
+            id: string;
+            /** Must Change Password */
+            must_change_password: boolean;
+            /** Name */
+            name: string;
+            /** Revision */
+            revision: number;
+            role: components["schemas"]["Role"];
+            /** Sessions */
+            sessions: number;
+        };
+        /**
+         * PersonBody
+         * @description A new person, with a password that has to be changed at the first sign-in.
+         */
+        PersonBody: {
+            /** Name */
+            name: string;
+            /** Password */
+            password: string;
+            role: components["schemas"]["Role"];
+        };
+        /**
+         * PersonChangeBody
+         * @description What is to change; what is left out stays as it is.
+         */
+        PersonChangeBody: {
+            /** Disabled */
+            disabled?: boolean | null;
+            role?: components["schemas"]["Role"] | null;
         };
         /**
          * PipelineFlowView
@@ -1174,6 +1861,22 @@ export interface components {
             reliability: "reliable" | "best_effort";
         };
         /**
+         * Record
+         * @description An entry as it was written: `number` counts from 1 without gaps, `time` is in seconds since the epoch.
+         *
+         *     `hash` is the SHA-256 over the hash of the record before and this one's contents, so that a record that was changed
+         *     or taken out shows.
+         */
+        Record: {
+            entry: components["schemas"]["Entry"];
+            /** Hash */
+            hash: string;
+            /** Number */
+            number: number;
+            /** Time */
+            time: number;
+        };
+        /**
          * ResourceView
          * @description A resource and whether all its topics speak.
          */
@@ -1209,6 +1912,79 @@ export interface components {
              * @constant
              */
             kind: "resync";
+        };
+        /**
+         * Role
+         * @description A person's role; the order is that of the declaration.
+         * @enum {string}
+         */
+        Role: "viewer" | "operator" | "engineer" | "administrator";
+        /**
+         * Scope
+         * @description What the bearer of a key may do.
+         * @enum {string}
+         */
+        Scope: "read" | "audit";
+        /**
+         * SessionAnswer
+         * @description Who the browser is for this server.
+         *
+         *     `first-start`: nobody is signed in, and there is no administrator yet. `session` is the id that holds control where
+         *     this session does; `expires` is when it ends at the latest, in seconds since the epoch. `demonstration` says that
+         *     one may be opened here.
+         */
+        SessionAnswer: {
+            /** Demonstration */
+            demonstration: boolean;
+            /** Expires */
+            expires: number | null;
+            /** Kind */
+            kind: ("person" | "demonstration") | null;
+            /** Must Change Password */
+            must_change_password: boolean;
+            person: components["schemas"]["SessionPerson"] | null;
+            /** Session */
+            session: string | null;
+            /**
+             * State
+             * @enum {string}
+             */
+            state: "signed-out" | "signed-in" | "first-start";
+            watch: components["schemas"]["SessionWatch"] | null;
+        };
+        /**
+         * SessionPerson
+         * @description Who is signed in.
+         */
+        SessionPerson: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            role: components["schemas"]["Role"];
+        };
+        /**
+         * SessionWatch
+         * @description The watch that this device is, apart from who is signed in.
+         */
+        SessionWatch: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Resource */
+            resource: string;
+            state: components["schemas"]["WatchState"];
+        };
+        /**
+         * SignInBody
+         * @description Who wants to sign in.
+         */
+        SignInBody: {
+            /** Name */
+            name: string;
+            /** Password */
+            password: string;
         };
         /**
          * Silence
@@ -1270,9 +2046,12 @@ export interface components {
         };
         /**
          * StartBody
-         * @description Nothing: to start production is all that there is to say.
+         * @description To start production is all that there is to say, but perhaps why.
          */
-        StartBody: Record<string, never>;
+        StartBody: {
+            /** Reason */
+            reason?: string | null;
+        };
         /**
          * StateAnswer
          * @description Every variable.
@@ -1314,6 +2093,7 @@ export interface components {
                 [key: string]: components["schemas"]["AlarmView"];
             };
             analysis?: components["schemas"]["AnalysisDocument"] | null;
+            control?: components["schemas"]["ControlView"] | null;
             mode?: components["schemas"]["Mode"];
             /** Operations */
             operations?: {
@@ -1422,6 +2202,7 @@ export interface components {
                 [key: string]: components["schemas"]["AlarmView"];
             };
             analysis: components["schemas"]["AnalysisDocument"] | null;
+            control: components["schemas"]["ControlView"] | null;
             mode: components["schemas"]["Mode"];
             /** Operations */
             operations: {
@@ -1512,6 +2293,8 @@ export interface components {
             created: number;
             /** Next Moves */
             next_moves: string[];
+            /** Resource */
+            resource: string;
             /** Revision */
             revision: number;
             /** Text */
@@ -1532,6 +2315,14 @@ export interface components {
             tick: number;
             /** Time */
             time: number;
+        };
+        /**
+         * TemporaryPasswordBody
+         * @description A password that the person has to change at the next sign-in.
+         */
+        TemporaryPasswordBody: {
+            /** Password */
+            password: string;
         };
         /**
          * TopicView
@@ -1617,6 +2408,101 @@ export interface components {
             since: number | null;
             /** Value */
             value: boolean | number | string | null;
+        };
+        /**
+         * WatchAnswer
+         * @description A watch, as operators see it; `paired_by` is the name of who let it in.
+         *
+         *     `agent` is what its browser calls itself; it was paired from `address`.
+         */
+        WatchAnswer: {
+            /** Address */
+            address: string;
+            /** Agent */
+            agent: string;
+            /** Created */
+            created: number;
+            /** Expires */
+            expires: number;
+            /** Id */
+            id: string;
+            /** Last Seen */
+            last_seen: number;
+            /** Name */
+            name: string;
+            /** Paired By */
+            paired_by: string;
+            /** Resource */
+            resource: string;
+            state: components["schemas"]["WatchState"];
+        };
+        /**
+         * WatchResource
+         * @description A resource that has tasks for people, so that a watch can serve it.
+         */
+        WatchResource: {
+            /** Name */
+            name: string;
+            /** Title */
+            title: string;
+        };
+        /**
+         * WatchSelfAnswer
+         * @description What a watch is told of itself.
+         */
+        WatchSelfAnswer: {
+            /** Id */
+            id: string;
+            /** Name */
+            name: string;
+            /** Resource */
+            resource: string;
+            state: components["schemas"]["WatchState"];
+        };
+        /**
+         * WatchSnapshot
+         * @description The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title.
+         */
+        WatchSnapshot: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "watch";
+            mode: components["schemas"]["Mode"];
+            /** Station */
+            station: string;
+            /** Tasks */
+            tasks: {
+                [key: string]: components["schemas"]["TaskView"];
+            };
+            /** Time */
+            time: number;
+        };
+        /**
+         * WatchState
+         * @description How far a watch has come.
+         * @enum {string}
+         */
+        WatchState: "waiting" | "active" | "revoked" | "expired";
+        /**
+         * WatchStreamMessage
+         * @description Any message of `/api/v1/watches/stream`.
+         */
+        WatchStreamMessage: components["schemas"]["WatchSnapshot"] | components["schemas"]["Silence"] | components["schemas"]["StreamError"];
+        /**
+         * WatchesAnswer
+         * @description All watches and open offers, the newest first, and the resources to choose from.
+         *
+         *     There are no resources while the controller is not heard.
+         */
+        WatchesAnswer: {
+            /** Offers */
+            offers: components["schemas"]["OfferAnswer"][];
+            /** Resources */
+            resources: components["schemas"]["WatchResource"][];
+            /** Watches */
+            watches: components["schemas"]["WatchAnswer"][];
         };
         /**
          * WayBackStepView
@@ -1759,6 +2645,285 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["AnalysisAnswer"];
                 };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_api_v1_audit_get: {
+        parameters: {
+            query?: {
+                before?: number | null;
+                limit?: number;
+                action?: string | null;
+                actor?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AuditAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    take_api_v1_control_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ControlBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    release_api_v1_control_delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    first_administrator_api_v1_first_administrator_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["FirstAdministratorBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    all_keys_api_v1_keys_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["KeysAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    make_api_v1_keys_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["KeyBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NewKeyAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    revoke_api_v1_keys__key__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                key: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem */
             422: {
@@ -1944,6 +3109,212 @@ export interface operations {
             header?: never;
             path: {
                 name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    everybody_api_v1_people_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PeopleAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    create_api_v1_people_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PersonBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PersonAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_api_v1_people__person__patch: {
+        parameters: {
+            query?: never;
+            header?: {
+                "if-match"?: string | null;
+            };
+            path: {
+                person: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PersonChangeBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PersonAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    give_password_api_v1_people__person__password_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                person: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TemporaryPasswordBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    end_sessions_api_v1_people__person__sessions_delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                person: string;
             };
             cookie?: never;
         };
@@ -2248,6 +3619,206 @@ export interface operations {
             };
         };
     };
+    session_api_v1_session_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    sign_in_api_v1_session_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SignInBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    sign_out_api_v1_session_delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    open_demonstration_api_v1_session_demonstration_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DemonstrationBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_password_api_v1_session_password_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PasswordBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["SessionAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     state_api_v1_state_get: {
         parameters: {
             query?: never;
@@ -2421,6 +3992,284 @@ export interface operations {
                 content: {
                     "application/json": components["schemas"]["TopicsAnswer"];
                 };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    all_watches_api_v1_watches_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WatchesAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    offer_api_v1_watches_offers_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OfferBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NewOfferAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    withdraw_offer_api_v1_watches_offers__offer__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                offer: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    pair_api_v1_watches_pairing_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PairingBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WatchSelfAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    itself_api_v1_watches_self_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WatchSelfAnswer"];
+                };
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    revoke_api_v1_watches__watch__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                watch: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description A problem */
+            422: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    confirm_api_v1_watches__watch__confirmation_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                watch: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ConfirmationBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
             /** @description A problem */
             422: {

@@ -26,10 +26,32 @@ export type Priority = Schemas['Priority'];
 export type Mode = Schemas['Mode'];
 export type Value = NonNullable<Variable['value']>;
 
+export type SessionAnswer = Schemas['SessionAnswer'];
+export type Role = Schemas['Role'];
+export type Control = Schemas['ControlView'];
+
 export type Delta = Schemas['Delta'];
 export type StreamMessage = Schemas['StreamMessage'];
 export type Resync = Schemas['Resync'];
 export type Problem = Schemas['Problem'];
+
+export type Person = Schemas['PersonAnswer'];
+export type PeopleAnswer = Schemas['PeopleAnswer'];
+export type Key = Schemas['KeyAnswer'];
+export type KeysAnswer = Schemas['KeysAnswer'];
+export type NewKey = Schemas['NewKeyAnswer'];
+export type KeyScope = Schemas['Scope'];
+export type Watch = Schemas['WatchAnswer'];
+export type Offer = Schemas['OfferAnswer'];
+export type NewOffer = Schemas['NewOfferAnswer'];
+export type WatchesAnswer = Schemas['WatchesAnswer'];
+export type WatchSelf = Schemas['WatchSelfAnswer'];
+export type WatchStreamMessage = Schemas['WatchStreamMessage'];
+export type WatchSnapshot = Schemas['WatchSnapshot'];
+export type Actor = Schemas['Actor'];
+export type AuditRecord = Schemas['Record'];
+export type AuditAnswer = Schemas['AuditAnswer'];
+export type Outcome = Schemas['Outcome'];
 
 /** The fields of the document that are maps: a delta merges into them and `removed` names the keys that are gone. */
 export const MAPS = [

@@ -1,5 +1,5 @@
 /** One act of a person, from the press to its end: under way, done, or refused with words. */
-import type { Refusal } from './send.ts';
+import type { Refusal } from '#lib/rest/refusal.ts';
 
 export class Act {
 	pending = $state(false);

@@ -1,27 +1,17 @@
 import { afterEach, describe, expect, test, vi } from 'vitest';
-import { acknowledge, refusalOf, setMode } from './send.ts';
+import { acknowledge, setMode, takeControl } from './send.ts';
 
 afterEach(() => vi.unstubAllGlobals());
 
-describe('a refusal', () => {
-	test('carries the words of a problem document', () => {
-		const body = '{"type":"/problems/task-gone","title":"Task gone","status":409,"detail":"Somebody else did it."}';
-		expect(refusalOf(409, body)).toEqual({ title: 'Task gone', detail: 'Somebody else did it.', status: 409 });
-	});
-
-	test.each(['', '<html>', 'null', '3', '{"title":7}'])('has words even when the body is %j', (body) => {
-		expect(refusalOf(502, body)).toEqual({
-			title: 'Refused',
-			detail: 'The server answered with status 502.',
-			status: 502
-		});
-	});
-});
+function accepting(): ReturnType<typeof vi.fn> {
+	const fetch = vi.fn(() => Promise.resolve(new Response(null, { status: 204 })));
+	vi.stubGlobal('fetch', fetch);
+	return fetch;
+}
 
 describe('a command', () => {
 	test('is sent as JSON, with the id of the task as one segment of the path', async () => {
-		const fetch = vi.fn(() => Promise.resolve(new Response(null, { status: 204 })));
-		vi.stubGlobal('fetch', fetch);
+		const fetch = accepting();
 		expect(await acknowledge('a/b', 3)).toBeNull();
 		expect(fetch).toHaveBeenCalledWith(
 			'/api/v1/tasks/a%2Fb/acknowledgement',
@@ -37,4 +27,14 @@ describe('a command', () => {
 		vi.stubGlobal('fetch', () => Promise.reject(new TypeError('refused')));
 		expect(await setMode('paused')).toMatchObject({ title: 'Not sent', status: null });
 	});
+});
+
+test('control is taken from the session that was shown, with a reason only where one was given', async () => {
+	const fetch = accepting();
+	await takeControl(null, ' ');
+	await takeControl('s-1', ' end of shift ');
+	expect(fetch.mock.calls.map(([, { body }]) => body)).toEqual([
+		'{"over":null}',
+		'{"over":"s-1","reason":"end of shift"}'
+	]);
 });

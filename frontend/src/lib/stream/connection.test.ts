@@ -1,6 +1,7 @@
 import fc from 'fast-check';
 import { afterEach, beforeEach, describe, expect, test, vi } from 'vitest';
-import { connect, pause, type Listener } from './connection.ts';
+import type { StreamMessage } from '#lib/contract.ts';
+import { ENDED, connect, pause, type Listener } from './connection.ts';
 
 /** The part of a browser's WebSocket that the connection uses, driven by the test. */
 class Socket {
@@ -16,7 +17,7 @@ class Socket {
 	closed = false;
 	onopen: (() => void) | null = null;
 	onmessage: ((event: { data: string }) => void) | null = null;
-	onclose: (() => void) | null = null;
+	onclose: ((event: { code: number }) => void) | null = null;
 
 	constructor(readonly url: string) {
 		Socket.all.push(this);
@@ -33,7 +34,7 @@ class Socket {
 	}
 }
 
-const listener = { opened: vi.fn(), heard: vi.fn(), closed: vi.fn() } satisfies Listener;
+const listener = { opened: vi.fn(), heard: vi.fn(), closed: vi.fn() } satisfies Listener<StreamMessage>;
 
 beforeEach(() => {
 	vi.useFakeTimers();
@@ -60,7 +61,7 @@ describe('a connection', () => {
 	test('is opened again for ever', () => {
 		const connection = connect('ws://here', listener);
 		for (let k = 1; k < 50; k++) {
-			Socket.last.onclose?.();
+			Socket.last.onclose?.({ code: 1006 });
 			vi.advanceTimersByTime(5000);
 			expect(Socket.all).toHaveLength(k + 1);
 		}
@@ -82,9 +83,17 @@ describe('a connection', () => {
 		const connection = connect('ws://here', listener);
 		const first = Socket.last;
 		first.open();
-		first.onclose?.();
+		first.onclose?.({ code: 1006 });
 		first.onmessage?.({ data: '{"kind":"error","detail":"late"}' });
 		expect(listener.heard).not.toHaveBeenCalled();
+		connection.close();
+	});
+
+	test('says with which code it was closed', () => {
+		const connection = connect('ws://here', listener);
+		Socket.last.open();
+		Socket.last.onclose?.({ code: ENDED });
+		expect(listener.closed).toHaveBeenCalledWith(ENDED);
 		connection.close();
 	});
 

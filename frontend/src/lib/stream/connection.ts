@@ -16,10 +16,16 @@ export function pause(n: number, chance: number): number {
 	return wait * (0.5 + chance / 2);
 }
 
-export interface Listener {
+/** The code with which the server closes a stream whose session, key or watch has ended. */
+export const ENDED = 4401;
+/** What is told of a connection that this page gave up itself: the browser's own code for "no reason was heard". */
+const NO_WORD = 1006;
+
+export interface Listener<Message> {
 	opened(): void;
-	heard(message: StreamMessage): void;
-	closed(): void;
+	heard(message: Message): void;
+	/** It is closed, with the WebSocket's code; it will be tried again. */
+	closed(code: number): void;
 }
 
 export interface Connection {
@@ -28,8 +34,8 @@ export interface Connection {
 	close(): void;
 }
 
-/** Connects to `url` and keeps connecting until `close`. */
-export function connect(url: string, listener: Listener): Connection {
+/** Connects to `url`, where each message is a `Message` in JSON, and keeps connecting until `close`. */
+export function connect<Message = StreamMessage>(url: string, listener: Listener<Message>): Connection {
 	let socket: WebSocket | null = null;
 	let attempts = 0;
 	let retry: ReturnType<typeof setTimeout> | undefined;
@@ -38,16 +44,16 @@ export function connect(url: string, listener: Listener): Connection {
 
 	function heardSomething(): void {
 		clearTimeout(watch);
-		watch = setTimeout(drop, SILENT);
+		watch = setTimeout(() => drop(NO_WORD), SILENT);
 	}
 
-	function drop(): void {
+	function drop(code: number): void {
 		clearTimeout(watch);
 		const dead = socket;
 		socket = null;
 		if (dead === null) return;
 		dead.close();
-		listener.closed();
+		listener.closed(code);
 		if (!ended) retry = setTimeout(open, pause(attempts++, Math.random()));
 	}
 
@@ -62,10 +68,10 @@ export function connect(url: string, listener: Listener): Connection {
 			if (socket !== opening) return;
 			heardSomething();
 			attempts = 0;
-			listener.heard(JSON.parse(event.data) as StreamMessage);
+			listener.heard(JSON.parse(event.data) as Message);
 		};
-		opening.onclose = () => {
-			if (socket === opening) drop();
+		opening.onclose = (event: CloseEvent) => {
+			if (socket === opening) drop(event.code);
 		};
 	}
 
@@ -78,7 +84,7 @@ export function connect(url: string, listener: Listener): Connection {
 		close() {
 			ended = true;
 			clearTimeout(retry);
-			drop();
+			drop(NO_WORD);
 		}
 	};
 }

@@ -17,8 +17,11 @@ export type Liveness =
 	| { readonly live: true; readonly age: number }
 	| { readonly live: false; readonly age: number | null; readonly cause: Cause };
 
+/** What a stream says of itself; the view may be any document. */
+export type Told = Pick<Stream, 'controller' | 'gap'> & { readonly view: object | null };
+
 /** Judges what is known at `now` (milliseconds on the clock of `hearing`). */
-export function judge(stream: Stream, hearing: Hearing, open: boolean, now: number): Liveness {
+export function judge(stream: Told, hearing: Hearing, open: boolean, now: number): Liveness {
 	const age = ageOf(hearing, now);
 	if (!open) return { live: false, age, cause: 'closed' };
 	if (stream.controller === 'lost') return { live: false, age, cause: 'controller' };

@@ -34,12 +34,13 @@ export class Station {
 		return this.view?.time ?? 0;
 	});
 
-	/** Connects to the server's stream; the result disconnects. */
-	attach(url: string): () => void {
+	/** Connects to the server's stream; the result disconnects. `closed` is told each time the connection is lost. */
+	attach(url: string, closed: (code: number) => void): () => void {
 		const look = (): void => {
 			this.#now = performance.now();
 		};
 		let asked = -Infinity;
+		let attached = true;
 		const connection = connect(url, {
 			opened: () => {
 				this.#open = true;
@@ -57,15 +58,17 @@ export class Station {
 				if (time !== undefined && (time !== before.view?.time || message.kind === 'snapshot'))
 					this.#hearing = hear(this.#hearing, this.#now, time * 1000);
 			},
-			closed: () => {
+			closed: (code) => {
 				this.#open = false;
 				look();
+				if (attached) closed(code);
 			}
 		});
 		const timer = setInterval(look, REFRESH);
 		// A page that comes to the front must not show for a moment what was true when it left.
 		document.addEventListener('visibilitychange', look);
 		return () => {
+			attached = false;
 			clearInterval(timer);
 			document.removeEventListener('visibilitychange', look);
 			connection.close();

@@ -33,7 +33,8 @@ export function step(ability: string, resource: string, tick: number, rest: Part
 }
 
 export function task(created: number): Task {
-	return { revision: 1, ability: 'operator.place', title: 'Place', text: 'Place it', created, next_moves: [] };
+	const place = { ability: 'operator.place', resource: 'operator', title: 'Place', text: 'Place it' };
+	return { revision: 1, ...place, created, next_moves: [] };
 }
 
 export function view(rest: Partial<StationView> = {}): StationView {
@@ -54,6 +55,7 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		overrides: {},
 		alarms: {},
 		way_back: null,
+		control: null,
 		analysis: null,
 		...rest
 	};

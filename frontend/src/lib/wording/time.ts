@@ -25,3 +25,12 @@ export function agoText(seconds: number, live: boolean): string {
 	if (live && whole === 0) return 'just now';
 	return `${whole < 10 ? `${whole} s` : ageText(whole * 1000)} ${live ? 'ago' : 'before'}`;
 }
+
+const CLOCK = new Intl.DateTimeFormat('en-GB', { hour: '2-digit', minute: '2-digit' });
+const DATED = new Intl.DateTimeFormat('en-GB', { day: 'numeric', month: 'short', hour: '2-digit', minute: '2-digit' });
+
+/** When `moment` was (seconds, as `now`), as a clock shows it: `14:02`; with its day where that is not the one of `now`. */
+export function clockText(moment: number, now: number): string {
+	const [then, today] = [new Date(moment * 1000), new Date(now * 1000)];
+	return (then.toDateString() === today.toDateString() ? CLOCK : DATED).format(then);
+}

@@ -1,0 +1,21 @@
+/** How far a key has come, and what its scopes let its bearer do. */
+import type { Key, KeyScope } from '#lib/contract.ts';
+
+export const SCOPES: Record<KeyScope, string> = {
+	read: 'reads the station, as a viewer does',
+	audit: 'reads the journal'
+};
+
+export type Standing = 'valid' | 'expired' | 'revoked';
+
+/** Whether `key` is of use at `now`, in seconds since the epoch. */
+export function standingOf(key: Key, now: number): Standing {
+	if (key.revoked !== null) return 'revoked';
+	return key.expires <= now ? 'expired' : 'valid';
+}
+
+/** A command line that reads something with a key that is kept in the variable `KEY`, from the server at `origin`. */
+export function example(scopes: readonly KeyScope[], origin: string): string {
+	const address = scopes.includes('read') ? 'station' : 'audit';
+	return `curl --header "Authorization: Bearer $KEY" ${origin}/api/v1/${address}`;
+}

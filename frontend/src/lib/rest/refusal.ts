@@ -1,0 +1,50 @@
+/** Why the server did not do what was asked, in words for a person (RFC 9457). */
+import type { Problem } from '#lib/contract.ts';
+
+export interface Refusal {
+	readonly title: string;
+	readonly detail: string;
+	/** HTTP status; null when the server was not reached. */
+	readonly status: number | null;
+	/** What kind of refusal it is, as in `task-gone`; null when the answer does not say. */
+	readonly kind: string | null;
+	/** Seconds after which to try again makes sense; null when the answer does not say. */
+	readonly retryAfter: number | null;
+}
+
+const PROBLEMS = '/problems/';
+const LONGEST_WAIT = 24 * 60 * 60;
+
+const NO_ANSWER = { status: null, kind: null, retryAfter: null };
+
+/** Nothing came back from an act: whether it was done is not known. */
+export const UNREACHED: Refusal = {
+	title: 'Not sent',
+	detail: 'The server cannot be reached. Nothing may have been done; look at the station before you try again.',
+	...NO_ANSWER
+};
+
+/** Nothing came back from a question, which changes nothing. */
+export const UNREAD: Refusal = { title: 'Not read', detail: 'The server cannot be reached.', ...NO_ANSWER };
+
+/** The seconds that a `Retry-After` header stands for; null when it says none. */
+function secondsOf(header: string | null): number | null {
+	const seconds = header === null || header.trim() === '' ? NaN : Number(header);
+	return Number.isFinite(seconds) && seconds > 0 ? Math.min(Math.ceil(seconds), LONGEST_WAIT) : null;
+}
+
+/** The refusal that an answer of `status` with the text `body` and the header `Retry-After` stands for. */
+export function refusalOf(status: number, body: string, retryAfter: string | null = null): Refusal {
+	let problem: Partial<Problem> = {};
+	try {
+		const parsed: unknown = JSON.parse(body);
+		if (typeof parsed === 'object' && parsed !== null) problem = parsed;
+	} catch {
+		// Not a problem document: something between us and the station answered, and its status must do.
+	}
+	const title = typeof problem.title === 'string' ? problem.title : 'Refused';
+	const detail = typeof problem.detail === 'string' ? problem.detail : `The server answered with status ${status}.`;
+	const type = typeof problem.type === 'string' ? problem.type : '';
+	const kind = type.startsWith(PROBLEMS) ? type.slice(PROBLEMS.length) : null;
+	return { title, detail, status, kind, retryAfter: secondsOf(retryAfter) };
+}
