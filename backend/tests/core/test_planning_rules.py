@@ -147,6 +147,24 @@ def test_the_goal_of_lowest_priority_is_left_out_first() -> None:
     )
     answer = ask(station, initial_state(station))
     assert (answer.verdict, answer.goals, set(answer.left_out)) == (Verdict.FOUND, ("high",), {"low", "never"})
+    assert "never" not in answer.undecided
+
+
+def test_what_is_left_out_without_a_proof_is_told_apart() -> None:
+    """Counting to `far` takes more ticks than are looked at, and `dead` can never be."""
+    station = automaton(
+        {"count": Does(start=("n := n + 1",), when="n < 12"), "on": Does(start=("lamp := true",))},
+        estimated={"n": (IntegerRange(0, 12), 0), "dead": OFF},
+        output={"lamp": OFF},
+        goals={"lit": "lamp", "far": "n == 12", "dead": "dead"},
+        priorities={"lit": 1},
+    )
+    answer = ask(station, initial_state(station))
+    assert (answer.verdict, answer.goals) == (Verdict.FOUND, ("lit",))
+    assert (set(answer.left_out), answer.undecided) == ({"far", "dead"}, ("far",))
+    alone = ask(station, initial_state(station), "far")
+    assert (alone.verdict, alone.undecided) == (Verdict.NONE_UP_TO, ("far",))
+    assert ask(station, initial_state(station), "dead").undecided == ()
 
 
 def test_none_at_all_is_said_only_with_a_proof() -> None:

@@ -28,6 +28,7 @@ def document(answer: PlanAnswer, diagnosis: Diagnosis | None) -> dict[str, Any]:
         "contract": None if plan is None else "minimal" if minimal else "fast",
         "goals": answer.goals,
         "left_out": answer.left_out,
+        "undecided": answer.undecided,
         "starts": [] if plan is None else [name for _, name in plan.starts],
         "ticks": len(ticks),
         "schedule": [{"effects": tick.effects, "starts": tick.starts} for tick in ticks],
@@ -93,7 +94,12 @@ def said(answer: PlanAnswer) -> str:
 
 
 def _left_out(answer: PlanAnswer) -> str:
-    return f"; left out: {', '.join(answer.left_out)}" if answer.left_out else ""
+    if not answer.left_out:
+        return ""
+    undecided = [name for name in answer.left_out if name in answer.undecided]
+    excluded = [name for name in answer.left_out if name not in answer.undecided]
+    ruled_out = f"; left out: {', '.join(excluded)}" if excluded else ""
+    return f"{ruled_out}; no plan found in time that reaches {', '.join(undecided)} too" if undecided else ruled_out
 
 
 def said_of_plain(answer: PlainAnswer, goals: Iterable[Goal]) -> str:

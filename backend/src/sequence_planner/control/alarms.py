@@ -15,6 +15,7 @@ from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.plan_reasons import violation
 from sequence_planner.control.view import AlarmView, PlanStatus, Priority, Production
+from sequence_planner.planning.plan import PlanAnswer
 
 
 @dataclass(frozen=True)
@@ -181,17 +182,23 @@ def _plan(execution: Execution, planner_trouble: str | None) -> Iterator[Cause]:
         )
     if execution.plan.status is PlanStatus.NONE and not execution.blind:  # a silent topic has an alarm of its own
         yield Cause("no-plan", Priority.MEDIUM, execution.plan.reason, "See what the active operations need.")
-    elif execution.plan.status is not PlanStatus.NONE and _left_out(execution):
-        text = f"Left out of the plan: {', '.join(_left_out(execution))}"
-        action = "No plan was found that reaches these goals together with the others."
+    elif execution.plan.status is not PlanStatus.NONE and execution.plan.answer is not None:
+        yield from _left_out(execution, execution.plan.answer)
+
+
+def _left_out(execution: Execution, answer: PlanAnswer) -> Iterator[Cause]:
+    """The active operations that the plan does not reach: because it cannot, and because nobody knows."""
+    operations, active = execution.automaton.operations, execution.active
+    undecided = [operations[name].title for name in answer.undecided if name in active]
+    excluded = [operations[name].title for name in answer.left_out if name in active and name not in answer.undecided]
+    if excluded:
+        text = f"Left out of the plan: {', '.join(excluded)}"
+        action = "It is proven that no plan reaches these goals together with the others, as things are."
         yield Cause("left-out", Priority.LOW, text, action)
-
-
-def _left_out(execution: Execution) -> list[str]:
-    """The titles of the active operations that the plan does not reach."""
-    answer = execution.plan.answer
-    left_out = () if answer is None else answer.left_out
-    return [execution.automaton.operations[name].title for name in left_out if name in execution.active]
+    if undecided:
+        text = f"Not in the plan yet: {', '.join(undecided)}"
+        action = "No plan that reaches these goals too was found in time, and none is ruled out; it is tried again."
+        yield Cause("undecided", Priority.LOW, text, action)
 
 
 def _overdue(execution: Execution, reacted: set[int], monotonic: float) -> Iterator[Cause]:

@@ -259,7 +259,8 @@ class LivePlan:
             return False
         asked = frozenset(goal.name for goal in request.goals)
         self.order.requested |= asked
-        self.answer = replace(self.answer, left_out=tuple(sorted(asked - self.order.goals)))
+        left_out = tuple(sorted(asked - self.order.goals))
+        self.answer = replace(self.answer, left_out=left_out, undecided=left_out)
         return True
 
     def _adopt_none(self, present: Present, request: PlanRequest, answer: PlanAnswer) -> bool:

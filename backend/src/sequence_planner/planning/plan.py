@@ -118,8 +118,9 @@ class Proof(Immutable):
 class PlanAnswer(Immutable):
     """An answer. `left_out` are goals that could not be planned together with the others, lowest priority first.
 
-    `searched` is the number of ticks up to which it is proven that there is no shorter plan; `engine` gave the answer,
-    and `seconds` is the time it took.
+    Of these, `undecided` are those of which that is not proven: no plan for them too was found in the time there was,
+    or with so many ticks. `searched` is the number of ticks up to which it is proven that there is no shorter plan;
+    `engine` gave the answer, and `seconds` is the time it took.
     """
 
     verdict: Verdict
@@ -130,6 +131,7 @@ class PlanAnswer(Immutable):
     seconds: float
     engine: str = ""
     proof: Proof | None = None
+    undecided: tuple[str, ...] = ()
 
 
 class WayBackRequest(Immutable):

@@ -54,13 +54,15 @@ class InTurn:
 class _Outcome(Immutable):
     """The last `attempt`, the goals still to be planned, and of these and those left out the `possible` ones.
 
-    `proof` says why a goal that is not among them is none of them.
+    `proof` says why a goal that is not among them is none of them. `undecided` are goals that a plan leaves out, and
+    nothing proves that it must.
     """
 
     possible: Goals
     goals: Goals
     attempt: Attempt
     proof: Proof | None = None
+    undecided: Goals = ()
 
     @property
     def plan(self) -> Plan | None:
@@ -107,6 +109,7 @@ class Planner:
         plan, verdict = self._tightened(outcome, budget), outcome.verdict
         planned = () if plan is None else outcome.goals
         proof = outcome.proof if verdict is Verdict.NONE_AT_ALL else None
+        undecided = outcome.possible if plan is None else outcome.undecided
         return PlanAnswer(
             verdict,
             plan,
@@ -116,6 +119,7 @@ class Planner:
             time.monotonic() - began,
             outcome.attempt.engine if proof is None else proof.by,
             proof,
+            tuple(goal.name for goal in reversed(undecided)),
         )
 
     def _outcome(self, request: PlanRequest, ordered: Goals, budget: Budget) -> _Outcome:
@@ -129,17 +133,25 @@ class Planner:
             if budget.spent:
                 break
             outcome = self._attempted(request, outcome, budget)
-        return self._more(request, outcome, budget) if proven and outcome.plan is not None else outcome
+        if outcome.plan is None:
+            return outcome
+        if proven:
+            return self._more(request, outcome, budget)
+        return replace(outcome, undecided=tuple(goal for goal in outcome.possible if goal not in outcome.goals))
 
     def _more(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
         """With each goal that was left out only because of another one."""
+        undecided: Goals = ()
         for goal in outcome.possible:
-            if goal not in outcome.goals and not budget.spent:
-                goals = tuple(each for each in outcome.possible if each in outcome.goals or each == goal)
-                attempt = self._attempt(request, goals, budget)
-                if attempt.plan is not None:
-                    outcome = replace(outcome, goals=goals, attempt=attempt)
-        return outcome
+            if goal in outcome.goals:
+                continue
+            goals = tuple(each for each in outcome.possible if each in outcome.goals or each == goal)
+            attempt = None if budget.spent else self._attempt(request, goals, budget)
+            if attempt is not None and attempt.plan is not None:
+                outcome = replace(outcome, goals=goals, attempt=attempt)
+            elif attempt is None or attempt.proof is None:
+                undecided += (goal,)
+        return replace(outcome, undecided=undecided)
 
     def _without_unreachable(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
         """What the delete relaxation excludes is looked at only now: most questions have an answer without."""
