@@ -37,8 +37,13 @@ lint: install-test
 typecheck: install-test
 	cd backend && .venv/bin/mypy --strict
 
-pytest: install-test foreign postgresql
-	cd backend && .venv/bin/pytest --junitxml=../.ci/results/pytest.xml
+pytest: pytest-together pytest-alone
+
+pytest-together: install-test postgresql
+	cd backend && .venv/bin/pytest -m 'not alone' -n auto --dist worksteal --junitxml=../.ci/results/pytest.xml
+
+pytest-alone: install-test foreign postgresql
+	cd backend && .venv/bin/pytest -m alone --junitxml=../.ci/results/pytest-alone.xml
 
 svelte-check: frontend/node_modules/done.stamp
 	cd frontend && npm run check
@@ -142,4 +147,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator hall test lint typecheck pytest svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium
+.PHONY: help run emulator hall test lint typecheck pytest pytest-together pytest-alone svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium

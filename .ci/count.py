@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
-SUITES = ("pytest", "vitest", "playwright")
+SUITES = ("pytest", "pytest-alone", "vitest", "playwright")
 
 
 def count(report: Path) -> tuple[int, int, int]:

@@ -1,12 +1,39 @@
-"""Nothing that one run of the tests has kept is believed by the next."""
+"""Which tests run beside others; and nothing that one run of the tests has kept is believed by the next."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 pytest_plugins = ["storage.databases"]
+
+TESTS = Path(__file__).parent
+# What runs a station, or measures how long something takes, would be disturbed by tests beside it.
+ALONE = (
+    "control",
+    "emulation",
+    "foreign",
+    "ros",
+    "rosbridge",
+    "running",
+    "stations",
+    "web",
+    "analysis/test_process.py",
+    "checking/test_speed.py",
+    "core/test_race.py",
+    "pipelines/test_speed.py",
+    "pipelines/test_stage_python.py",
+    "test_tutorial.py",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Mark the tests that run alone."""
+    for item in items:
+        if any(item.path.is_relative_to(TESTS / each) for each in ALONE):
+            item.add_marker(pytest.mark.alone)
 
 
 @pytest.fixture(scope="session", autouse=True)
