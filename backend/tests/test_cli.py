@@ -132,3 +132,12 @@ def test_a_formula_that_is_too_large_to_be_followed(cell: Path, verb: str, tmp_p
     code, out, err = check(cell, verb, *options)
     assert (code, out) == (2, "")
     assert err.startswith(f"{file}:{line}:10: `{formula}` takes more than ")
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no /dev/full")
+@pytest.mark.parametrize("verb", ["check", "show"])
+def test_a_disk_that_is_full_is_said_in_words(cell: Path, verb: str) -> None:
+    with Path("/dev/full").open("w") as full:
+        command = [sys.executable, "-m", "sequence_planner.cli", verb, str(cell)]
+        run = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert (run.returncode, run.stderr) == (2, "what was to be printed cannot be written: no space is left\n")
