@@ -21,6 +21,36 @@ for number in range(30_000):
     log.info("said", number=number)
 print("done", flush=True)
 """
+FAULT = """
+import structlog
+from sequence_planner.logs import configure_logs
+
+configure_logs()
+
+
+def sign_in(password: str) -> None:
+    raise RuntimeError("a fault of the program")
+
+
+try:
+    sign_in("".join(["a long ", "enough one"]))
+except RuntimeError:
+    structlog.get_logger().exception("a request failed")
+"""
+
+TYPED = """
+import structlog
+from sequence_planner.logs import configure_logs
+
+configure_logs()
+log = structlog.get_logger()
+typed = "a" + chr(27) + "[2J" + chr(0) + chr(0x202E)
+log.info("command", reason=typed, subject="a" + chr(10) + "12:00:00_forged", actor={"name": typed})
+try:
+    raise RuntimeError(typed)
+except RuntimeError:
+    log.exception("a request failed", path=typed)
+"""
 
 
 def test_lines_are_written_in_order() -> None:
@@ -59,3 +89,18 @@ def test_a_reader_that_is_gone_or_stopped_does_not_end_the_process() -> None:
         assert process.wait(timeout=20) == 0
         process.stdout.close()
         process.stderr.close()
+
+
+def test_a_fault_is_told_with_its_place_and_without_what_people_sent() -> None:
+    done = subprocess.run([sys.executable, "-c", FAULT], capture_output=True, text=True, timeout=20, check=True)
+    assert "a request failed" in done.stderr
+    assert "in sign_in" in done.stderr
+    assert "RuntimeError: a fault of the program" in done.stderr
+    assert "a long enough one" not in done.stderr
+
+
+def test_what_somebody_typed_steers_no_terminal() -> None:
+    told = subprocess.run([sys.executable, "-c", TYPED], capture_output=True, text=True, timeout=30, check=True).stderr
+    assert all(each.isprintable() for each in told.replace("\n", ""))
+    assert "12:00:00_forged" in told
+    assert not any(line.startswith("12:00:00_forged") for line in told.splitlines())

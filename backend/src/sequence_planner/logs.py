@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import atexit
 import contextlib
+import io
 import os
 import sys
 import threading
@@ -16,6 +17,7 @@ from queue import Full, Queue
 from typing import TextIO, cast
 
 import structlog
+from structlog.typing import EventDict, ExcInfo
 
 STANDARD_ERROR = 2
 MOST_WAITING = 10_000  # lines
@@ -60,6 +62,22 @@ class LineQueue:
             self._waiting.task_done()
 
 
+def _escape_values(logger: object, method: str, event: EventDict) -> EventDict:
+    """What somebody typed steers no terminal and begins no line of its own."""
+    return {name: _escaped(value) if isinstance(value, str) else value for name, value in event.items()}
+
+
+def _write_traceback(out: TextIO, error: ExcInfo) -> None:
+    """In the plain form: the other one shows the values of variables, and so passwords that people sent."""
+    text = io.StringIO()
+    structlog.dev.plain_traceback(text, error)
+    out.write("\n".join(map(_escaped, text.getvalue().split("\n"))))
+
+
+def _escaped(text: str) -> str:
+    return "".join(each if each.isprintable() else each.encode("unicode_escape").decode("ascii") for each in text)
+
+
 def configure_logs() -> None:
     """Write events as time, level, text and its values."""
     lines = LineQueue(STANDARD_ERROR)
@@ -68,7 +86,8 @@ def configure_logs() -> None:
         processors=[
             structlog.processors.TimeStamper(fmt="%H:%M:%S", utc=False),
             structlog.processors.add_log_level,
-            structlog.dev.ConsoleRenderer(colors=sys.stderr.isatty()),
+            _escape_values,
+            structlog.dev.ConsoleRenderer(colors=sys.stderr.isatty(), exception_formatter=_write_traceback),
         ],
         logger_factory=structlog.WriteLoggerFactory(cast(TextIO, lines)),
     )

@@ -149,6 +149,35 @@ def test_a_pause_does_not_wait_for_the_database(database: Database) -> None:
     assert (record.entry.action, record.entry.outcome) == ("set-mode", Outcome.DONE)
 
 
+def test_nothing_that_was_asked_for_before_a_pause_happens_after_it(database: Database) -> None:
+    done: list[str] = []
+
+    async def act(command: Command) -> None:
+        done.append(command.mode if isinstance(command, SetMode) else command.kind)
+
+    async def scenario(recording: Recording) -> None:
+        asked = (
+            SetMode(actor=EVA, mode=Mode.AUTOMATIC),
+            StartProduction(actor=EVA),
+            AcknowledgeTask(actor=ADAM, task="a-1", revision=1),
+        )
+        with database.writing():  # nobody else can write meanwhile
+            waiting = [asyncio.create_task(recording.carry_out(each, nothing, act)) for each in asked]
+            await asyncio.sleep(0)
+            await recording.carry_out(SetMode(actor=ADAM, mode=Mode.PAUSED), nothing, act)
+        for each in waiting[:2]:
+            with pytest.raises(CommandRefused) as refused:
+                await each
+            assert (refused.value.slug, refused.value.status) == ("command-overtaken", 409)
+        await waiting[2]
+        await recording.carry_out(asked[0], nothing, act)
+
+    recorded(database, scenario)
+    assert done == ["paused", "acknowledge-task", "automatic"]
+    outcomes = [record.entry.outcome for record in records(database) if record.entry.action == "start-production"]
+    assert outcomes == [Outcome.REQUESTED, Outcome.REFUSED]
+
+
 def test_an_alarm_says_that_commands_cannot_be_recorded() -> None:
     async def scenario(on: Bench) -> None:
         on.controller.note_unrecorded("database or disk is full")

@@ -56,6 +56,16 @@ def test_passwords_that_may_not_be(password: str, name: str, why: str) -> None:
     assert password not in str(refused.value)
 
 
+@pytest.mark.parametrize("password", ["a\u0308" * 100 + "bcd", "a\u0308b" * 100, "\u1112\u1161\u11ab" * 80 + "abcdef"])
+def test_what_may_be_a_password_opens_with_the_same_characters(passwords: Passwords, password: str) -> None:
+    try:
+        check_password(password, "Eva")
+    except IdentityRefused:
+        assert len(password) > LONGEST
+    else:
+        assert asyncio.run(passwords.verify(asyncio.run(passwords.hash(password)), password))
+
+
 def test_hashes_are_as_the_standard_recommends() -> None:
     passwords = Passwords()
     try:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import pytest
+
 from identity.situations import ADA, AGENT, BOTH, HERE, NOW, add, entries, everything_kept, is_good, signed_in
 from sequence_planner.actor import Actor, ActorKind
 from sequence_planner.identity import sessions
 from sequence_planner.identity.clearing import clear
+from sequence_planner.identity.refusal import IdentityRefused
 from sequence_planner.identity.tables import SESSIONS
 from sequence_planner.storage.database import Database
 
@@ -53,6 +56,14 @@ def test_it_ends_after_an_hour_without_use_and_after_twelve_in_any_case(database
             sessions.seen(connection, opened.session, now)
     assert is_good(database, token, NOW + 12 * HOUR - 1)
     assert not is_good(database, token, NOW + 12 * HOUR)
+
+
+def test_one_of_a_clock_that_was_far_ahead_is_not_good_for_all_time(database: Database) -> None:
+    person = add(database, "Eva")
+    ahead, _ = signed_in(database, person, NOW + 365 * 86400.0)
+    nearly, _ = signed_in(database, person, NOW + 600.0)
+    assert not is_good(database, ahead)
+    assert is_good(database, nearly)
 
 
 def test_use_is_noted_at_most_once_a_minute_and_wakes_nothing_that_is_over(database: Database) -> None:
@@ -129,3 +140,15 @@ def test_what_a_browser_calls_itself_is_kept_as_far_as_it_shows(database: Databa
         )
     assert (len(opened.agent), len(opened.address)) == (200, 200)
     assert opened.agent == "\ufffd" * 200
+
+
+def test_an_act_in_a_session_that_has_ended_since_is_refused(database: Database) -> None:
+    _, opened = signed_in(database, add(database, "Eva"))
+    by = opened.actor(HERE)
+    with database.writing() as connection:
+        sessions.require_live(connection, by, NOW)
+        sessions.require_live(connection, ADA, NOW)  # acts in no session
+        sessions.end_session(connection, opened.session, ADA, NOW)
+        with pytest.raises(IdentityRefused) as refused:
+            sessions.require_live(connection, by, NOW)
+    assert (refused.value.slug, refused.value.status) == ("signed-out", 401)

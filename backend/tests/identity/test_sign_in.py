@@ -118,9 +118,25 @@ def test_nobody_is_told_who_there_is(door: Door) -> None:
         ("wrong-name-or-password", "Not signed in", "The name or the password is wrong.", 401, None)
     }
     recorded = entries(door.database, "sign-in")
-    assert [entry.actor.name for entry in recorded] == ["\ufffd\ufffd", "(nothing)", "Nobody", "Adam", "Eva"]
+    assert [entry.actor.name for entry in recorded] == ["unknown", "unknown", "unknown", "Adam", "Eva"]
     assert {(entry.actor.id, entry.outcome) for entry in recorded} == {("unknown", Outcome.REFUSED)}
     assert {repr(entry.details) for entry in recorded} == {"{'because': 'wrong-name-or-password'}"}
+
+
+def test_what_was_typed_in_place_of_a_name_is_kept_nowhere(door: Door) -> None:
+    add(door.database, "Eva")
+    for _ in range(7):  # also where it has to wait
+        door.refused(PASSWORD, "")
+    for _ in range(7):
+        door.refused(" EVA", "wrong horse battery", address="10.0.0.7")
+    recorded = [(entry.actor.name, entry.details["because"]) for entry in entries(door.database, "sign-in")]
+    for name in ("unknown", "Eva"):
+        assert {because for each, because in recorded if each == name} == {
+            "wrong-name-or-password",
+            "too-many-attempts",
+        }
+    assert {name for name, _ in recorded} == {"unknown", "Eva"}
+    assert PASSWORD not in everything_kept(door.database)
 
 
 @pytest.mark.parametrize("name", ["Adam", "Nobody"])
@@ -140,6 +156,13 @@ def test_the_right_password_after_the_wait(door: Door) -> None:
     assert door.refused("Eva", now=NOW + 59).slug == "too-many-attempts"
     door.entered("Eva", now=NOW + 60)
     assert door.refused("Eva", "wrong horse battery", now=NOW + 60).slug == "wrong-name-or-password"
+
+
+def test_no_name_is_found_by_another_spelling_that_is_counted_apart(door: Door) -> None:
+    add(door.database, "Eva\ufffd")
+    for spelling in ("Eva\0", "Eva\ud800", "Eva\u200b"):
+        door.refused(spelling)
+    door.entered("EVA\ufffd")
 
 
 @BOTH

@@ -24,7 +24,7 @@ def loop() -> Iterator[Loop]:
 def settings(tmp_path: Path) -> Settings:
     page = tmp_path / "page"
     page.mkdir()
-    limits = StreamLimits(queue=8, send_seconds=1.5, clients=10)
+    limits = StreamLimits(queue=8, send_seconds=1.5, clients=10, of_one=6)
     return Settings(
         controller_socket=tmp_path / "controller.sock",
         page=page,

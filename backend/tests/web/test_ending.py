@@ -99,6 +99,24 @@ def test_control_is_taken_from_a_session_that_has_ended_and_from_no_other(
     assert controller.commands[0] == WithdrawControl(actor=SYSTEM, session=signed_in.session)
 
 
+def test_control_is_taken_away_after_whatever_went_wrong_before(server: Server, controller: Controller) -> None:
+    _, signed_in = server.session(server.person())
+    controller.show(example_view(control=control_of(signed_in)))
+    asked: list[None] = []
+
+    def no_clock() -> float:
+        asked.append(None)
+        raise RuntimeError("no clock")
+
+    server.identity.now = no_clock
+    until(lambda: bool(asked))
+    server.identity.now = time.time
+    with server.identity.database.writing() as connection:
+        sessions.end_session(connection, signed_in.session, SYSTEM, time.time())
+    until(lambda: bool(controller.commands))
+    assert controller.commands[0] == WithdrawControl(actor=SYSTEM, session=signed_in.session)
+
+
 def test_a_watch_acknowledges_what_is_asked_of_its_resource_alone(server: Server, controller: Controller) -> None:
     for resource, status in (("operator", 204), ("robot", 403)):
         token, made = watch(server, f"Watch at {resource}", resource=resource)
@@ -111,6 +129,8 @@ def test_a_watch_acknowledges_what_is_asked_of_its_resource_alone(server: Server
             assert controller.commands == [acknowledged]
             gone = httpx.post(address.replace("tasks/7", "tasks/8"), json={"revision": 3}, headers=headers)
             problem(gone, 409, "task-gone")
+            changed = httpx.post(address, json={"revision": 4}, headers=headers)
+            problem(changed, 409, "task-changed")  # by the server itself: it is no command
         else:
             problem(answer, 403, "not-your-task")
     assert len(controller.commands) == 1
@@ -155,6 +175,16 @@ def test_while_the_database_is_away_who_was_there_goes_on_and_nobody_else_comes_
             problem(refused, 503, "storage-unavailable")
         away.rename(away.with_name("station.sqlite"))
         assert other.get("/api/v1/state").status_code == 200
+
+
+def test_what_cannot_be_written_keeps_nobody_from_pausing(server: Server) -> None:
+    token, _ = server.session(server.person())
+    onlooker, _ = server.session(server.person(Role.VIEWER))
+    with server.client(token=token) as browser, server.client(token=onlooker) as other:
+        assert (browser.get("/api/v1/state").status_code, other.get("/api/v1/state").status_code) == (200, 200)
+        take_away(server)
+        problem(other.delete("/api/v1/session"), 503, "storage-unavailable")
+        assert browser.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204
 
 
 def test_nobody_is_remembered_for_long_or_after_signing_out(server: Server) -> None:

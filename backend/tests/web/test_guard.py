@@ -38,6 +38,18 @@ def test_a_request_needs_exactly_one_host(server: Server, headers: bytes) -> Non
         assert raw.recv(4096).split(b"\r\n")[0].split()[1] == b"400"
 
 
+def test_what_two_servers_may_read_differently_is_read_by_none(server: Server) -> None:
+    host = b"Host: 127.0.0.1:%d\r\n" % server.settings.port
+    both = b"Content-Type: application/json\r\nContent-Length: 4\r\nTransfer-Encoding: chunked\r\n"
+    smuggled = b"GET /healthz HTTP/1.1\r\n" + host + b"\r\n"
+    with socket.create_connection(("127.0.0.1", server.settings.port), timeout=5) as raw:
+        raw.sendall(b"POST /api/v1/session HTTP/1.1\r\n" + host + both + b"\r\n2\r\n{}\r\n0\r\n\r\n" + smuggled)
+        answered = b"".join(iter(lambda: raw.recv(4096), b""))
+    assert answered.startswith(b"HTTP/1.1 400 ")
+    assert b"/problems/two-lengths" in answered
+    assert answered.count(b"HTTP/1.1 ") == 1
+
+
 @pytest.mark.parametrize(
     "headers",
     [

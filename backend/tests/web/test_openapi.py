@@ -32,18 +32,30 @@ def test_the_stream_is_described(described: dict[str, Any]) -> None:
 
 
 def test_every_reference_leads_somewhere(described: dict[str, Any]) -> None:
-    schemas = described["components"]["schemas"]
     for part in document().split('"$ref": "')[1:]:
-        assert part.partition('"')[0].rpartition("/")[2] in schemas
+        _, _, kind, name = part.partition('"')[0].split("/")
+        assert name in described["components"][kind]
 
 
 def test_every_refusal_is_described_as_a_problem(described: dict[str, Any]) -> None:
     for path, verbs in described["paths"].items():
         for verb, operation in verbs.items():
             for status, answer in operation["responses"].items():
+                if "$ref" in answer:
+                    answer = described["components"]["responses"][answer["$ref"].rpartition("/")[2]]
                 if not status.startswith("2"):
                     assert answer["content"].keys() == {"application/problem+json"}, (path, verb, status)
             assert "default" in operation["responses"]
+
+
+def test_each_operation_says_with_which_status_it_refuses(described: dict[str, Any]) -> None:
+    paths = described["paths"]
+    assert paths["/healthz"]["get"]["responses"].keys() == {"200", "default"}
+    assert paths["/api/v1/tasks"]["get"]["responses"].keys() == {"200", "401", "403", "503", "default"}
+    change = paths["/api/v1/people/{person}"]["patch"]["responses"]
+    assert {"401", "403", "404", "409", "412", "415", "422", "428"} < change.keys()
+    assert list(change["200"]["headers"]) == ["ETag"]
+    assert list(described["components"]["responses"]["Problem429"]["headers"]) == ["Retry-After"]
 
 
 def test_the_printed_document_is_the_served_one_and_always_the_same(client: httpx.Client) -> None:

@@ -12,6 +12,8 @@ from sqlalchemy import select
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
+from sequence_planner.actor import SYSTEM
+from sequence_planner.identity import people
 from sequence_planner.identity.roles import Role
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Record
@@ -260,3 +262,21 @@ def test_who_is_not_there_is_not_changed(administrator: httpx.Client) -> None:
 
 def test_a_form_is_not_read(administrator: httpx.Client) -> None:
     problem(administrator.post(PEOPLE, data={"name": "Eva"}), 415, "not-json")
+
+
+def test_who_is_disabled_while_a_hash_is_made_has_done_nothing(
+    server: Server, administrator: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    outcast = server.person(Role.ADMINISTRATOR)
+    passwords, database = server.identity.passwords, server.identity.database
+    hashed_by = passwords.hash
+
+    async def hash_meanwhile(password: str) -> str:
+        with database.writing() as connection:
+            people.change(connection, outcast.id, outcast.revision, SYSTEM, time.time(), disabled=True)
+        return await hashed_by(password)
+
+    monkeypatch.setattr(passwords, "hash", hash_meanwhile)
+    with server.client(token=server.session(outcast)[0]) as browser:
+        problem(browser.post(PEOPLE, json=BODY | {"role": "administrator"}), 401, "signed-out")
+    assert "Eva Lund" not in listed(administrator)

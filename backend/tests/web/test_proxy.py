@@ -48,7 +48,7 @@ def tried_from(proxied: Server, headers: dict[str, str], name: str) -> str:
         problem(browser.post("/api/v1/session", json=body), 401, "wrong-name-or-password")
     with connected_from(PROXY, proxied, FORWARDED | signed_in(proxied)) as browser:
         (record, *_) = browser.get("/api/v1/audit", params={"action": "sign-in"}).json()["records"]
-    assert record["entry"]["actor"]["name"] == name
+    assert (record["entry"]["actor"]["name"], record["entry"]["outcome"]) == ("unknown", "refused")
     address: str = record["entry"]["actor"]["address"]
     return address
 

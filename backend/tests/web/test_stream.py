@@ -210,6 +210,19 @@ def test_a_slow_client_that_catches_up_goes_on_from_a_fresh_snapshot(server: Ser
         assert document["plan"]["reason"].startswith("19 ")
 
 
+def test_nobody_takes_the_places_of_all_others(server: Server) -> None:
+    greedy = server.cookie(server.session(server.person())[0])
+    with ExitStack() as stack:
+        for _ in range(server.settings.stream.of_one):
+            hear(stack.enter_context(listen(server, headers=greedy)))
+        with pytest.raises(ConnectionClosed) as closed:
+            stack.enter_context(listen(server, headers=greedy)).recv(2)
+        assert closed.value.rcvd is not None
+        assert closed.value.rcvd.code == 1013
+        hear(stack.enter_context(listen(server)))
+    until(lambda: not server.app.state.streams)
+
+
 def test_too_many_clients_are_told_to_come_later(server: Server) -> None:
     with ExitStack() as streams:
         for _ in range(server.settings.stream.clients):

@@ -56,7 +56,7 @@ def test_a_watch_acknowledges_its_own_tasks_alone_and_by_its_own_name(
     problem(refused, 403, "not-your-task")
     assert "nspector" not in refused.text
     problem(device.acknowledge("9"), 409, "task-gone")
-    problem(device.acknowledge(OWN, revision=2), 409, "task-gone")
+    problem(device.acknowledge(OWN, revision=2), 409, "task-changed")
     problem(device.post(f"/api/v1/tasks/{OWN}/acknowledgement", json={}), 422, "invalid-request")
     assert controller.commands == []
     assert device.acknowledge(OWN).status_code == 204

@@ -2,6 +2,7 @@
 
 A command that cannot be recorded is refused, and an alarm says why. What only ever stops devices is the exception: it
 is carried out first and recorded then, because neither a full nor a slow disk must keep anybody from pausing a station.
+What moves devices and waits for its record meanwhile is void: nothing goes on after a pause because of an older word.
 """
 
 from __future__ import annotations
@@ -33,6 +34,7 @@ class Recording:
         # One thread, so that records come in the order in which commands were given; ticks go on meanwhile.
         self._thread = ThreadPoolExecutor(1, "recording")
         self._late: set[asyncio.Task[int | None]] = set()
+        self._pauses = 0  # so far
 
     async def close(self) -> None:
         """Write what is under way, then end."""
@@ -45,10 +47,11 @@ class Recording:
         """Record the command, let `act` carry it out, and record what became of it.
 
         `tasks` are the open ones, for what an acknowledgement is about. Raises what `act` raises, and `CommandRefused`
-        when the command cannot be recorded.
+        when the command cannot be recorded, or somebody has paused the station before it was.
         """
-        entry = _entry(command, tasks)
+        entry, pauses = _entry(command, tasks), self._pauses
         if command.harmless:
+            self._pauses += 1
             await act(command)
             late = asyncio.create_task(self._record(_end(entry, None, Outcome.DONE)))
             self._late.add(late)
@@ -59,6 +62,8 @@ class Recording:
             detail = "What cannot be recorded is not done. See the alarms for the cause; pausing is possible."
             raise CommandRefused("not-recorded", "The command cannot be recorded", detail, 503)
         try:
+            if command.needs_control and self._pauses != pauses:
+                raise _overtaken()
             await act(command)
         except CommandRefused as refused:
             await self._record(_end(entry, number, Outcome.REFUSED, refused.slug))
@@ -107,6 +112,11 @@ def _entry(command: Command, tasks: Callable[[], dict[str, TaskView]]) -> Entry:
 def _end(entry: Entry, number: int | None, outcome: Outcome, because: str | None = None) -> Entry:
     details = entry.details if because is None else {**entry.details, "because": because}
     return entry.model_copy(update={"outcome": outcome, "about": number, "details": details})
+
+
+def _overtaken() -> CommandRefused:
+    detail = "Somebody paused the station before this could be carried out. Look at the station, then try again."
+    return CommandRefused("command-overtaken", "The station was paused meanwhile", detail)
 
 
 def _why(error: Exception) -> str:

@@ -13,6 +13,7 @@ import unicodedata
 from sequence_planner.identity.refusal import IdentityRefused
 
 LONGEST_NAME = 100  # characters
+UNKNOWN = "unknown"  # who tried a name that nobody has
 _MOST_MARKS = 3  # combining marks on one letter; no living script puts more there
 _UNFIT = frozenset({"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"})  # control, invisible, half, private or unknown ones
 _BLANK = frozenset("\u034f\u115f\u1160\u17b4\u17b5\u2800\u3164\uffa0") | {chr(at) for at in range(0xFE00, 0xFE10)}
@@ -53,12 +54,6 @@ def name_shape(name: str) -> str:
     """What a name looks like at a glance: letters that look alike are one, and marks and punctuation do not count."""
     bare = "".join(each for each in unicodedata.normalize("NFKD", name) if unicodedata.category(each)[0] != "M")
     return "".join(each for each in bare.translate(_ALIKE).casefold().translate(_ALIKE) if each.isalnum())
-
-
-def as_typed(text: str) -> str:
-    """A name that anybody may have sent, fit for the journal: at most 100 characters, each of which shows."""
-    shown = short(text, LONGEST_NAME)
-    return shown if shown.strip() else "(nothing)"
 
 
 def short(text: str, most: int = 200) -> str:

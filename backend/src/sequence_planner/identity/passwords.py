@@ -38,7 +38,7 @@ def check_password(password: str, name: str) -> None:
     """
     text, key = unicodedata.normalize("NFKC", password), name_key(name)
     folded = name_key(password)
-    if not SHORTEST <= len(text) <= LONGEST:
+    if len(text) < SHORTEST or max(len(text), len(password)) > LONGEST:
         raise _weak(f"it has to have {SHORTEST} to {LONGEST} characters")
     if len(set(folded)) == 1:
         raise _weak("it is one character over and over")

@@ -7,7 +7,7 @@ from sqlalchemy import Connection, Row, delete, func, insert, select, update
 
 from sequence_planner.actor import SYSTEM, Actor
 from sequence_planner.identity.attempts import forget
-from sequence_planner.identity.names import clean_name, name_key, name_shape, short
+from sequence_planner.identity.names import UNKNOWN, clean_name, name_key, name_shape, short
 from sequence_planner.identity.recording import record
 from sequence_planner.identity.refusal import IdentityRefused
 from sequence_planner.identity.roles import Role
@@ -44,7 +44,7 @@ DEMONSTRATOR = Person(
 """Whoever sits at a demonstration: no person of the database, without a password, and not an administrator."""
 
 _PARTS = [PEOPLE.c[name] for name in Person.model_fields]
-_RESERVED = {name_shape(DEMONSTRATOR.name), name_shape(SYSTEM.name)}
+_RESERVED = {name_shape(name) for name in (DEMONSTRATOR.name, SYSTEM.name, UNKNOWN)}
 
 
 def create(
@@ -190,7 +190,9 @@ def _administers(person: Person) -> bool:
 
 
 def _with_name(connection: Connection, name: str) -> Row[tuple[object, ...]] | None:
-    key = short(name_key(name), LONGEST_KEY)  # no database takes each character that can be typed
+    key = name_key(name)
+    if key != short(key, LONGEST_KEY):  # nobody's: and no database takes each character that can be typed
+        return None
     return connection.execute(select(PEOPLE).where(PEOPLE.c.name_key == key)).first()
 
 

@@ -13,6 +13,7 @@ from sequence_planner.actor import Actor, ActorKind
 from sequence_planner.identity.names import short
 from sequence_planner.identity.people import DEMONSTRATOR, Person, known
 from sequence_planner.identity.recording import record
+from sequence_planner.identity.refusal import IdentityRefused
 from sequence_planner.identity.tables import PEOPLE, SESSIONS
 from sequence_planner.identity.tokens import hash_of, new_id, new_token
 
@@ -91,6 +92,15 @@ def find_live(connection: Connection, session: str, now: float) -> SignedIn | No
     return None if row is None else _signed_in(row)
 
 
+def require_live(connection: Connection, by: Actor, now: float) -> None:
+    """Raises `IdentityRefused` (`signed-out`, 401) when `by` acts in a session that has ended since it was let in.
+
+    As a session ends with the rights it had, whoever asks this in the transaction of an act cannot be too late.
+    """
+    if by.session is not None and find_live(connection, by.session, now) is None:
+        raise IdentityRefused("signed-out", "Signed out", "Your session has ended: sign in again.", 401)
+
+
 def seen(connection: Connection, session: str, now: float) -> None:
     """Note that a session is in use, by a request or an open stream; written at most once a minute."""
     due = (SESSIONS.c.id == session) & (SESSIONS.c.last_seen <= now - NOTED_EVERY) & live(now)
@@ -136,8 +146,12 @@ def live_counts(connection: Connection, now: float) -> dict[str, int]:
 
 
 def live(now: float) -> ColumnElement[bool]:
-    """Rows of sessions that have not expired."""
-    return (SESSIONS.c.expires > now) & (SESSIONS.c.last_seen > now - LONGEST_IDLE)
+    """Rows of sessions that have not expired.
+
+    One that has yet to begin is of another time, as when the clock was far ahead: it would never end.
+    """
+    begun = SESSIONS.c.created <= now + LONGEST_IDLE
+    return begun & (SESSIONS.c.expires > now) & (SESSIONS.c.last_seen > now - LONGEST_IDLE)
 
 
 def _make_room(connection: Connection, owner: str | None) -> None:

@@ -12,12 +12,12 @@ from sequence_planner.identity import attempts
 from sequence_planner.identity.attempts import Counter, Kind
 from sequence_planner.identity.clearing import clear
 from sequence_planner.identity.limited import Limited
-from sequence_planner.identity.names import as_typed, short
+from sequence_planner.identity.names import UNKNOWN, short
 from sequence_planner.identity.passwords import Passwords, check_password
-from sequence_planner.identity.people import Person, find_password, renew_hash, replace_password
+from sequence_planner.identity.people import Person, find_by_name, find_password, renew_hash, replace_password
 from sequence_planner.identity.recording import record
 from sequence_planner.identity.refusal import IdentityRefused
-from sequence_planner.identity.sessions import SignedIn, end_session_of_token, find_live, open_session
+from sequence_planner.identity.sessions import SignedIn, end_session_of_token, open_session, require_live
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
 from sequence_planner.storage.database import Database
@@ -27,9 +27,9 @@ SIGN_IN, PASSWORD_CHANGED = "sign-in", "password-changed"
 
 @dataclass(frozen=True)
 class _Attempt:
-    """Somebody tries the password of a name."""
+    """Somebody tries the password of a name; `actor` is who is signed in already."""
 
-    actor: Actor
+    actor: Actor | None
     action: str
     name: str
     address: str
@@ -39,8 +39,15 @@ class _Attempt:
     def counters(self) -> tuple[Counter, ...]:
         return (attempts.of_address(Kind.ADDRESS, self.address), attempts.of_name(self.name))
 
-    def refused(self, because: str) -> Entry:
-        return Entry(actor=self.actor, action=self.action, outcome=Outcome.REFUSED, details={"because": because})
+    def refused(self, because: str, tried: Person | None) -> Entry:
+        """What to record where the name is that of `tried`.
+
+        A name that nobody has may be a password that was typed in the wrong place: nothing of it is told.
+        """
+        name = UNKNOWN if tried is None else tried.name
+        stranger = Actor(kind=ActorKind.PERSON, id="unknown", name=name, address=short(self.address))
+        actor = self.actor or stranger
+        return Entry(actor=actor, action=self.action, outcome=Outcome.REFUSED, details={"because": because})
 
 
 @dataclass(frozen=True)
@@ -70,9 +77,7 @@ class SignIn:
 
         Raises `IdentityRefused`: `wrong-name-or-password` (401), `too-many-attempts` (429), `busy` (503).
         """
-        typed = as_typed(name)
-        stranger = Actor(kind=ActorKind.PERSON, id="unknown", name=typed, address=short(address))
-        attempt = _Attempt(stranger, SIGN_IN, name, address, now)
+        attempt = _Attempt(None, SIGN_IN, name, address, now)
         with self._passwords.place():
             known = await asyncio.to_thread(self._admit, attempt)
             right = await self._passwords.verify_in_place(known.password_hash if known else None, password)
@@ -82,7 +87,7 @@ class SignIn:
             entered = await asyncio.to_thread(self._enter, attempt, known, newer, agent, before)
         else:
             entered = None
-            await asyncio.to_thread(self._record, attempt)
+            await asyncio.to_thread(self._record, attempt, known)
         if entered is None:
             detail = "The name or the password is wrong."
             raise IdentityRefused("wrong-name-or-password", "Not signed in", detail, 401)
@@ -110,7 +115,7 @@ class SignIn:
             right = await self._passwords.verify_in_place(known.password_hash if known else None, old)
             hashed = await self._passwords.hash_in_place(new) if right else None
         if known is None or hashed is None:
-            await asyncio.to_thread(self._record, attempt)
+            await asyncio.to_thread(self._record, attempt, known)
             raise IdentityRefused("wrong-password", "Wrong password", "The old password is wrong.", 403)
         return await asyncio.to_thread(self._replace, attempt, known, hashed, signed_in, agent)
 
@@ -122,6 +127,7 @@ class SignIn:
         """Count an attempt, unless too many were made already; and find whose password is tried."""
         with self._database.reading() as connection:
             waiting = attempts.waiting(connection, attempt.counters, attempt.now)
+            tried = find_by_name(connection, attempt.name)
         if waiting is None:
             with self._database.writing() as connection:
                 self._tell_limited(connection, attempt.now)
@@ -131,7 +137,7 @@ class SignIn:
                     attempts.count(connection, attempt.counters, attempt.now)
                     found = find_password(connection, attempt.name)
                     return None if found is None else _Known(*found)
-        self._limited.note(waiting.counter, attempt.refused("too-many-attempts"), attempt.now)
+        self._limited.note(waiting.counter, attempt.refused("too-many-attempts", tried), attempt.now)
         if self._limited.due(attempt.now):
             with self._database.writing() as connection:
                 self._tell_limited(connection, attempt.now)
@@ -141,10 +147,11 @@ class SignIn:
         for entry in self._limited.take(now):
             append(connection, entry, now)
 
-    def _record(self, attempt: _Attempt) -> None:
+    def _record(self, attempt: _Attempt, known: _Known | None) -> None:
         """Write that the password was wrong."""
+        tried = None if known is None else known.person
         with self._database.writing() as connection:
-            append(connection, attempt.refused("wrong-name-or-password"), attempt.now)
+            append(connection, attempt.refused("wrong-name-or-password", tried), attempt.now)
 
     def _enter(
         self, attempt: _Attempt, known: _Known, newer: str | None, agent: str, before: str | None
@@ -153,7 +160,7 @@ class SignIn:
         with self._database.writing() as connection:
             found = find_password(connection, attempt.name)
             if found is None or found[1] != known.password_hash or found[0].disabled:
-                append(connection, attempt.refused("wrong-name-or-password"), attempt.now)
+                append(connection, attempt.refused("wrong-name-or-password", known.person), attempt.now)
                 return None
             person = found[0]
             attempts.forgive(connection, attempt.counters)
@@ -172,12 +179,9 @@ class SignIn:
         self, attempt: _Attempt, known: _Known, hashed: str, signed_in: SignedIn, agent: str
     ) -> tuple[str, SignedIn]:
         with self._database.writing() as connection:
-            found = find_password(connection, attempt.name)
-            live = find_live(connection, signed_in.session, attempt.now)
-            if found is None or found[1] != known.password_hash or live is None:
-                raise IdentityRefused("signed-out", "Signed out", "Your session has ended: sign in again.", 401)
+            require_live(connection, signed_in.actor(attempt.address), attempt.now)
             attempts.forgive(connection, attempt.counters)
-            person = replace_password(connection, found[0], hashed, temporary=False)
+            person = replace_password(connection, known.person, hashed, temporary=False)
             token, opened = open_session(
                 connection, person, attempt.now, kind=ActorKind.PERSON, address=attempt.address, agent=agent
             )

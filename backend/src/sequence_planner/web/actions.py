@@ -18,14 +18,14 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.identity.watches import Watch
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason
-from sequence_planner.web.problems import ProblemFound
+from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, live_view
 
 LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader keeps
 OPERATOR = allowed(Role.OPERATOR)
 
-router = APIRouter(tags=["actions"], dependencies=[JSON_ONLY])
-bodiless = APIRouter(tags=["actions"])
+router = APIRouter(tags=["actions"], dependencies=[JSON_ONLY], responses=refused(409, 504))
+bodiless = APIRouter(tags=["actions"], responses=refused(409, 504))
 Name = Annotated[str, Path(max_length=200)]
 
 
@@ -77,20 +77,23 @@ async def acknowledge(
 ) -> None:
     """Say that a task is done; refused when the task or its revision is gone, or a watch is not for its resource."""
     if request.state.watch is not None:
-        await _check_own(request.state.watch, task, client)
+        await _check_own(request.state.watch, task, body.revision, client)
     await client.send(AcknowledgeTask(actor=actor, task=task, revision=body.revision))
 
 
-async def _check_own(watch: Watch, task: str, client: Controller) -> None:
+async def _check_own(watch: Watch, task: str, revision: int, client: Controller) -> None:
+    """Refuse what is not asked of this watch now. A watch cannot fill the journal with what is refused."""
     found = (await live_view(client)).tasks.get(task)
     if found is None:
         raise ProblemFound(409, "task-gone", "The task is gone", "Look at what is asked for now.")
     if found.resource != watch.resource:
         detail = f"{watch.name} is for the tasks of {watch.resource}, and this is none of them."
         raise ProblemFound(403, "not-your-task", "The task is somebody else's", detail)
+    if found.revision != revision:
+        raise ProblemFound(409, "task-changed", "The task has changed", "Look at what is asked for now.")
 
 
-@router.put("/overrides/{name}", status_code=204, dependencies=[OPERATOR])
+@router.put("/overrides/{name}", status_code=204, dependencies=[OPERATOR], responses=refused(404))
 async def set_override(name: Name, body: OverrideBody, client: Controller, actor: Actor) -> None:
     """Set fields of an override, such as `ur10.speed`, within the bounds of the model; they expire as it says.
 
@@ -99,7 +102,7 @@ async def set_override(name: Name, body: OverrideBody, client: Controller, actor
     await client.send(SetOverride(actor=actor, name=name, fields=body.fields, reason=body.reason))
 
 
-@bodiless.delete("/overrides/{name}", status_code=204, dependencies=[OPERATOR])
+@bodiless.delete("/overrides/{name}", status_code=204, dependencies=[OPERATOR], responses=refused(404))
 async def clear_override(name: Name, client: Controller, actor: Actor) -> None:
     """Take back what is set, if anything is. It takes control."""
     await client.send(ClearOverride(actor=actor, name=name))

@@ -7,6 +7,7 @@ are any, the guard, and then the route for its address; what no route knows is a
 from __future__ import annotations
 
 import asyncio
+from collections import Counter
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
@@ -40,7 +41,8 @@ from sequence_planner.web.forwarded import Forwarded
 from sequence_planner.web.guard import Guard
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.looking import FlowsShow, NetworkShow
-from sequence_planner.web.openapi_document import PROBLEM_RESPONSES, describe
+from sequence_planner.web.openapi_document import describe
+from sequence_planner.web.openapi_refusals import PROBLEM_RESPONSES
 from sequence_planner.web.problems import LastResort
 from sequence_planner.web.security_headers import SecurityHeaders
 from sequence_planner.web.settings import Settings
@@ -119,6 +121,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     app.state.controller = controller
     app.state.broadcast, app.state.watch_show = broadcast, watch_show
     app.state.network_show, app.state.flows_show = network, flows
+    app.state.streams = Counter()  # how many each person, key and watch has open, by id
     app.state.settings, app.state.attaching = settings, asyncio.Lock()
     problems.install(app)
     api = APIRouter(prefix=PREFIX)

@@ -16,13 +16,14 @@ from typing import Annotated, Any, Literal
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
+from sequence_planner.actor import Actor as Acting
 from sequence_planner.analysis.document import FindingDocument
 from sequence_planner.identity.roles import Role
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
 from sequence_planner.web.access import allowed
 from sequence_planner.web.identity import IdentityOffice
-from sequence_planner.web.problems import ProblemFound
+from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
 from sequence_planner.web.settings import Settings
 
@@ -60,7 +61,7 @@ class AttachmentAnswer(BaseModel):
     findings: list[FindingDocument]
 
 
-@router.post("/attachments")
+@router.post("/attachments", responses=refused(404, 409, 504))
 async def attach(body: AttachmentBody, request: Request, identity: Identity, actor: Actor) -> AttachmentAnswer:
     """Enter a topic that is on the network into the station's model; what runs does not change before a restart.
 
@@ -76,7 +77,7 @@ async def attach(body: AttachmentBody, request: Request, identity: Identity, act
             return _told(await _run(_arguments(settings.model, settings.transport, body)))
         details: dict[str, JsonValue] = {"resource": body.resource, "direction": body.direction}
         entry = Entry(actor=actor, action="attach-topic", subject=f"topic {body.topic}", details=details)
-        asked = await _record(identity, entry.model_copy(update={"outcome": Outcome.REQUESTED}))
+        asked = await _record(identity, entry.model_copy(update={"outcome": Outcome.REQUESTED}), by=actor)
         outcome = Outcome.FAILED
         try:
             answer = await _run(_arguments(settings.model, settings.transport, body))
@@ -86,10 +87,10 @@ async def attach(body: AttachmentBody, request: Request, identity: Identity, act
     return _told(answer)
 
 
-async def _record(identity: IdentityOffice, entry: Entry) -> int:
-    """Write an entry; its number."""
+async def _record(identity: IdentityOffice, entry: Entry, *, by: Acting | None = None) -> int:
+    """Write an entry, if `by` still may act; its number."""
     now = identity.now()
-    record = await identity.write(lambda connection: append(connection, entry, now))
+    record = await identity.write(lambda connection: append(connection, entry, now), by=by)
     return record.number
 
 

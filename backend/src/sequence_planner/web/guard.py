@@ -36,11 +36,13 @@ class Guard:
             await self.app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        refused = self._host(scope, headers) or self._origin(scope, headers) or _announced_length(headers)
+        refused = _framing(headers) or self._host(scope, headers) or self._origin(scope, headers) or _length(headers)
         if refused is None:
             await self.app(scope, _bounded(receive), send)
             return
-        response = problem_response(refused.status_code, refused.slug, refused.title, refused.detail)
+        response = problem_response(
+            refused.status_code, refused.slug, refused.title, refused.detail, headers=refused.headers
+        )
         # Starlette turns the answer to a handshake into the messages of the "websocket.http.response" extension.
         await response(scope, receive, send)
 
@@ -64,7 +66,18 @@ class Guard:
         return None
 
 
-def _announced_length(headers: Headers) -> ProblemFound | None:
+def _framing(headers: Headers) -> ProblemFound | None:
+    """Refuse what a proxy may take for two requests and this server for one, or the other way round.
+
+    The connection is closed, so that nothing that follows is read as a request (RFC 9112, 6.1).
+    """
+    if "content-length" not in headers or "transfer-encoding" not in headers:
+        return None
+    detail = "Send either Content-Length or Transfer-Encoding, not both."
+    return ProblemFound(400, "two-lengths", "The length is said twice", detail, {"Connection": "close"})
+
+
+def _length(headers: Headers) -> ProblemFound | None:
     announced = headers.get("content-length", "0")
     return _too_large() if announced.isdecimal() and int(announced) > LARGEST_BODY else None
 

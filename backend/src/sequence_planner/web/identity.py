@@ -16,6 +16,7 @@ from anyio import to_thread
 from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
 
+from sequence_planner.actor import Actor
 from sequence_planner.identity import keys, sessions, watches
 from sequence_planner.identity.passwords import Passwords
 from sequence_planner.identity.sign_in import SignIn
@@ -77,12 +78,21 @@ class IdentityOffice:
 
         return await to_thread.run_sync(inside, abandon_on_cancel=True)
 
-    async def write(self, work: Callable[[Connection], T]) -> T:
-        """What `work` gives; what it wrote is durable then, or not written at all. Raises as `read` does."""
-        try:
-            return await self._write(work)
-        finally:
-            self.forget()
+    async def write(self, work: Callable[[Connection], T], *, by: Actor | None = None) -> T:
+        """What `work` gives; what it wrote is durable then, or not written at all. Raises as `read` does.
+
+        Nothing is written, and `IdentityRefused` (`signed-out`, 401) raised, when the session in which `by` acts has
+        ended since the request was let in: it may have waited for a hash, or behind others.
+        """
+
+        def checked(connection: Connection) -> T:
+            if by is not None:
+                sessions.require_live(connection, by, self.now())
+            return work(connection)
+
+        done = await self._write(checked)
+        self.forget()  # only now: where nothing could be written, who was found lately is still needed
+        return done
 
     def forget(self) -> None:
         """Ask the database again who everybody is: something has changed."""

@@ -12,6 +12,7 @@ from sequence_planner.identity.keys import LONGEST_LIFE, Key
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Identifier, Name
+from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR)
@@ -42,7 +43,7 @@ class KeyBody(Body):
     """A new key: what its bearer may do, and for how many days."""
 
     name: Name
-    scopes: Annotated[frozenset[Scope], Field(min_length=1)]
+    scopes: Annotated[list[Scope], Field(min_length=1)]
     days: Annotated[StrictInt, Field(ge=1, le=LONGEST_LIFE)]
 
 
@@ -64,16 +65,17 @@ async def make(body: KeyBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
     """Make a key. Its secret is answered this once: only a hash of it is kept."""
     now = identity.now()
     secret, key = await identity.write(
-        lambda connection: keys.make_key(connection, body.name, body.scopes, body.days, actor, now)
+        lambda connection: keys.make_key(connection, body.name, frozenset(body.scopes), body.days, actor, now),
+        by=actor,
     )
     return NewKeyAnswer(key=_answered(key), secret=secret)
 
 
-@bodiless.delete("/{key}", status_code=204)
+@bodiless.delete("/{key}", status_code=204, responses=refused(404))
 async def revoke(key: Identifier, identity: Identity, actor: Actor) -> None:
     """Revoke a key: whoever bears it is refused from now on."""
     now = identity.now()
-    await identity.write(lambda connection: keys.revoke_key(connection, key, actor, now))
+    await identity.write(lambda connection: keys.revoke_key(connection, key, actor, now), by=actor)
 
 
 def _answered(key: Key) -> KeyAnswer:

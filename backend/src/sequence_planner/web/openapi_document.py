@@ -19,20 +19,12 @@ from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import Access, allowed, declared
 from sequence_planner.web.cookies import NAME, SESSION_COOKIE, WATCH_COOKIE
 from sequence_planner.web.looking_messages import FlowsStreamMessage, NetworkStreamMessage
-from sequence_planner.web.problems import MEDIA_TYPE, Problem
+from sequence_planner.web.openapi_refusals import describe_refusals
+from sequence_planner.web.problems import Problem
 from sequence_planner.web.stream_messages import ClientMessage, StreamMessage
 from sequence_planner.web.watch_messages import WatchStreamMessage
 
 REFERENCE = "#/components/schemas/{model}"
-PROBLEM_RESPONSES: dict[int | str, dict[str, Any]] = {
-    status: {
-        "description": "A problem",
-        "content": {MEDIA_TYPE: {"schema": {"$ref": REFERENCE.format(model="Problem")}}},
-    }
-    for status in ("default", 422)  # 422 too, or FastAPI describes one of its own there
-}
-
-
 ON_THE_LOOPBACK = "Over plain HTTP, on the loopback alone, it is called `{name}-` and the server's port."
 SCHEMES = {
     "session": {
@@ -81,7 +73,9 @@ def describe(app: FastAPI) -> dict[str, Any]:
         operations = document["paths"].get(route.path_format, {})
         for method in route.methods or ():
             if method.lower() in operations:
-                operations[method.lower()].update(_who(declared(route)))
+                operation, access = operations[method.lower()], declared(route)
+                operation.update(_who(access))
+                describe_refusals(components, operation, method, access)
     return document
 
 

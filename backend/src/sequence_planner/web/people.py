@@ -5,27 +5,39 @@ A change names the revision that was seen (`If-Match`), so that nobody overwrite
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Response
-from pydantic import BaseModel, Field, model_validator
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from sqlalchemy import Connection
 
 from sequence_planner.identity import people
 from sequence_planner.identity.passwords import LONGEST as LONGEST_PASSWORD
+from sequence_planner.identity.passwords import SHORTEST as SHORTEST_PASSWORD
 from sequence_planner.identity.passwords import check_password
 from sequence_planner.identity.people import Person
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.sessions import end_sessions_of, live_counts
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Identifier, Name
-from sequence_planner.web.problems import ProblemFound
+from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR)
 bodiless = APIRouter(prefix="/people", tags=["people"], dependencies=[ADMINISTRATOR])
 router = APIRouter(prefix="/people", tags=["people"], dependencies=[ADMINISTRATOR, JSON_ONLY])
-Password = Annotated[str, Field(min_length=1, max_length=LONGEST_PASSWORD)]
+# What is too short is told, but refused by `check_password`, in its words.
+TOLD = {"minLength": SHORTEST_PASSWORD}
+Password = Annotated[str, Field(min_length=1, max_length=LONGEST_PASSWORD, json_schema_extra=TOLD)]
+TAGGED: dict[str, Any] = {
+    "headers": {
+        "ETag": {
+            "description": "The revision, as `If-Match` has to name it.",
+            "required": True,
+            "schema": {"type": "string", "pattern": '^"[0-9]{1,9}"$'},
+        }
+    }
+}
 Condition = Annotated[str | None, Header(pattern=r'^"[0-9]{1,9}"$')]
 
 
@@ -62,6 +74,7 @@ class PersonBody(Body):
 class PersonChangeBody(Body):
     """What is to change; what is left out stays as it is."""
 
+    model_config = ConfigDict(json_schema_extra={"minProperties": 1})
     role: Role | None = None
     disabled: bool | None = None
 
@@ -90,7 +103,7 @@ async def everybody(identity: Identity) -> PeopleAnswer:
     return PeopleAnswer(people=await identity.read(read))
 
 
-@router.post("", status_code=201)
+@router.post("", status_code=201, responses={201: TAGGED, **refused(409)})
 async def create(body: PersonBody, identity: Identity, actor: Actor, response: Response) -> PersonAnswer:
     """Enter a person, who signs in with the temporary password and then has to choose another."""
     check_password(body.password, body.name)
@@ -101,10 +114,10 @@ async def create(body: PersonBody, identity: Identity, actor: Actor, response: R
         person = people.create(connection, body.name, body.role, hashed, actor, now, temporary=True)
         return _answered(person, {})
 
-    return _with_tag(response, await identity.write(write))
+    return _with_tag(response, await identity.write(write, by=actor))
 
 
-@router.patch("/{person}")
+@router.patch("/{person}", responses={200: TAGGED, **refused(404, 409, 412, 428)})
 async def change(
     person: Identifier,
     body: PersonChangeBody,
@@ -127,24 +140,28 @@ async def change(
         changed = people.change(connection, person, revision, actor, now, role=body.role, disabled=body.disabled)
         return _answered(changed, live_counts(connection, now))
 
-    return _with_tag(response, await identity.write(write))
+    return _with_tag(response, await identity.write(write, by=actor))
 
 
-@router.put("/{person}/password", status_code=204)
+@router.put("/{person}/password", status_code=204, responses=refused(404))
 async def give_password(person: Identifier, body: TemporaryPasswordBody, identity: Identity, actor: Actor) -> None:
     """Give a temporary password; it ends all of that person's sessions."""
     found = await identity.read(lambda connection: people.known(connection, person))
     check_password(body.password, found.name)
     hashed = await identity.passwords.hash(body.password)
     now = identity.now()
-    await identity.write(lambda connection: people.set_password(connection, person, hashed, actor, now, temporary=True))
+
+    def write(connection: Connection) -> None:
+        people.set_password(connection, person, hashed, actor, now, temporary=True)
+
+    await identity.write(write, by=actor)
 
 
-@bodiless.delete("/{person}/sessions", status_code=204)
+@bodiless.delete("/{person}/sessions", status_code=204, responses=refused(404))
 async def end_sessions(person: Identifier, identity: Identity, actor: Actor) -> None:
     """Sign the person out everywhere."""
     now = identity.now()
-    await identity.write(lambda connection: end_sessions_of(connection, person, actor, now))
+    await identity.write(lambda connection: end_sessions_of(connection, person, actor, now), by=actor)
 
 
 def _answered(person: Person, sessions: dict[str, int]) -> PersonAnswer:

@@ -8,10 +8,16 @@ from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
 from sequence_planner.web.looking import FlowsShow
+from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import Controller
 from sequence_planner.web.stream import serve
 
-router = APIRouter(prefix="/pipelines", tags=["pipelines"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
+router = APIRouter(
+    prefix="/pipelines",
+    tags=["pipelines"],
+    dependencies=[allowed(Role.VIEWER, scope=Scope.READ)],
+    responses=refused(504),
+)
 
 
 @router.get("")

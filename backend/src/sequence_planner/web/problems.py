@@ -9,10 +9,12 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
+from typing import Any
 
 import structlog
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
+from fastapi.routing import iter_route_contexts
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
@@ -35,6 +37,11 @@ DETAILS = {
     404: "There is nothing at this address.",
     405: "This address does not know the method; the header Allow names those it knows.",
 }
+
+
+def refused(*statuses: int) -> dict[int | str, dict[str, Any]]:
+    """Declares in the `responses` of a route with which status it may refuse, beside what concerns all routes."""
+    return {status: {"description": "A problem"} for status in statuses}
 
 
 class FieldError(BaseModel):
@@ -98,7 +105,19 @@ async def _http(request: Request, error: Exception) -> Response:
     status = error.status_code
     title = HTTPStatus(status).phrase
     detail = DETAILS.get(status, str(error.detail))
-    return problem_response(status, SLUGS.get(status, "refused"), title, detail, headers=error.headers)
+    headers = dict(error.headers or {})
+    if status == 405 and (methods := _methods(request)):
+        headers["Allow"] = ", ".join(sorted(methods))
+    return problem_response(status, SLUGS.get(status, "refused"), title, detail, headers=headers)
+
+
+def _methods(request: Request) -> set[str]:
+    """The methods of all routes of the address: without this, only those of the first of them are named."""
+    found: dict[str, set[str]] = {}
+    for route in iter_route_contexts(request.app.routes):
+        if route.methods and route.path is not None and route.path_regex.match(request.scope["path"]):
+            found.setdefault(route.path, set()).update(route.methods)
+    return found[min(found, key=lambda path: path.count("{"))] if found else set()
 
 
 async def _invalid(request: Request, error: Exception) -> Response:

@@ -28,7 +28,7 @@ from sequence_planner.web.body import Body, Name
 from sequence_planner.web.cookies import Credentials, credentials, forget_session, keep_session
 from sequence_planner.web.demonstration import may_open_demonstration
 from sequence_planner.web.identity import IdentityOffice
-from sequence_planner.web.problems import ProblemFound
+from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Address, Agent, Controller, Identity, Session
 from sequence_planner.web.sweeper import withdraw_control
 
@@ -101,7 +101,7 @@ class FirstAdministratorBody(Body):
     password: Typed
 
 
-@router.get("/session", dependencies=[EVERYBODY])
+@router.get("/session", dependencies=[EVERYBODY], responses=refused(503))
 async def session(request: Request) -> SessionAnswer:
     """Who is signed in here; nobody is an answer too."""
     shown = credentials(request)
@@ -109,7 +109,7 @@ async def session(request: Request) -> SessionAnswer:
     return await _answer(request, bearer.signed_in)
 
 
-@router.post("/session", dependencies=[EVERYBODY, JSON_ONLY])
+@router.post("/session", dependencies=[EVERYBODY, JSON_ONLY], responses=refused(401, 429, 503))
 async def sign_in(
     body: SignInBody, request: Request, response: Response, identity: Identity, address: Address, agent: Agent
 ) -> SessionAnswer:
@@ -121,7 +121,7 @@ async def sign_in(
     return await _begin(request, response, token, signed_in)
 
 
-@router.post("/session/demonstration", dependencies=[EVERYBODY, JSON_ONLY])
+@router.post("/session/demonstration", dependencies=[EVERYBODY, JSON_ONLY], responses=refused(503))
 async def open_demonstration(
     body: DemonstrationBody,
     request: Request,
@@ -161,7 +161,7 @@ async def sign_out(
         await withdraw_control(client, signed_in.session)
 
 
-@router.put("/session/password", dependencies=[ONESELF, JSON_ONLY])
+@router.put("/session/password", dependencies=[ONESELF, JSON_ONLY], responses=refused(429))
 async def change_password(
     body: PasswordBody,
     request: Request,
@@ -178,7 +178,7 @@ async def change_password(
     return await _begin(request, response, token, again)
 
 
-@router.post("/first-administrator", status_code=201, dependencies=[EVERYBODY, JSON_ONLY])
+@router.post("/first-administrator", status_code=201, dependencies=[EVERYBODY, JSON_ONLY], responses=refused(409, 503))
 async def first_administrator(
     body: FirstAdministratorBody,
     request: Request,

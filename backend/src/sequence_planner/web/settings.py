@@ -28,6 +28,7 @@ class StreamLimits:
     send_seconds: float = 5.0  # a client that takes no message for so long is dropped
     frame: int = 4096  # bytes in a frame from a client
     clients: int = 100
+    of_one: int = 25  # of these for one person, key or watch, so that nobody takes the place of all others
 
 
 @dataclass(frozen=True, kw_only=True)

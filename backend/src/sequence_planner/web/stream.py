@@ -9,13 +9,16 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-from contextlib import AbstractContextManager
+from collections import Counter
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, nullcontext
 from typing import NamedTuple, Protocol
 
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 from starlette.types import Message
 
+from sequence_planner.actor import Actor
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.access import Access, allowed
@@ -61,12 +64,26 @@ async def stream(websocket: WebSocket) -> None:
 async def serve(websocket: WebSocket, source: Source) -> None:
     """Serve one client of `source` until it leaves, is dropped, or may no longer listen."""
     await websocket.accept()
-    with source.subscription() as subscriber:
+    with _counted(websocket, source.limits) as fits, source.subscription() if fits else nullcontext() as subscriber:
         ending = TOO_MANY if subscriber is None else await _converse(websocket, subscriber, source.limits)
     if ending is not None:
         with contextlib.suppress(TimeoutError, WebSocketDisconnect, RuntimeError):
             async with asyncio.timeout(LAST_WORDS):
                 await websocket.close(ending.code, ending.reason)
+
+
+@contextlib.contextmanager
+def _counted(websocket: WebSocket, limits: StreamLimits) -> Iterator[bool]:
+    """Count the stream; whether it is not one too many for who listens."""
+    streams: Counter[str] = websocket.app.state.streams
+    actor: Actor = websocket.state.actor
+    streams[actor.id] += 1
+    try:
+        yield streams[actor.id] <= limits.of_one
+    finally:
+        streams[actor.id] -= 1
+        if not streams[actor.id]:
+            del streams[actor.id]
 
 
 async def _converse(websocket: WebSocket, subscriber: Subscriber, limits: StreamLimits) -> Ending | None:

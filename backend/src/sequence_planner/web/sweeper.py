@@ -30,16 +30,21 @@ class Sweeper:
         self._in_trouble = False
 
     async def run(self) -> None:
-        """Sweep until cancelled. A database or a controller that does not answer is asked again and again."""
+        """Sweep until cancelled. What fails is tried again and again."""
         while True:
             try:
                 await self._sweep()
                 self._in_trouble = False
             except (StorageError, CommandRefused) as error:
-                if not self._in_trouble:
-                    LOG.warning("sessions cannot be looked after now", reason=str(error))
-                self._in_trouble = True
+                self._note(str(error))
+            except Exception as error:  # whatever it is, who has lost a session must not keep control
+                self._note(repr(error))
             await asyncio.sleep(LOOK_EVERY)
+
+    def _note(self, reason: str) -> None:
+        if not self._in_trouble:
+            LOG.warning("sessions cannot be looked after now", reason=reason)
+        self._in_trouble = True
 
     async def _sweep(self) -> None:
         await self._withdraw()

@@ -17,7 +17,7 @@ from sequence_planner.identity.watches import CONFIRMED_WITHIN, LIFE, Watch
 from sequence_planner.web.access import allowed, watch_only
 from sequence_planner.web.body import Identifier
 from sequence_planner.web.cookies import keep_watch
-from sequence_planner.web.problems import ProblemFound
+from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Address, Agent, Controller, Identity, LiveView
 from sequence_planner.web.settings import Settings
 from sequence_planner.web.watch_messages import (
@@ -50,7 +50,7 @@ async def all_watches(identity: Identity, client: Controller) -> WatchesAnswer:
     )
 
 
-@router.post("/offers", status_code=201, dependencies=[OPERATOR, JSON_ONLY])
+@router.post("/offers", status_code=201, dependencies=[OPERATOR, JSON_ONLY], responses=refused(409))
 async def offer(body: OfferBody, identity: Identity, actor: Actor, view: LiveView) -> NewOfferAnswer:
     """Offer a pairing. Its code is answered this once and can be redeemed once, within two minutes."""
     if body.resource not in {each.name for each in _resources(view)}:
@@ -58,19 +58,19 @@ async def offer(body: OfferBody, identity: Identity, actor: Actor, view: LiveVie
         raise ProblemFound(422, "no-such-resource", "A watch cannot serve this resource", detail)
     now = identity.now()
     code, made = await identity.write(
-        lambda connection: pairing.offer(connection, body.name, body.resource, actor, now)
+        lambda connection: pairing.offer(connection, body.name, body.resource, actor, now), by=actor
     )
     return NewOfferAnswer(id=made.id, code=code, expires=made.expires)
 
 
-@router.delete("/offers/{offer}", status_code=204, dependencies=[OPERATOR])
+@router.delete("/offers/{offer}", status_code=204, dependencies=[OPERATOR], responses=refused(404))
 async def withdraw_offer(offer: Identifier, identity: Identity, actor: Actor) -> None:
     """Take an offer back: its code is worth nothing any more."""
     now = identity.now()
-    await identity.write(lambda connection: pairing.withdraw_offer(connection, offer, actor, now))
+    await identity.write(lambda connection: pairing.withdraw_offer(connection, offer, actor, now), by=actor)
 
 
-@router.post("/pairing", status_code=201, dependencies=[allowed(None), JSON_ONLY])
+@router.post("/pairing", status_code=201, dependencies=[allowed(None), JSON_ONLY], responses=refused(429, 503))
 async def pair(
     body: PairingBody, request: Request, response: Response, identity: Identity, address: Address, agent: Agent
 ) -> WatchSelfAnswer:
@@ -87,18 +87,18 @@ async def pair(
     return _itself(watch)
 
 
-@router.post("/{watch}/confirmation", status_code=204, dependencies=[OPERATOR, JSON_ONLY])
+@router.post("/{watch}/confirmation", status_code=204, dependencies=[OPERATOR, JSON_ONLY], responses=refused(404, 409))
 async def confirm(watch: Identifier, body: ConfirmationBody, identity: Identity, actor: Actor) -> None:
     """Confirm that the device that has redeemed the code is the one that was meant; within two minutes."""
     now = identity.now()
-    await identity.write(lambda connection: watches.confirm(connection, watch, actor, now))
+    await identity.write(lambda connection: watches.confirm(connection, watch, actor, now), by=actor)
 
 
-@router.delete("/{watch}", status_code=204, dependencies=[OPERATOR])
+@router.delete("/{watch}", status_code=204, dependencies=[OPERATOR], responses=refused(404))
 async def revoke(watch: Identifier, identity: Identity, actor: Actor) -> None:
     """Refuse a device that waits, or revoke one that was confirmed; within two seconds it is told nothing any more."""
     now = identity.now()
-    await identity.write(lambda connection: watches.revoke(connection, watch, actor, now))
+    await identity.write(lambda connection: watches.revoke(connection, watch, actor, now), by=actor)
 
 
 @router.get("/self", dependencies=[watch_only(waiting=True)])

@@ -1,0 +1,55 @@
+"""What schemathesis finds: the server keeps to its own OpenAPI document, whoever asks and whatever is asked."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sequence_planner.identity.roles import Role
+
+from .fuzzing import documented, fuzz, station
+from .running import Server
+
+EDGES = ("coverage",)  # each edge of each schema once, and methods that are none
+UNREAD = {400, 405, 415}  # of requests that are refused before anybody asks who sends them
+# What takes a secret, a model of the station, or a demonstration.
+NOT_GUESSED = {
+    "POST /api/v1/first-administrator",
+    "POST /api/v1/session",
+    "POST /api/v1/session/demonstration",
+    "PUT /api/v1/session/password",
+    "POST /api/v1/ros/attachments",
+    "POST /api/v1/watches/pairing",
+    "GET /api/v1/watches/self",
+}
+
+
+def roles(server: Server) -> dict[str, str]:
+    """The least role of each operation, or what stands in its place."""
+    paths = documented(server)["paths"]
+    return {f"{verb.upper()} {path}": each["x-role"] for path, verbs in paths.items() for verb, each in verbs.items()}
+
+
+def test_an_administrator_finds_every_answer_as_it_is_described(tmp_path: Path) -> None:
+    with station(tmp_path) as (server, _):
+        found = fuzz(server, Role.ADMINISTRATOR, examples=5)
+        assert found.wrong == {}
+        assert found.statuses.keys() == roles(server).keys()
+    undone = {operation for operation, seen in found.statuses.items() if min(seen) >= 300 and "{" not in operation}
+    assert undone <= NOT_GUESSED
+
+
+def test_nobody_is_let_in_but_where_everybody_may(tmp_path: Path) -> None:
+    with station(tmp_path) as (server, _):
+        found, least = fuzz(server, None, examples=1, phases=EDGES), roles(server)
+    assert found.wrong == {}
+    for operation, role in least.items():
+        assert role == "public" or found.statuses[operation].keys() <= UNREAD | {401}, operation
+
+
+def test_a_viewer_only_looks(tmp_path: Path) -> None:
+    with station(tmp_path) as (server, controller):
+        found, least = fuzz(server, Role.VIEWER, examples=1, phases=EDGES), roles(server)
+    assert found.wrong == {}
+    for operation, role in least.items():
+        assert role in ("public", "viewer") or found.statuses[operation].keys() <= UNREAD | {401, 403}, operation
+    assert controller.commands == []
