@@ -114,21 +114,33 @@ def controller_socket(launcher: int) -> Path:
 
 def measure_acts(client: httpx.Client) -> None:
     """The median of each act, over `ROUNDS` of them."""
-    hasher = PasswordHasher()
-    hashing = median(lambda: hasher.hash(PASSWORD))
-    print(f"one password hash alone: {hashing:.1f} ms")
 
     def sign_in() -> None:
         expect(200, client.post("/session", json={"name": NAME, "password": PASSWORD}))
 
-    signing = median(sign_in)
-    print(f"sign-in: {signing:.1f} ms, {signing - hashing:.1f} ms besides the hash, ratio {signing / hashing:.2f}")
-    for what, took, hashes in acts(client):
-        print(f"{what}: {took - hashes * hashing:.1f} ms" + (" besides the hash" if hashes else ""))
+    for what, act in (("sign-in", sign_in), ("sign-in, and sign-out", lambda: signed_out(client))):
+        besides_hash(what, act)
+    sign_in()
+    for what, took in acts(client):
+        print(f"{what}: {took:.1f} ms")
 
 
-def acts(client: httpx.Client) -> Iterator[tuple[str, float, int]]:
-    """Each kind of act, its median, and how many password hashes are in it."""
+def besides_hash(what: str, act: Callable[[], object]) -> None:
+    """Measure an act that needs one password hash, and the hash alone in turns with it."""
+    hasher = PasswordHasher()
+    hashes, times = [], []
+    for _ in range(ROUNDS):
+        hashes.append(milliseconds(lambda: hasher.hash(PASSWORD)))
+        times.append(milliseconds(act))
+    alone, whole = statistics.median(hashes), statistics.median(times)
+    besides = statistics.median(one - other for one, other in zip(times, hashes, strict=True))
+    print(
+        f"{what}: {whole:.1f} ms beside {alone:.1f} ms for the hash alone: {besides:.1f} ms more, {whole / alone:.2f} x"
+    )
+
+
+def acts(client: httpx.Client) -> Iterator[tuple[str, float]]:
+    """Each kind of act, and its median."""
 
     def act(status: int, method: str, path: str, body: object = None, **more: Any) -> Any:  # noqa: ANN401 - JSON
         """Do it; what is answered."""
@@ -136,13 +148,13 @@ def acts(client: httpx.Client) -> Iterator[tuple[str, float, int]]:
         answer = expect(status, client.request(method, path, **content, **more))
         return answer.json() if answer.content else None
 
-    yield "read the state", median(lambda: act(200, "GET", "/state")), 0
-    yield "take control", median(lambda: act(204, "PUT", "/control", {"over": None})), 0
-    yield "pause", median(lambda: act(204, "PUT", "/mode", {"mode": "paused"})), 0
-    yield "go on", median(lambda: act(204, "PUT", "/mode", {"mode": "automatic"})), 0
-    yield "start production (refused: it is started)", median(lambda: act(409, "POST", "/production/start", {})), 0
+    yield "read the state", median(lambda: act(200, "GET", "/state"))
+    yield "take control", median(lambda: act(204, "PUT", "/control", {"over": None}))
+    yield "pause", median(lambda: act(204, "PUT", "/mode", {"mode": "paused"}))
+    yield "go on", median(lambda: act(204, "PUT", "/mode", {"mode": "automatic"}))
+    yield "start production (refused: it is started)", median(lambda: act(409, "POST", "/production/start", {}))
     gone = "/tasks/gone/acknowledgement"
-    yield "acknowledge a task (refused: it is gone)", median(lambda: act(409, "POST", gone, {"revision": 1})), 0
+    yield "acknowledge a task (refused: it is gone)", median(lambda: act(409, "POST", gone, {"revision": 1}))
     names = iter(range(10_000))
 
     def person() -> dict[str, Any]:
@@ -150,24 +162,24 @@ def acts(client: httpx.Client) -> Iterator[tuple[str, float, int]]:
         made: dict[str, Any] = act(201, "POST", "/people", body)
         return made
 
-    yield "add a person", median(person), 1
+    besides_hash("add a person", person)
     people = iter([person() for _ in range(ROUNDS)])
 
     def change() -> None:
         one = next(people)
         act(200, "PATCH", f"/people/{one['id']}", {"role": "operator"}, headers={"If-Match": f'"{one["revision"]}"'})
 
-    yield "change a person's role", median(change), 0
+    yield "change a person's role", median(change)
     someone = person()["id"]
-    yield "sign a person out everywhere", median(lambda: act(204, "DELETE", f"/people/{someone}/sessions")), 0
+    yield "sign a person out everywhere", median(lambda: act(204, "DELETE", f"/people/{someone}/sessions"))
 
     def key() -> str:
         made = act(201, "POST", "/keys", {"name": f"key {next(names)}", "scopes": ["read"], "days": 1})
         return str(made["key"]["id"])
 
-    yield "make a key", median(key), 0
+    yield "make a key", median(key)
     keys = iter([key() for _ in range(ROUNDS)])
-    yield "revoke a key", median(lambda: act(204, "DELETE", f"/keys/{next(keys)}")), 0
+    yield "revoke a key", median(lambda: act(204, "DELETE", f"/keys/{next(keys)}"))
 
     def offer() -> str:
         body = {"name": f"watch {next(names)}", "resource": "operator"}
@@ -175,10 +187,9 @@ def acts(client: httpx.Client) -> Iterator[tuple[str, float, int]]:
         act(204, "DELETE", f"/watches/offers/{made['id']}")
         return str(made["id"])
 
-    yield "offer to pair a watch, and take it back", median(offer), 0
-    yield "release control, and take it again", median(lambda: released(act)), 0
-    yield "read the journal", median(lambda: act(200, "GET", "/audit")), 0
-    yield "sign out", median(lambda: signed_out(client)), 1
+    yield "offer to pair a watch, and take it back", median(offer)
+    yield "release control, and take it again", median(lambda: released(act))
+    yield "read the journal", median(lambda: act(200, "GET", "/audit"))
 
 
 def released(act: Callable[..., Any]) -> None:
@@ -202,12 +213,14 @@ def expect(status: int, answer: httpx.Response) -> httpx.Response:
 
 def median(act: Callable[[], object]) -> float:
     """Milliseconds that it takes."""
-    times = []
-    for _ in range(ROUNDS):
-        began = time.perf_counter()
-        act()
-        times.append((time.perf_counter() - began) * 1000)
-    return statistics.median(times)
+    return statistics.median(milliseconds(act) for _ in range(ROUNDS))
+
+
+def milliseconds(act: Callable[[], object]) -> float:
+    """How long it takes."""
+    began = time.perf_counter()
+    act()
+    return (time.perf_counter() - began) * 1000
 
 
 async def measure_flood(address: str, path: Path) -> None:

@@ -1,4 +1,4 @@
-import { acknowledge, done, picture, tightenings, values, variable } from '../station/seen.ts';
+import { acknowledge, done, picture, takeControl, tightenings, values, variable } from '../station/seen.ts';
 import { expect, test } from '../station/test.ts';
 
 test.use({ shared: 'devices that come and go', byItself: false });
@@ -17,6 +17,7 @@ test('silent devices make values unknown and name the topics awaited; when they 
 	// Nothing moves until a person has started production.
 	await expect(start).toBeVisible({ timeout: 30_000 });
 	await expect(done(watch)).toHaveCount(0);
+	await takeControl(operate);
 	await start.click();
 	await expect(operate.getByTestId('mode')).toContainText('production started');
 	await expect(start).toBeHidden();

@@ -1,5 +1,5 @@
 import { findings } from '../station/barriers.ts';
-import { acknowledge, done, picture, restsOnPerson, tightenings, variable } from '../station/seen.ts';
+import { acknowledge, done, picture, restsOnPerson, takeControl, tightenings, variable } from '../station/seen.ts';
 import { expect, test } from '../station/test.ts';
 
 test('a view that is no longer live says so within 2 s, on either page @theme', async ({ operate, watch, station }) => {
@@ -70,6 +70,7 @@ test.describe('when a part of the station dies', () => {
 		await expect(done(watch)).toHaveCount(0);
 		await expect(operate.locator('[data-step]')).toHaveCount(0);
 
+		await takeControl(operate);
 		await operate.getByRole('button', { name: 'Start production' }).click();
 		await restsOnPerson(operate, watch);
 		await acknowledge(watch);

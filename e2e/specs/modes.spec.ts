@@ -1,4 +1,4 @@
-import { acknowledge, done, picture, restsOnPerson, tightenings, variable } from '../station/seen.ts';
+import { acknowledge, done, picture, restsOnPerson, takeControl, tightenings, variable } from '../station/seen.ts';
 import { expect, test } from '../station/test.ts';
 
 test('Pause starts nothing more, Continue goes on', async ({ operate, watch }) => {
@@ -18,6 +18,7 @@ test('Pause starts nothing more, Continue goes on', async ({ operate, watch }) =
 	expect(await tightenings(operate)).toBe(before);
 	await picture(operate, 'operate-paused');
 
+	await takeControl(operate);
 	await operate.getByRole('button', { name: 'Continue' }).click();
 	await expect(operate.getByTestId('mode')).toContainText('Automatic');
 	await expect.poll(() => tightenings(operate), { timeout: 60_000 }).toBe(before + 1);

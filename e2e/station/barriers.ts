@@ -1,18 +1,28 @@
 /** What would keep people from using a page. */
 import { AxeBuilder } from '@axe-core/playwright';
-import type { Page } from '@playwright/test';
+import { expect, type Page } from '@playwright/test';
+import { picture } from './seen.ts';
 
-/** What axe-core finds, in words that lead to the place. */
-export async function findings(page: Page): Promise<string[]> {
-	const { violations } = await new AxeBuilder({ page }).analyze();
+/** Screens from a desk to a wrist, in CSS pixels. */
+const SCREENS = [
+	[1440, 900],
+	[768, 1024],
+	[320, 640],
+	[192, 192]
+] as const;
+
+/** What axe-core finds by `rules`, or by all there are, in words that lead to the place. */
+export async function findings(page: Page, rules?: string[]): Promise<string[]> {
+	const axe = new AxeBuilder({ page });
+	const { violations } = await (rules ? axe.withRules(rules) : axe).analyze();
 	return violations.flatMap(({ id, help, nodes }) => nodes.map((node) => `${id}: ${help}: ${node.target.join(' ')}`));
 }
 
-/** Whatever can be pressed and is smaller than 44 px in one direction. */
+/** Whatever can be pressed and is smaller than 44 px in one direction; a box to tick can be pressed at its words. */
 export async function smallTargets(page: Page): Promise<string[]> {
 	return page.evaluate(() =>
-		[...document.querySelectorAll('button, a, input, select, summary')].flatMap((element) => {
-			const { width, height } = element.getBoundingClientRect();
+		[...document.querySelectorAll('button, a, input:not(.unseen), select, textarea, summary')].flatMap((element) => {
+			const { width, height } = (element.closest('label') ?? element).getBoundingClientRect();
 			return width >= 44 && height >= 44 ? [] : [`${element.textContent.trim()}: ${width} × ${height}`];
 		})
 	);
@@ -21,4 +31,19 @@ export async function smallTargets(page: Page): Promise<string[]> {
 /** How many pixels of the page lie to the right of the screen. */
 export async function overflow(page: Page): Promise<number> {
 	return page.evaluate(() => Math.max(0, document.documentElement.scrollWidth - window.innerWidth));
+}
+
+/** Looks at a page as it is now, on all screens and in both themes, and keeps pictures. */
+export async function examine(page: Page, name: string): Promise<void> {
+	for (const [width, height] of SCREENS.toReversed()) {
+		await page.setViewportSize({ width, height });
+		expect.soft(await overflow(page), `${name}: pixels to the right of a screen of ${width}`).toBe(0);
+		expect.soft(await smallTargets(page), `${name}: too small on a screen of ${width}`).toEqual([]);
+		await picture(page, `${name}-${width}`, 'light');
+	}
+	expect.soft(await findings(page), `${name}, light`).toEqual([]);
+	await page.emulateMedia({ colorScheme: 'dark' });
+	await picture(page, `${name}-${SCREENS[0][0]}`, 'dark');
+	expect.soft(await findings(page, ['color-contrast']), `${name}, dark`).toEqual([]);
+	await page.emulateMedia({ colorScheme: 'light' });
 }

@@ -43,6 +43,49 @@ export async function acknowledge(watch: Page): Promise<string> {
 	return pair;
 }
 
+/** Takes control on this page, from whoever has it. */
+export async function takeControl(page: Page): Promise<void> {
+	const control = page.getByTestId('control');
+	const held = (await control.getAttribute('data-holder')) !== 'nobody';
+	await page.getByRole('button', { name: 'Take control' }).click();
+	if (held) await page.getByRole('dialog').getByRole('button', { name: 'Take over' }).click();
+	await expect(control).toHaveAttribute('data-holder', 'you');
+}
+
+/** Takes control on this page, and starts production unless that was done. */
+export async function startProduction(page: Page): Promise<void> {
+	await takeControl(page);
+	const start = page.getByRole('button', { name: 'Start production' });
+	if (await start.isVisible()) await start.click();
+	await expect(page.getByTestId('mode')).toContainText('production started');
+}
+
+/** Signs in on the page that asks for it. */
+export async function signIn(page: Page, name: string, password: string): Promise<void> {
+	await page.getByLabel('Name').fill(name);
+	await page.getByLabel('Password', { exact: true }).fill(password);
+	await page.getByRole('button', { name: 'Sign in' }).click();
+}
+
+/** Signs out as a person does. */
+export async function signOut(page: Page): Promise<void> {
+	await page.getByTestId('who').click();
+	await page.getByRole('button', { name: 'Sign out' }).click();
+}
+
+/** On the page Watches: offers to pair a watch; the code. */
+export async function offerWatch(watches: Page, name: string): Promise<string> {
+	await watches.getByLabel('What the watch is called').fill(name);
+	await watches.getByRole('button', { name: 'Get a code' }).click();
+	return (await watches.getByTestId('code').innerText()).replaceAll(/\D/g, '');
+}
+
+/** On a device: types a code in, to become a watch. */
+export async function typeCode(device: Page, code: string): Promise<void> {
+	await device.getByLabel('Code of 8 digits').fill(code);
+	await device.getByRole('button', { name: 'Pair' }).click();
+}
+
 /** Notes every value that the page shows for a variable from now on; the result says which it were. */
 export async function values(page: Page, name: string): Promise<() => Promise<string[]>> {
 	const notes = await variable(page, name).evaluateHandle((element) => {
@@ -55,7 +98,7 @@ export async function values(page: Page, name: string): Promise<() => Promise<st
 }
 
 /** Keeps a picture among the artefacts, named after the theme. */
-export async function picture(page: Page, name: string): Promise<void> {
-	const path = join(import.meta.dirname, '../artefacts', `${name}-${test.info().project.name}.png`);
+export async function picture(page: Page, name: string, theme = test.info().project.name): Promise<void> {
+	const path = join(import.meta.dirname, '../artefacts', `${name}-${theme}.png`);
 	await page.screenshot({ path });
 }

@@ -3,8 +3,10 @@
  *
  * `SEQUENCE_PLANNER` names another executable than the one that `make run` installs.
  */
-import { readFileSync } from 'node:fs';
+import { spawnSync } from 'node:child_process';
+import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
 import { createServer } from 'node:net';
+import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { StationProcess } from './process.ts';
@@ -15,9 +17,40 @@ const EXECUTABLE = process.env['SEQUENCE_PLANNER'] ?? join(ROOT, 'backend/.venv/
 /** Milliseconds until the server must answer. */
 const START = 60_000;
 
+/** Somebody who may sign in; the password is one of a test alone, and changed to it at the first sign-in. */
+export interface Person {
+	readonly name: string;
+	readonly role: 'viewer' | 'operator' | 'engineer' | 'administrator';
+	readonly password: string;
+}
+
+/** Who has signed in on the pages of tests that are about something else. */
+export const EVA: Person = { name: 'Eva', role: 'operator', password: 'seven green apples' };
+export const ADAM: Person = { name: 'Adam', role: 'operator', password: 'three grey herons' };
+export const VERA: Person = { name: 'Vera', role: 'viewer', password: 'nine quiet harbours' };
+export const ADA: Person = { name: 'Ada', role: 'administrator', password: 'two wooden bridges' };
+
+/** A connection is not kept: whoever waits for a process does not see that the server has closed it meanwhile. */
+const ALONE = { Connection: 'close' } as const;
+
+export interface Cookie {
+	readonly name: string;
+	readonly value: string;
+}
+
+/** The temporary password with which somebody is made. */
+const given = (password: string): string => `${password}, for now`;
+
 export interface Options {
-	/** Starts emulated devices with the server and production by itself; else a test does both. */
+	/**
+	 * Starts emulated devices with the server and production by itself, as a demonstration; else a test does both, and
+	 * people sign in.
+	 */
 	readonly byItself: boolean;
+	/** Starts emulated devices with a server that does not start by itself. */
+	readonly devices: boolean;
+	/** Who can sign in where it does not start by itself. */
+	readonly people: readonly Person[];
 	/** Where the output of all processes is kept. */
 	readonly logs: string;
 }
@@ -37,16 +70,23 @@ export class Station {
 	readonly #env: NodeJS.ProcessEnv;
 	readonly #logs: string;
 	readonly #started: StationProcess[] = [];
+	/** Where the database of a station is that is no demonstration. */
+	readonly #folder = mkdtempSync(join(tmpdir(), 'station-'));
+	readonly #demonstration: boolean;
+	#cookie: string | null = null;
 	readonly server: StationProcess;
 
 	private constructor(
 		readonly port: number,
 		options: Options
 	) {
-		this.#env = { ...process.env, ROS_DOMAIN_ID: String(nextDomain()) };
+		const database = options.byItself ? {} : { SEQUENCE_PLANNER_DATABASE: `sqlite:///${this.#folder}/station.sqlite` };
+		this.#env = { ...process.env, ROS_DOMAIN_ID: String(nextDomain()), ...database };
 		this.#logs = options.logs;
-		const alone = options.byItself ? ['--emulator', '--start', '--emulator-speed', '4'] : [];
-		this.server = this.#start('server', ['run', MODEL, '--port', String(port), ...alone]);
+		this.#demonstration = options.byItself;
+		const devices = options.byItself || options.devices ? ['--emulator', '--emulator-speed', '4'] : [];
+		const alone = options.byItself ? ['--start', '--demonstration'] : [];
+		this.server = this.#start('server', ['run', MODEL, '--port', String(port), ...devices, ...alone]);
 	}
 
 	/** Starts a station and waits until it answers. */
@@ -54,6 +94,7 @@ export class Station {
 		const station = new Station(await freePort(), options);
 		try {
 			await station.#answers();
+			if (!options.byItself) for (const person of options.people) await station.add(person);
 		} catch (error) {
 			await station.stop();
 			throw error;
@@ -65,6 +106,47 @@ export class Station {
 		return `http://127.0.0.1:${this.port}`;
 	}
 
+	/** Makes somebody who can sign in, as who sits at the machine does, and has them choose their own password. */
+	async add({ name, role, password }: Person): Promise<void> {
+		const args = ['people', 'add', name, '--role', role, MODEL];
+		const input = `${given(password)}\n`;
+		const ended = spawnSync(EXECUTABLE, args, { cwd: ROOT, env: this.#env, input, encoding: 'utf8' });
+		if (ended.status !== 0) throw new Error(`${args.join(' ')}: ${ended.stderr}`);
+		const cookie = await this.#session('POST', 'session', { name, password: given(password) });
+		await this.#session('PUT', 'session/password', { old: given(password), new: password }, cookie);
+	}
+
+	/** The first-start link, as it is shown to who sits at the machine. */
+	link(): string {
+		const args = ['people', 'link', MODEL, '--url', this.url];
+		const ended = spawnSync(EXECUTABLE, args, { cwd: ROOT, env: this.#env, encoding: 'utf8' });
+		const [link] = /https?:\S+#\S+/.exec(ended.stdout) ?? [];
+		if (link === undefined) throw new Error(`${args.join(' ')}: ${ended.stdout}${ended.stderr}`);
+		return link;
+	}
+
+	/** Signs somebody in, or opens a demonstration: the cookie of the new session. */
+	signIn(person: Person | null): Promise<Cookie> {
+		if (person === null) return this.#session('POST', 'session/demonstration', {});
+		return this.#session('POST', 'session', { name: person.name, password: person.password });
+	}
+
+	async #session(method: string, path: string, body: object, cookie?: Cookie): Promise<Cookie> {
+		const answer = await fetch(`${this.url}/api/v1/${path}`, {
+			method,
+			headers: {
+				...ALONE,
+				'Content-Type': 'application/json',
+				...(cookie && { Cookie: `${cookie.name}=${cookie.value}` })
+			},
+			body: JSON.stringify(body)
+		});
+		const [name, value] = answer.headers.get('set-cookie')?.split(';')[0]?.split('=') ?? [];
+		if (!answer.ok || name === undefined || value === undefined)
+			throw new Error(`not signed in: ${await answer.text()}`);
+		return { name, value };
+	}
+
 	/** Starts emulated devices in a process of their own. */
 	emulate(): StationProcess {
 		return this.#start('emulator', ['emulate', MODEL]);
@@ -72,7 +154,11 @@ export class Station {
 
 	/** The values of all variables as the server knows them, in the words of the page. */
 	async values(): Promise<[name: string, value: string][]> {
-		const answer = await fetch(`${this.url}/api/v1/state`);
+		if (this.#cookie === null) {
+			const { name, value } = await this.signIn(this.#demonstration ? null : EVA);
+			this.#cookie = `${name}=${value}`;
+		}
+		const answer = await fetch(`${this.url}/api/v1/state`, { headers: { Cookie: this.#cookie } });
 		const { variables } = (await answer.json()) as { variables: Record<string, { value: unknown }> };
 		return Object.entries(variables).map(([name, { value }]) => [name, value === null ? 'unknown' : String(value)]);
 	}
@@ -87,6 +173,7 @@ export class Station {
 	async stop(): Promise<void> {
 		const ends = await Promise.allSettled(this.#started.map((running) => running.stop()));
 		const failed = ends.find((end) => end.status === 'rejected');
+		rmSync(this.#folder, { recursive: true });
 		if (failed) throw failed.reason;
 	}
 
@@ -101,7 +188,7 @@ export class Station {
 		const deadline = Date.now() + START;
 		while (Date.now() < deadline && this.server.running) {
 			try {
-				const answer = await fetch(`${this.url}/healthz`, { signal: AbortSignal.timeout(2000) });
+				const answer = await fetch(`${this.url}/healthz`, { headers: ALONE, signal: AbortSignal.timeout(2000) });
 				if (answer.ok) return;
 			} catch {
 				// Not listening yet.

@@ -1,22 +1,37 @@
 /** The test function of all specs: with a station, an operator's page and a watch. */
-import { test as base, expect, type Browser, type Page } from '@playwright/test';
+import { test as base, expect, type BrowserContext, type BrowserContextOptions, type Page } from '@playwright/test';
 import { join } from 'node:path';
 import { Bench } from './bench.ts';
-import { Station } from './station.ts';
+import { ADA, ADAM, EVA, Station, VERA, type Person } from './station.ts';
+
+const PEOPLE = { nobody: [], Eva: [EVA], everybody: [ADA, EVA, ADAM, VERA] } as const;
 
 interface Given {
 	/** Name of the station to share with the other tests of that name; null for one of the test's own. */
 	shared: string | null;
 	/** Whether the station starts with devices and production (the default), or waits for the test to do so. */
 	byItself: boolean;
+	/** Whether emulated devices run beside a station that waits for the test. */
+	devices: boolean;
+	/** Who can sign in at a station that waits for the test. */
+	people: keyof typeof PEOPLE;
 	station: Station;
+	/** Opens a page in a browser of its own, signed in as somebody or as nobody. */
+	browse: (person: Person | null, address: string, screen?: Screen) => Promise<Page>;
 	/** The operator's page. */
 	operate: Page;
 	/** The watch page on a round watch of 192 dp. */
 	watch: Page;
-	/** What the browser found wrong on both pages: script errors, refused content, failed requests. */
+	/** What the browser found wrong on all pages: script errors, refused content, failed requests. */
 	complaints: string[];
 }
+
+type Screen = Pick<BrowserContextOptions, 'viewport' | 'deviceScaleFactor' | 'hasTouch'>;
+type Theme = 'light' | 'dark';
+
+const DESK: Screen = { viewport: { width: 1440, height: 900 } };
+/** A round watch of 192 dp. */
+export const WRIST: Screen = { viewport: { width: 192, height: 192 }, deviceScaleFactor: 2, hasTouch: true };
 
 function listen(page: Page, complaints: string[]): void {
 	page.on('console', (message) => {
@@ -25,15 +40,9 @@ function listen(page: Page, complaints: string[]): void {
 	page.on('pageerror', (error) => complaints.push(error.message));
 }
 
-async function openWatch(browser: Browser, url: string, colorScheme: 'light' | 'dark'): Promise<Page> {
-	const context = await browser.newContext({
-		baseURL: url,
-		viewport: { width: 192, height: 192 },
-		deviceScaleFactor: 2,
-		hasTouch: true,
-		colorScheme
-	});
-	return context.newPage();
+/** Gives a browser a new session of somebody. */
+async function enter(context: BrowserContext, station: Station, person: Person): Promise<void> {
+	await context.addCookies([{ ...(await station.signIn(person)), url: station.url }]);
 }
 
 /** Folder for the output of a station's processes. */
@@ -44,6 +53,8 @@ function logsOf(name: string): string {
 export const test = base.extend<Given, { bench: Bench }>({
 	shared: ['at work', { option: true }],
 	byItself: [true, { option: true }],
+	devices: [false, { option: true }],
+	people: ['Eva', { option: true }],
 	complaints: async ({}, use) => {
 		await use([]);
 	},
@@ -56,33 +67,46 @@ export const test = base.extend<Given, { bench: Bench }>({
 		{ scope: 'worker' }
 	],
 	station: [
-		async ({ bench, shared, byItself }, use, info) => {
+		async ({ bench, shared, byItself, devices, people }, use, info) => {
 			const project = info.project.name;
+			const given = { byItself, devices, people: PEOPLE[people] };
 			if (shared !== null) {
-				await use(await bench.kept(shared, { byItself, logs: logsOf(`${shared} ${project}`) }));
+				await use(await bench.kept(shared, { ...given, logs: logsOf(`${shared} ${project}`) }));
 				return;
 			}
-			const station = await Station.start({ byItself, logs: logsOf(`${info.titlePath.join(' ')} ${project}`) });
+			const station = await Station.start({ ...given, logs: logsOf(`${info.titlePath.join(' ')} ${project}`) });
 			await use(station);
 			await station.stop();
 		},
 		{ timeout: 90_000 }
 	],
-	operate: async ({ page, station, complaints }, use) => {
+	operate: async ({ page, station, byItself, complaints }, use) => {
 		listen(page, complaints);
+		if (!byItself) await enter(page.context(), station, EVA);
 		await page.goto(`${station.url}/`);
 		await expect(page.getByTestId('live-age')).toContainText('live');
 		await expect(page.getByTestId('not-live')).toBeHidden();
 		await use(page);
 	},
-	watch: async ({ browser, station, colorScheme, complaints }, use) => {
-		const page = await openWatch(browser, station.url, colorScheme === 'dark' ? 'dark' : 'light');
-		listen(page, complaints);
-		await page.goto('/watch');
+	browse: async ({ browser, station, colorScheme, complaints }, use) => {
+		const contexts: BrowserContext[] = [];
+		await use(async (person, address, screen = DESK) => {
+			const theme: Theme = colorScheme === 'dark' ? 'dark' : 'light';
+			const context = await browser.newContext({ ...screen, baseURL: station.url, colorScheme: theme });
+			contexts.push(context);
+			if (person) await enter(context, station, person);
+			const page = await context.newPage();
+			listen(page, complaints);
+			await page.goto(address);
+			return page;
+		});
+		await Promise.all(contexts.map((context) => context.close()));
+	},
+	watch: async ({ browse, byItself }, use) => {
+		const page = await browse(byItself ? null : EVA, '/watch', WRIST);
 		await expect(page.getByRole('heading')).toBeVisible();
 		await expect(page.getByTestId('not-live')).toBeHidden();
 		await use(page);
-		await page.context().close();
 	}
 });
 

@@ -58,6 +58,6 @@ def unusable() -> IdentityRefused:
     """What to say of a link that does not work, whatever the reason."""
     detail = (
         "This link does not work, or no longer: it works once, for 15 minutes, while there is no administrator. "
-        "`sequence-planner people link` on the station's computer prints a new one."
+        "On the station's computer, sequence-planner people link prints a new one."
     )
     return IdentityRefused("link-unusable", "Link does not work", detail, 403)

@@ -1,0 +1,39 @@
+import { examine } from '../station/barriers.ts';
+import { ADA } from '../station/station.ts';
+import { expect, test } from '../station/test.ts';
+
+test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody' });
+
+test('a key is made, its secret is shown once, and revoked it opens nothing', async ({ browse, station }) => {
+	const ada = await browse(ADA, '/keys');
+	const read = async (secret: string): Promise<number> =>
+		(await fetch(`${station.url}/api/v1/state`, { headers: { Authorization: `Bearer ${secret}` } })).status;
+	await ada.getByLabel('Name of the system that uses it').fill('Dashboard');
+	await ada.getByRole('button', { name: 'Make', exact: true }).click();
+	const secret = await ada.getByRole('group', { name: 'Secret', exact: true }).innerText();
+	expect(secret).toMatch(/^sp_/);
+	expect(await read(secret)).toBe(200);
+	await examine(ada, 'keys');
+	await ada.getByRole('button', { name: 'I have kept it' }).click();
+	await expect(ada.getByText(secret)).toHaveCount(0);
+	await ada.reload();
+	await expect(ada.locator('[data-key="Dashboard"]')).toContainText('valid');
+	await expect(ada.getByText(secret)).toHaveCount(0);
+
+	await ada.getByRole('button', { name: 'Revoke Dashboard' }).click();
+	await ada.getByRole('dialog').getByRole('button', { name: 'Revoke' }).click();
+	await expect(ada.getByRole('status').filter({ hasText: 'The key Dashboard is revoked' })).toBeVisible();
+	expect(await read(secret)).toBe(401);
+});
+
+test('sign-in and account are free of barriers, on every screen and in both themes', async ({ browse }) => {
+	const door = await browse(null, '/sign-in?to=/people');
+	await door.getByRole('button', { name: 'Sign in' }).click();
+	await expect(door.getByText('Enter your password.').last()).toBeVisible();
+	await examine(door, 'sign-in');
+
+	const ada = await browse(ADA, '/account');
+	await expect(ada.getByRole('heading', { name: 'Ada' })).toBeVisible();
+	await ada.getByTestId('who').click();
+	await examine(ada, 'account');
+});
