@@ -14,7 +14,7 @@ from control.test_ticks import NOW
 from core.building import Does, automaton
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
-from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.view import Mode, PlanStatus
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.plan import Circumstances, Contract, Plan, PlanAnswer, PlanRequest, PlanTick, Verdict
 
@@ -224,3 +224,16 @@ def test_the_truck_station_assembles_as_fast_when_better_plans_are_asked_for(see
     for pair in PAIRS:
         assert rig.completed.count(f"tighten_bolt_pair({pair})") == 1
         assert rig.started.count(f"robot.move_to_position({pair})") == 1
+
+
+def test_goals_left_out_for_what_was_so_for_a_moment_are_asked_for_again(following: Execution) -> None:
+    """A device was silent when the plan was asked for; all is as it was before when the answer comes."""
+    following.mode = Mode.PAUSED  # so that nothing else changes
+    asked_better(following)
+    following.tick({"at": None, "rung": False}, NOW)
+    assert following.plan.status is PlanStatus.BROKEN
+    request = asked(following)
+    following.tick(AT_REST, NOW)
+    following.adopt(request, found(ONLY_COME, ("come",)))
+    assert {goal.name for goal in asked_better(following).goals} == {"announce", "come"}
+    assert following.better(5) is None

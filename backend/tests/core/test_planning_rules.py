@@ -7,8 +7,11 @@ import pytest
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import initial_state, sense, synchronise
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Value
+from sequence_planner.planning.attempt import Attempt
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engines import ALONE, Engines
 from sequence_planner.planning.plan import Circumstances, PlanAnswer, PlanRequest, Verdict, goals_of
-from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.planner import InTurn, Planner
 from sequence_planner.planning.relaxed.relaxation import reachable
 from sequence_planner.planning.sat.sweep import sweep_order
 from sequence_planner.synthesis.supervision import synthesise
@@ -322,3 +325,31 @@ def test_an_ability_whose_actions_depend_on_something_unknown_is_not_started() -
     assert ask(station, state, "chosen").plan is None
     known = synchronise(station, sense(state, {"left": False}))
     assert starts(ask(station, known, "chosen")) == [("choose",), ()]
+
+
+class Recorded:
+    """Engines that take turns, and the goals of each task that they were given."""
+
+    def __init__(self, station: Automaton) -> None:
+        self.asked: list[set[str]] = []
+        self._solvers = InTurn(Engines(station, synthesise(station), ALONE))
+
+    def solve(self, attempt: Attempt, budget: Budget) -> None:
+        self.asked.append({goal.name for goal in attempt.task.goals})
+        self._solvers.solve(attempt, budget)
+
+
+def test_no_engine_is_asked_for_what_a_silent_device_puts_out_of_reach() -> None:
+    """It would take all of its time to find no plan; that none is possible shows at once."""
+    station = automaton(
+        {"open": Does(start=("valve := true",), when="not hot"), "on": Does(start=("lamp := true",))},
+        measured={"hot": OFF},
+        output={"valve": OFF, "lamp": OFF},
+        goals={"reach": "valve", "lit": "lamp"},
+    )
+    silent = synchronise(station, sense(initial_state(station), {"hot": None}))
+    solvers = Recorded(station)
+    wanted = goals_of(station, station.operations)
+    answer = Planner(station, synthesise(station), solvers).answer(PlanRequest(silent, wanted, 60, longest=LONGEST))
+    assert (answer.goals, answer.left_out, answer.undecided) == (("lit",), ("reach",), ())
+    assert all("reach" not in goals for goals in solvers.asked)

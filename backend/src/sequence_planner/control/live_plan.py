@@ -151,6 +151,8 @@ class LivePlan:
         self.answer = answer
         self.status = PlanStatus.FOLLOWED
         self._none = self.diagnosis = None
+        if not hopeful <= goals:
+            self._asked_better = None  # it may be an answer about what was for a moment, such as a device being silent
         return True
 
     def settle(self, active: frozenset[str], hopeful: frozenset[str]) -> None:

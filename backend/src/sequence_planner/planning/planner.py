@@ -123,8 +123,9 @@ class Planner:
         )
 
     def _outcome(self, request: PlanRequest, ordered: Goals, budget: Budget) -> _Outcome:
-        outcome = _Outcome(ordered, ordered, self._attempt(request, ordered, budget))
-        if outcome.plan is None and not budget.spent:
+        possible, proof = self._reachable(request, ordered) if _is_hindered(request) else (ordered, None)
+        outcome = _Outcome(possible, possible, self._attempt(request, possible or ordered, budget), proof)
+        if outcome.plan is None and possible == ordered and not budget.spent:
             outcome = self._without_unreachable(request, outcome, budget)
         proven = True  # that no more goals can be reached together than those tried last
         while outcome.plan is None and outcome.goals:
@@ -155,14 +156,18 @@ class Planner:
 
     def _without_unreachable(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
         """What the delete relaxation excludes is looked at only now: most questions have an answer without."""
+        possible, proof = self._reachable(request, outcome.goals)
+        if proof is None:
+            return outcome
+        return self._attempted(request, replace(outcome, possible=possible, goals=possible, proof=proof), budget)
+
+    def _reachable(self, request: PlanRequest, goals: Goals) -> tuple[Goals, Proof | None]:
+        """The goals that the delete relaxation does not exclude, and the proof for others, if there are any."""
         from sequence_planner.planning.relaxed.relaxation import reachable, unreached  # noqa: PLC0415
 
         relaxed = reachable(self._automaton, request.state, request.circumstances)
-        possible = tuple(goal for goal in outcome.goals if relaxed.may(goal.predicate))
-        if possible == outcome.goals:
-            return outcome
-        proof = unreached(self._automaton, relaxed)
-        return self._attempted(request, replace(outcome, possible=possible, goals=possible, proof=proof), budget)
+        possible = tuple(goal for goal in goals if relaxed.may(goal.predicate))
+        return possible, None if possible == goals else unreached(self._automaton, relaxed)
 
     def _attempted(self, request: PlanRequest, outcome: _Outcome, budget: Budget) -> _Outcome:
         if not outcome.goals:
@@ -227,3 +232,8 @@ class Planner:
         if finding is not None and finding.plan is not None:
             self._recollection.keep_plan(task, finding.plan, ())
         return finding
+
+
+def _is_hindered(request: PlanRequest) -> bool:
+    """Whether something is missing, so that goals may well be out of reach, which no engine should have to find out."""
+    return bool(request.circumstances.offline) or any(value is None for value in request.state.values())
