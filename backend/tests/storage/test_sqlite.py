@@ -113,7 +113,7 @@ def test_a_damaged_file_is_named(opened: Database, file: Path) -> None:
         ("sqlite:////tmp/a.sqlite?mode=memory", "must name a file"),
         ("sqlite://host/a.sqlite", "must name a file"),
         ("mysql://user:hidden@host/database", "of the kind `mysql` is not supported"),
-        ("sqlite+aiosqlite:////tmp/a.sqlite", "of the kind `sqlite\\+aiosqlite` is not supported"),
+        ("sqlite+aiosqlite:////folder/a.sqlite", "of the kind `sqlite\\+aiosqlite` is not supported"),
         ("sqlite:////proc/nowhere/a.sqlite", "the folder /proc/nowhere cannot be made: "),
         (f"sqlite:///{Path(__file__)}/a.sqlite", "cannot be made: File exists"),
         ("sqlite:////tmp", "/tmp cannot be opened: Is a directory"),
