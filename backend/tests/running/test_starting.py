@@ -73,7 +73,7 @@ DEMONSTRATION = ("run", str(MODEL), "--emulator", "--demonstration")
         ((*DEMONSTRATION, "--host", "192.0.2.7"), "cannot serve on 192.0.2.7 without HTTPS"),
         ((*DEMONSTRATION, "--proxy", "127.0.0.1", "--name", "a.example"), "--demonstration is for this machine alone"),
         ((*DEMONSTRATION, "--name", "a.example"), "--demonstration is for this machine alone"),
-        ((*DEMONSTRATION, "--database", "sqlite:////tmp/kept"), "--demonstration has a database of its own"),
+        ((*DEMONSTRATION, "--database", "sqlite:////folder/kept"), "--demonstration has a database of its own"),
         (("run", "models"), "a station is a folder with a station.yaml"),
         (("run", str(MODEL), "--transport", "rclpy"), "source the setup file of a ROS 2 installation"),
         (("by-hand", "robot.pose := home"), "no emulated devices are running"),

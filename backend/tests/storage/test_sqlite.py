@@ -110,7 +110,7 @@ def test_a_damaged_file_is_named(opened: Database, file: Path) -> None:
         ("", "the database's URL cannot be read"),
         ("sqlite://", "must name a file"),
         ("sqlite:///:memory:", "must name a file"),
-        ("sqlite:////tmp/a.sqlite?mode=memory", "must name a file"),
+        ("sqlite:////folder/a.sqlite?mode=memory", "must name a file"),
         ("sqlite://host/a.sqlite", "must name a file"),
         ("mysql://user:hidden@host/database", "of the kind `mysql` is not supported"),
         ("sqlite+aiosqlite:////folder/a.sqlite", "of the kind `sqlite\\+aiosqlite` is not supported"),
