@@ -22,7 +22,7 @@ test('a key is of use until it expires or is revoked', () => {
 
 test('the example reads what the key may read, and holds no secret', () => {
 	expect(example(['audit', 'read'], 'https://station:8443')).toBe(
-		'curl --header "Authorization: Bearer $KEY" https://station:8443/api/v1/station'
+		'curl --header @- https://station:8443/api/v1/station <<< "Authorization: Bearer $KEY"'
 	);
 	expect(example(['audit'], 'https://station')).toContain('/api/v1/audit');
 });

@@ -14,8 +14,11 @@ export function standingOf(key: Key, now: number): Standing {
 	return key.expires <= now ? 'expired' : 'valid';
 }
 
-/** A command line that reads something with a key that is kept in the variable `KEY`, from the server at `origin`. */
+/**
+ * A command line that reads something with a key that is kept in the variable `KEY`, from the server at `origin`. The secret
+ * is not one of its arguments, which everybody on the machine may read.
+ */
 export function example(scopes: readonly KeyScope[], origin: string): string {
 	const address = scopes.includes('read') ? 'station' : 'audit';
-	return `curl --header "Authorization: Bearer $KEY" ${origin}/api/v1/${address}`;
+	return `curl --header @- ${origin}/api/v1/${address} <<< "Authorization: Bearer $KEY"`;
 }
