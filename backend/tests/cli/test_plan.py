@@ -84,9 +84,16 @@ def test_circumstances() -> None:
     assert (code, document["status"]) == (1, "none")
     assert document["proof"]["invariant"]
     assert as_json(*goal, "--avoid", "robot.target_pose == above")[1]["status"] == "none"
+    assert as_json(*goal, "--without", "robot.move(home)")[1]["status"] == "plan"
+    code, document = as_json(*goal, "--without", "robot.move(above)")
+    assert (code, document["status"]) == (1, "none")
     assert command("plan", EXAMPLE, "--offline", "robo")[0::2] == (
         2,
         "there is no resource `robo`; did you mean `robot`?\n",
+    )
+    assert command("plan", EXAMPLE, "--without", "robot.move(abov)")[0::2] == (
+        2,
+        "there is no ability `robot.move(abov)`; did you mean `robot.move(above)`?\n",
     )
 
 
@@ -107,6 +114,25 @@ def test_it_says_why_there_is_no_plan_at_all() -> None:
     assert document["why"]["minimal"]
     assert {"part": "offline", "name": "robot", "value": None} in document["why"]["members"]
     assert document["why"]["corrections"] == [[{"name": "robot", "value": None}]]
+
+
+def test_it_says_which_ability_out_of_service_is_in_the_way() -> None:
+    goal = ("plan", EXAMPLE, "--goal", "robot.pose == above", "--without", "robot.move(above)")
+    code, out, _ = command(*goal)
+    assert (code, out.splitlines()[1:]) == (
+        1,
+        [
+            "as long as all of these stay as they are",
+            "      robot.pose is home",
+            "      robot.target_pose is home",
+            "      robot.move(above) is out of service",
+            "      the goal robot.pose == above",
+            "there would be a plan again with",
+            "      robot.move(above) in service",
+        ],
+    )
+    _, document = as_json(*goal)
+    assert {"part": "barred", "name": "robot.move(above)", "value": None} in document["why"]["members"]
 
 
 @pytest.mark.skipif(installed(), reason="the planners are installed")

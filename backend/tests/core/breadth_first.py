@@ -81,7 +81,9 @@ def shortest(
 
 def may_start(ability: Ability, circumstances: Circumstances) -> bool:
     """Whether `circumstances` let the ability start."""
-    return ability.resource not in circumstances.offline and (circumstances.restart or not ability.restart)
+    if ability.resource in circumstances.offline or ability.name in circumstances.barred:
+        return False
+    return circumstances.restart or not ability.restart
 
 
 def permitted(position: State, circumstances: Circumstances) -> bool:

@@ -14,12 +14,15 @@ from sequence_planner.automaton.structure import (
     Kind,
     Operation,
     Specification,
+    Timeouts,
     VariableDeclaration,
 )
 from sequence_planner.expressions.parser import parse, parse_assignment, parse_formula
 from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_formula, resolve_predicate
+from sequence_planner.expressions.syntax import Expression
 from sequence_planner.expressions.types import BOOLEAN, Type, Value
 
+NO_TIMEOUTS = Timeouts()
 FLAGS = ("enabled", "executing", "finished")
 Declared = Mapping[str, tuple[Type, Value]]  # name: type and initial value
 
@@ -36,6 +39,13 @@ class Does:
     finish: str | None = None
     finally_: tuple[str, ...] = ()
     restart: bool = False
+    cancel: tuple[str, ...] = ()
+    timeouts: Timeouts = NO_TIMEOUTS
+
+
+def predicate_of(automaton: Automaton, text: str) -> Expression:
+    """A predicate in the model's language over the variables of an automaton."""
+    return resolve_predicate(parse(text), Scope({name: each.type for name, each in automaton.variables.items()}))
 
 
 def automaton(
@@ -118,4 +128,6 @@ def _ability(name: str, does: Does, scope: Scope) -> Ability:
         finish_guard=None if does.finish is None else resolve_predicate(parse(does.finish), own),
         finish_actions=tuple(resolve_assignment(parse_assignment(action), own) for action in does.finally_),
         restart=does.restart,
+        timeouts=does.timeouts,
+        cancel_actions=tuple(resolve_assignment(parse_assignment(action), own) for action in does.cancel),
     )

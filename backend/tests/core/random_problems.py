@@ -1,6 +1,7 @@
 """Random planning problems: a station with its supervisor, a state, and goals that random runs have reached.
 
-Some goals have formulas for the way there, some resources are offline, some states are to be avoided.
+Some goals have formulas for the way there, some resources are offline and some abilities barred, and some states are
+to be avoided.
 """
 
 from __future__ import annotations
@@ -107,6 +108,7 @@ def _circumstances(choices: Choices, station: Automaton) -> Circumstances:
         frozenset(choices.different(RESOURCES[1:], 0, 1)),
         choices.chance(2),
         tuple(rare(choices, scope) for _ in range(choices.number(0, 1))),
+        frozenset(choices.different(list(station.abilities), 0, 1)),
     )
 
 

@@ -23,8 +23,13 @@ from .random_problems import Problem, problem
 def changed(given_: Problem, changes: tuple[Change, ...]) -> Problem:
     """The problem after `changes`."""
     values = {change.name: change.value for change in changes if change.value is not None}
-    online = {change.name for change in changes if change.value is None}
-    circumstances = replace(given_.circumstances, offline=given_.circumstances.offline - online)
+    online = {change.name for change in changes if change.value is None and not change.ability}
+    served = {change.name for change in changes if change.ability}
+    circumstances = replace(
+        given_.circumstances,
+        offline=given_.circumstances.offline - online,
+        barred=given_.circumstances.barred - served,
+    )
     state = synchronise(given_.automaton, {**given_.state, **values})
     return replace(given_, state=state, circumstances=circumstances)
 
@@ -40,6 +45,7 @@ def possible(given_: Problem) -> bool:
 def by_trying(given_: Problem, size: int) -> set[frozenset[Change]]:
     """All sets of so many changes after which there is a plan."""
     options: list[list[Change]] = [[Change(resource, None)] for resource in sorted(given_.circumstances.offline)]
+    options += [[Change(name, None, ability=True)] for name in sorted(given_.circumstances.barred)]
     for name in given_.automaton.names(Kind.ESTIMATED):
         if given_.state[name] is not None:
             domain = given_.automaton.variables[name].type.domain

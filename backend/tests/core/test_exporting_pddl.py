@@ -87,7 +87,7 @@ def test_effects_that_read_what_others_write_still_see_the_state_before_the_tick
 
 @examples(60)
 @given(made_by(lambda choices: problem(choices, demanding=True)))
-def test_offline_resources_and_states_to_avoid_are_part_of_the_question(asked: Problem) -> None:
+def test_offline_resources_barred_abilities_and_states_to_avoid_are_part_of_the_question(asked: Problem) -> None:
     if not asked.supervisor.safe.everything:
         asked = replace(asked, circumstances=replace(asked.circumstances, restart=False))
     compare(asked, tuple(replace(goal, local=TRUE, at=0) for goal in asked.goals))

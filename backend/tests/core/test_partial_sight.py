@@ -12,7 +12,7 @@ from sequence_planner.expressions.types import BOOLEAN, IntegerRange
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.pdr.localisation import localisable
-from sequence_planner.planning.plan import ORDINARY, Contract, goals_of
+from sequence_planner.planning.plan import ORDINARY, Circumstances, Contract, goals_of
 from sequence_planner.planning.replaying.replay import Replay, missing
 from sequence_planner.planning.sat.seen import PartialSight
 from sequence_planner.synthesis.supervision import synthesise
@@ -28,8 +28,10 @@ LONGEST = 12
 
 
 def several_questions(choices: Choices) -> list[Problem]:
-    """A problem, and the same from further states."""
+    """A problem, now and then with an ability that is barred, and the same from further states."""
     first = problem(choices)
+    barred = frozenset(choices.different(list(first.automaton.abilities), 0, 1))
+    first = replace(first, circumstances=Circumstances(barred=barred))
     return [first, *(replace(first, state=state_of(choices, first.automaton)) for _ in range(3))]
 
 

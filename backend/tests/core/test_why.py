@@ -52,6 +52,7 @@ def possible(given_: Problem, members: Collection[Member], supervisor_for: Super
         frozenset(named[Part.OFFLINE]),
         given_.circumstances.restart,
         tuple(c for c in given_.circumstances.avoid if print_expression(c) in named[Part.AVOID]),
+        frozenset(named[Part.BARRED]),
     )
     free = [name for name in given_.automaton.variables if name not in named[Part.VALUE]]
     states = alike(given_.automaton, given_.state, free)

@@ -156,6 +156,28 @@ def test_one_duration_is_the_shortest_and_the_longest(tmp_path: Path) -> None:
     assert move.timeouts == Timeouts()
 
 
+def test_what_is_done_when_it_is_overdue(tmp_path: Path) -> None:
+    more = f"{FINISH}    timeouts: {{finish: 20, then: replan, retries: 2}}\n"
+    assert with_change(tmp_path, ARM, FINISH, more).abilities["arm.move(out)"].timeouts == Timeouts(
+        finish=20, retries=2, replan=True
+    )
+
+
+def test_alone_an_alarm_is_raised_when_it_is_overdue(tmp_path: Path) -> None:
+    more = f"{FINISH}    timeouts: {{finish: 20, then: alarm}}\n"
+    assert with_change(tmp_path, ARM, FINISH, more).abilities["arm.move(out)"].timeouts == Timeouts(finish=20)
+
+
+def test_an_operation_that_does_not_repeat(tmp_path: Path) -> None:
+    operations = with_change(tmp_path, OPERATIONS, "fetch:", "fetch:\n  repeat: false").operations.values()
+    assert {operation.repeat for operation in operations} == {False}
+
+
+def test_operations_repeat_if_nothing_is_said(tmp_path: Path) -> None:
+    operations = with_change(tmp_path, OPERATIONS, "fetch:", "fetch:\n  priority: 0").operations.values()
+    assert {operation.repeat for operation in operations} == {True}
+
+
 def test_a_cancel_writes_what_a_start_writes(tmp_path: Path) -> None:
     message = "a cancel writes output or estimated variables, and `pose` is a measured variable"
     assert_found(tmp_path, ARM, FINISH, f"{FINISH}    cancel: {{do: [‹pose := home]}}\n", message)
@@ -430,6 +452,22 @@ def test_timeouts_need_a_finish(tmp_path: Path) -> None:
     write(station, "resources/door.yaml", "abilities:\n  open:\n    timeouts: {finish: 3}\n")
     message = "`timeouts` need a `finish`: without one the ability is done with its start"
     assert any(line.endswith(message) for line in findings(station))
+
+
+@pytest.mark.parametrize(
+    ("timeouts", "message"),
+    [
+        ("{then: replan}", "`then: replan` needs a `react` or a `finish`: after how many seconds"),
+        ("{finish: 3, retries: 1}", "`retries` need `then: replan`: with an alarm alone it goes on running"),
+        ("{finish: 3, then: replan, retries: -1}", "expected a number of at least 0, found `-1`"),
+        ("{finish: 3, then: again}", "expected `alarm` or `replan`, found `again`"),
+    ],
+)
+def test_what_is_wrong_with_timeouts(tmp_path: Path, timeouts: str, message: str) -> None:
+    station = copy_of_cell(tmp_path)
+    replace(station, ARM, FINISH, f"{FINISH}    timeouts: {timeouts}\n")
+    found = findings(station)
+    assert any(message in line for line in found), found
 
 
 @pytest.mark.parametrize(

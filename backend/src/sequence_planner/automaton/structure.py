@@ -58,11 +58,14 @@ class HumanTask(Immutable):
 class Timeouts(Immutable):
     """Seconds after a start by which an ability must have reacted, and have finished, before an alarm is raised.
 
-    It has reacted when it has been seen executing, or has finished.
+    It has reacted when it has been seen executing, or has finished. With `replan` its cancel actions are taken besides,
+    and a plan is made anew: with it as long as it has been overdue no more than `retries` times, then without it.
     """
 
     react: float | None = None
     finish: float | None = None
+    retries: int = 0
+    replan: bool = False
 
 
 class Ability(Immutable):
@@ -104,6 +107,7 @@ class Operation(Immutable):
     """A ground operation; of several that cannot be planned together, the highest `priority` is kept.
 
     `local` is a formula of LTL over finite traces (`expressions.traces`) for the run from its activation to its goal.
+    Without `repeat`, once completed, it does not activate again until it has been reset.
     """
 
     name: str
@@ -112,6 +116,7 @@ class Operation(Immutable):
     goal: Expression
     priority: int = 0
     local: Expression | None = None
+    repeat: bool = True
 
     @property
     def activity(self) -> str:

@@ -43,6 +43,7 @@ def described_automaton(
                 "goal": print_expression(operation.goal),
                 "local": _optional(operation.local),
                 "priority": operation.priority,
+                "repeat": operation.repeat,
             }
             for name, operation in automaton.operations.items()
             if chosen(name)
@@ -87,7 +88,12 @@ def _ability(ability: Ability, guard: GuardDocument | None) -> Json:
         "cancel": _actions(ability.cancel_actions),
         "restart": ability.restart,
         "human": None if human is None else {"task": human.text, "acknowledgement": human.acknowledgement},
-        "timeouts": {"react": ability.timeouts.react, "finish": ability.timeouts.finish},
+        "timeouts": {
+            "react": ability.timeouts.react,
+            "finish": ability.timeouts.finish,
+            "then": "replan" if ability.timeouts.replan else "alarm",
+            "retries": ability.timeouts.retries,
+        },
         "duration": ability.duration,
     }
 

@@ -61,6 +61,9 @@ Restart = Annotated[bool, typer.Option("--restart", help="Restart abilities may 
 Offline = Annotated[
     list[str] | None, typer.Option("--offline", metavar="RESOURCE", help="A resource that does nothing. Repeatable.")
 ]
+Without = Annotated[
+    list[str] | None, typer.Option("--without", metavar="ABILITY", help="An ability that does not start. Repeatable.")
+]
 Avoid = Annotated[
     list[str] | None, typer.Option("--avoid", metavar="EXPR", help="What must not hold on the way. Repeatable.")
 ]
@@ -81,6 +84,7 @@ def plan(
     deadline: Deadline = 10.0,
     restart: Restart = False,
     offline: Offline = None,
+    without: Without = None,
     avoid: Avoid = None,
     expected: Expected = False,
     other: With = None,
@@ -97,7 +101,7 @@ def plan(
         supervisor = supervisor_of(automaton, deadline)
     except SynthesisError as error:
         refuse(str(error))
-    circumstances = _circumstances(automaton, offline or [], restart, avoid or [])
+    circumstances = _circumstances(automaton, offline or [], restart, avoid or [], without or [])
     start, goals = _asked(automaton, before, operations or [], goal or [])
     wanted = contract if other is None else Contract.FAST
     request = PlanRequest(start, goals, deadline, contract=wanted, circumstances=circumstances)
@@ -165,7 +169,8 @@ def _diagnosis(
 
 def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest, json: bool) -> bool:
     if request.circumstances != Circumstances():
-        refuse("a plain automaton has no resources, modes or ticks: --offline, --restart and --avoid are for stations")
+        what = "--offline, --without, --restart and --avoid"
+        refuse(f"a plain automaton has no resources, modes or ticks: {what} are for stations")
     budget = Budget.seconds(request.deadline)
     try:
         answer = plan_transitions(automaton, supervisor, request.goals, request.state, request.contract, budget=budget)
@@ -184,11 +189,15 @@ def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest
     return answer.verdict is Verdict.FOUND
 
 
-def _circumstances(automaton: Automaton, offline: Sequence[str], restart: bool, avoid: Sequence[str]) -> Circumstances:
+def _circumstances(
+    automaton: Automaton, offline: Sequence[str], restart: bool, avoid: Sequence[str], without: Sequence[str]
+) -> Circumstances:
     for name in offline:
         named(automaton.resources, name, "resource")
+    for name in without:
+        named(automaton.abilities, name, "ability")
     conditions = tuple(_predicate(automaton, text, "--avoid") for text in avoid)
-    return Circumstances(frozenset(offline), restart, conditions)
+    return Circumstances(frozenset(offline), restart, conditions, frozenset(without))
 
 
 def _asked(

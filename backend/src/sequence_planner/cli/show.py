@@ -185,6 +185,10 @@ def _ability(ability: Ability, guard: GuardDocument | None) -> Lines:
     for name, seconds in limits.items():
         if seconds is not None:
             yield f"    {name} within {seconds:g} s"
+    if ability.timeouts.replan:
+        again = ability.timeouts.retries
+        tried = f", tried again {'once' if again == 1 else f'{again} times'}" if again else ""
+        yield f"    overdue     called off{tried}, then planned without it"
     if ability.duration is not None:
         yield f"    duration    {_seconds(*ability.duration)}"
 
@@ -212,7 +216,8 @@ def _transitions(automaton: Automaton, guards: Guards, wanted: list[str]) -> Lin
 
 
 def _operation(operation: Operation) -> Lines:
-    yield f"operation {operation.name}: {operation.title}, priority {operation.priority}"
+    once = "" if operation.repeat else ", once until it is reset"
+    yield f"operation {operation.name}: {operation.title}, priority {operation.priority}{once}"
     yield f"  precondition  {print_expression(operation.precondition)}"
     yield f"  goal          {print_expression(operation.goal)}"
     if operation.local is not None:

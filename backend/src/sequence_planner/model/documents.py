@@ -103,12 +103,24 @@ class CancelDocument(DocumentPart):
 
 
 class TimeoutsDocument(DocumentPart):
-    """Seconds after the start until an alarm is raised: by when it must have reacted, and have finished."""
+    """Seconds after the start: by when it must have reacted, and have finished; and what is done when it has not."""
 
     react: Given[Seconds] = None
     """By when it must have been seen executing, or have finished."""
     finish: Given[Seconds] = None
     """By when it must have finished."""
+    then: Literal["alarm", "replan"] = "alarm"
+    """What is done beside the alarm: nothing, or it is called off and a plan is made again."""
+    retries: Annotated[int, Field(ge=0, le=100)] = 0
+    """How often it is tried again by such a plan, until it is taken out of service and done without."""
+
+    @model_validator(mode="after")
+    def _says_when(self) -> TimeoutsDocument:
+        if self.then == "replan" and self.react is None and self.finish is None:
+            raise ValueError("`then: replan` needs a `react` or a `finish`: after how many seconds")
+        if self.retries and self.then != "replan":
+            raise ValueError("`retries` need `then: replan`: with an alarm alone it goes on running")
+        return self
 
 
 class AbilityDocument(DocumentPart):
@@ -123,7 +135,7 @@ class AbilityDocument(DocumentPart):
     human: Given[HumanDocument] = None
     """A person does it."""
     timeouts: TimeoutsDocument = TimeoutsDocument()
-    """Seconds after a start until an alarm is raised."""
+    """By when it must have reacted and finished, and what is done when it has not."""
     duration: Given[Duration] = None
     """Seconds that a run is estimated to take, or the fewest and the most."""
     enabled: Predicate = True
@@ -252,6 +264,8 @@ class OperationDocument(DocumentPart):
     """A formula that holds from its activation to its goal, such as `not bad U good`."""
     priority: int = 0
     """When not all active operations can be planned together, the lowest are left out first."""
+    repeat: bool = True
+    """Whether it can become active again once it was completed; else only after it was reset."""
 
 
 class SpecificationDocument(DocumentPart):

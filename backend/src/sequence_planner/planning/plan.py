@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
 
-from sequence_planner.automaton.structure import Automaton, Operation
+from sequence_planner.automaton.structure import Ability, Automaton, Operation
 from sequence_planner.expressions.syntax import TRUE, Expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import Immutable
@@ -38,12 +38,19 @@ class Circumstances(Immutable):
     """What a plan must cope with besides the state.
 
     Abilities of `offline` resources do not start and their effects do not happen. With `restart`, restart abilities may
-    start. No state after step 3 or after a start may satisfy one of `avoid`, nor leave it open.
+    start. No state after step 3 or after a start may satisfy one of `avoid`, nor leave it open. The abilities `barred`
+    do not start; what runs of them finishes, and their devices react as ever.
     """
 
     offline: frozenset[str] = frozenset()
     restart: bool = False
     avoid: tuple[Expression, ...] = ()
+    barred: frozenset[str] = frozenset()
+
+    def bars(self, ability: Ability) -> bool:
+        """Whether the ability does not start, whatever the state."""
+        absent = ability.resource in self.offline or ability.name in self.barred
+        return absent or (ability.restart and not self.restart)
 
 
 # Everything is online, in an ordinary mode, and nothing is to be avoided.
@@ -140,6 +147,7 @@ class WayBackRequest(Immutable):
     state: Mapping[str, Value | None]
     deadline: float = 2.0
     longest: int = 40
+    circumstances: Circumstances = ORDINARY  # whether restart abilities may start is not asked
 
 
 class WayBack(Immutable):

@@ -236,4 +236,6 @@ class Planner:
 
 def _is_hindered(request: PlanRequest) -> bool:
     """Whether something is missing, so that goals may well be out of reach, which no engine should have to find out."""
-    return bool(request.circumstances.offline) or any(value is None for value in request.state.values())
+    circumstances = request.circumstances
+    absent = circumstances.offline or circumstances.barred
+    return bool(absent) or any(value is None for value in request.state.values())

@@ -43,21 +43,24 @@ class WaysBack:
         """
         began = time.monotonic()
         budget = budget or Budget.seconds(request.deadline)
-        state = request.state
-        plan, searched = None, request.longest
-        unknown = frozenset(name for name in self._automaton.variables if state[name] is None)
-        safe = self._safe.for_all(unknown)
+        state, way, searched = request.state, None, request.longest
         try:
-            plan = self._ways.search(state).plan_into(
-                safe, state, Circumstances(), request.longest, budget.part(_SHARE)
-            )
+            way = self.way(state, request.circumstances, request.longest, budget.part(_SHARE))
         except SearchTimeoutError as late:
             searched = late.searched
         threatened = self._threatened(state, request.longest, budget)
-        if plan is None:
-            return WayBackAnswer(None, threatened, searched, time.monotonic() - began)
-        way = self._replayed(state, plan)
-        return WayBackAnswer(way, threatened, len(way.ticks), time.monotonic() - began)
+        if way is not None:
+            searched = len(way.ticks)
+        return WayBackAnswer(way, threatened, searched, time.monotonic() - began)
+
+    def way(self, state: State, circumstances: Circumstances, longest: int, budget: Budget) -> WayBack | None:
+        """The shortest way of at most `longest` ticks, if there is one.
+
+        Raises `SearchTimeoutError` when the budget is spent before, and `PlannerError` when it does not replay.
+        """
+        unknown = frozenset(name for name in self._automaton.variables if state[name] is None)
+        plan = self._ways.search(state).plan_into(self._safe.for_all(unknown), state, circumstances, longest, budget)
+        return None if plan is None else self._replayed(state, plan)
 
     @cached_property
     def _ways(self) -> Searches:

@@ -10,7 +10,7 @@ from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import Scope, suggestion
 from sequence_planner.expressions.syntax import TRUE, conjunction
 from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.model.documents import AbilityDocument, EffectDocument
+from sequence_planner.model.documents import AbilityDocument, EffectDocument, TimeoutsDocument
 from sequence_planner.model.source import SourceText
 
 _COMMANDS = (Kind.OUTPUT, Kind.ESTIMATED)
@@ -61,10 +61,14 @@ def _ability(
         else meaning.actions(finish.do, scope, finish_guard, _COMMANDS, "a finish"),
         restart=document.restart,
         human=_human(meaning, resource, document, binding),
-        timeouts=Timeouts(document.timeouts.react, document.timeouts.finish),
+        timeouts=_timeouts(document.timeouts),
         duration=document.duration,
         cancel_actions=meaning.actions(cancelled, scope, TRUE, _COMMANDS, "a cancel"),
     )
+
+
+def _timeouts(document: TimeoutsDocument) -> Timeouts:
+    return Timeouts(document.react, document.finish, document.retries, document.then == "replan")
 
 
 def _human(meaning: Meaning, resource: str, document: AbilityDocument, binding: Binding) -> HumanTask | None:

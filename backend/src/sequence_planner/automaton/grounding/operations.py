@@ -58,6 +58,7 @@ def _operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocume
                 meaning.predicate(document.goal, scope),
                 document.priority,
                 None if document.local is None else meaning.formula(document.local, scope),
+                document.repeat,
             )
 
 

@@ -66,11 +66,7 @@ class Space:
             for a in automaton.abilities.values()
         }
         self.idle_effects = frozenset(e.name for e in automaton.effects if e.resource in circumstances.offline)
-        self.idle_abilities = frozenset(
-            a.name
-            for a in automaton.abilities.values()
-            if a.resource in circumstances.offline or (a.restart and not circumstances.restart)
-        )
+        self.idle_abilities = frozenset(n for n, a in automaton.abilities.items() if circumstances.bars(a))
 
     def begin(self) -> Position:
         """Before the first tick."""

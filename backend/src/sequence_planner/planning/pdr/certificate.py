@@ -107,7 +107,8 @@ class _Check:
         self._reached = self._circuit.conjunction(each.reached for each in after.values())
         # Where all have been reached there is nothing left to do; no tick is about to lead there.
         open_ = -self._circuit.conjunction(each.reached for each in progress.values())
-        self._given = [open_, *encoding.assumptions(task.circumstances), *self._avoided(tick)]
+        barred = tick.without(task.circumstances.barred)
+        self._given = [open_, *encoding.assumptions(task.circumstances), *barred, *self._avoided(tick)]
 
     def run(self, proof: Proof, open_: frozenset[str]) -> None:
         """All steps of the proof, from the state with any values of what is `open_`."""

@@ -35,6 +35,14 @@ def excluded_pairs(relation: Relation, beginning: Cube, budget: Budget) -> tuple
     return _Pairs(relation, facts, beginning, budget).invariant() if len(facts) <= _MOST_FACTS else None
 
 
+def never_paired(relation: Relation, beginning: Cube, budget: Budget) -> tuple[Cube, ...]:
+    """All pairs of values, each of which occurs, that are never together: the strongest invariant of that kind.
+
+    Raises `SpentError`.
+    """
+    return _Pairs(relation, _facts(relation), beginning, budget).strongest()
+
+
 def _facts(relation: Relation) -> list[int]:
     """A literal for each value of each variable."""
     bits = Counter(literal.name for literal in relation.meanings.values())
@@ -77,6 +85,14 @@ class _Pairs:
             facts = (*self._impossible, *self._possible)
             self._together({fact for fact in facts if relation.after(fact) in true})
         return None
+
+    def strongest(self) -> tuple[Cube, ...]:
+        """The pairs that are never together, whatever the goals are."""
+        relation, inquiry = self._relation, self._inquiry
+        while inquiry.solves([relation.valid, -self._more, *self._apart.values()]):
+            true = set(inquiry.model())
+            self._together({fact for fact in (*self._impossible, *self._possible) if relation.after(fact) in true})
+        return tuple(cube for cube in self._apart if len(cube) > 1)
 
     def _together(self, facts: set[int]) -> None:
         """All of `facts` may be so together."""

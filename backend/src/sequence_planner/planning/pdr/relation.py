@@ -191,11 +191,12 @@ class Relation:
         return Progress(reached, at)
 
     def _kept(self, tick: SymbolicTick, circumstances: Circumstances) -> list[int]:
-        """That no position satisfies a condition to be avoided, or leaves it open."""
+        """That nothing barred starts, and no position satisfies a condition to be avoided, or leaves it open."""
         reading = Reading(self._circuit)
         positions: Sequence[tuple[int, SymbolicState]] = ((Circuit.TRUE, tick.synchronised), *tick.positions)
-        return [
+        avoided = [
             self._circuit.disjunction((-chosen, reading.truth(condition, each).no))
             for condition in circumstances.avoid
             for chosen, each in positions
         ]
+        return [*tick.without(circumstances.barred), *avoided]

@@ -1,4 +1,6 @@
-"""What would bring a plan back: the fewest values of estimated variables, or resources, that need be different."""
+"""What would bring a plan back: the fewest values of estimated variables, resources, or abilities out of service, that
+need be different.
+"""
 
 from __future__ import annotations
 
@@ -24,10 +26,14 @@ MOST_FOUND = 5
 
 
 class Change(Immutable):
-    """An estimated variable has another `value`; or, with None, an offline resource is back online."""
+    """An estimated variable has another `value`.
+
+    With None, an offline resource is back online; or what is back, in service, is an `ability`.
+    """
 
     name: str
     value: Value | None
+    ability: bool = False
 
 
 class Correction(Immutable):
@@ -107,7 +113,7 @@ class _Corrections:
             yield from product(*subjects)
 
     def _options(self) -> Mapping[str, tuple[Change, ...]]:
-        """The changes of each variable and resource."""
+        """The changes of each variable, resource and ability."""
         state = self._task.state
         options: dict[str, tuple[Change, ...]] = {}
         for name in self._automaton.names(Kind.ESTIMATED):
@@ -116,6 +122,8 @@ class _Corrections:
                 options[name] = tuple(Change(name, value) for value in domain if value != state[name])
         for resource in sorted(self._task.circumstances.offline):
             options[f"resource {resource}"] = (Change(resource, None),)
+        for ability in sorted(self._task.circumstances.barred):
+            options[f"ability {ability}"] = (Change(ability, None, ability=True),)
         return options
 
     def _plan(self, task: Task) -> Plan | None:
@@ -136,16 +144,20 @@ class _Corrections:
     def _changed(self, changes: tuple[Change, ...]) -> Task:
         values = {change.name: change.value for change in changes if change.value is not None}
         state = synchronise(self._automaton, {**self._task.state, **values})
-        online = {change.name for change in changes if change.value is None}
+        back = {change.name for change in changes if change.value is None and not change.ability}
+        served = {change.name for change in changes if change.ability}
         circumstances = self._task.circumstances
-        circumstances = replace(circumstances, offline=circumstances.offline - online)
+        circumstances = replace(
+            circumstances, offline=circumstances.offline - back, barred=circumstances.barred - served
+        )
         return replace(self._task, state=state, goals=missing(self._task.goals, state), circumstances=circumstances)
 
 
 def _covers(refuted: Task, proof: Proof, task: Task) -> bool:
-    """Whether the proof for `refuted` is one for `task` too: no more is online, and its invariant holds at first."""
+    """Whether the proof for `refuted` is one for `task` too: no more may happen, and its invariant holds at first."""
     return (
         refuted.goals == task.goals
         and refuted.circumstances.offline <= task.circumstances.offline
+        and refuted.circumstances.barred <= task.circumstances.barred
         and satisfies(asserted(task.state, task.goals), proof.invariant)
     )

@@ -60,6 +60,8 @@ def member_text(member: Member) -> str:
             return f"{member.name} is to be avoided"
         case Part.OFFLINE:
             return f"{member.name} is offline"
+        case Part.BARRED:
+            return f"{member.name} is out of service"
         case Part.LOCAL:
             return f"the local formula of {member.name}"
         case Part.GOAL:
@@ -72,4 +74,6 @@ def correction_text(correction: Correction) -> str:
 
 
 def _change_text(change: Change) -> str:
-    return f"{change.name} online" if change.value is None else f"{change.name} := {print_value(change.value)}"
+    if change.value is not None:
+        return f"{change.name} := {print_value(change.value)}"
+    return f"{change.name} in service" if change.ability else f"{change.name} online"

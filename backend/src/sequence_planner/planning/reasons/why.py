@@ -36,6 +36,7 @@ class Part(StrEnum):
     SPECIFICATION = "specification"
     AVOID = "avoid"  # a condition to be avoided, as it prints
     OFFLINE = "offline"  # a resource
+    BARRED = "barred"  # an ability that is out of service
     LOCAL = "local"  # the formula of a goal
     GOAL = "goal"
 
@@ -52,8 +53,8 @@ class Reason(Immutable):
     """There is no plan as long as all `members` are as they are, whatever else is different: `proof` shows it.
 
     If it is `minimal`, there is a plan without any one of them: were the goal not asked for, its formula not demanded,
-    the specification not given, the resource online, the condition not avoided, or some other value in place. All
-    goals must hold after step 3 of some tick.
+    the specification not given, the resource online, the ability in service, the condition not avoided, or some other
+    value in place. All goals must hold after step 3 of some tick.
     """
 
     members: tuple[Member, ...]
@@ -88,6 +89,8 @@ class _Situation(Immutable):
             yield Member(Part.AVOID, print_expression(condition))
         for name in sorted(circumstances.offline):
             yield Member(Part.OFFLINE, name)
+        for name in sorted(circumstances.barred):
+            yield Member(Part.BARRED, name)
         for goal in self.task.goals:
             if goal.local != TRUE:
                 yield Member(Part.LOCAL, goal.name)
@@ -108,6 +111,9 @@ class _Situation(Immutable):
             case Part.OFFLINE:
                 fewer = circumstances.offline - {name}
                 return replace(self, task=replace(task, circumstances=replace(circumstances, offline=fewer)))
+            case Part.BARRED:
+                fewer = circumstances.barred - {name}
+                return replace(self, task=replace(task, circumstances=replace(circumstances, barred=fewer)))
             case Part.LOCAL:
                 goals = tuple(_undemanding(goal) if goal.name == name else goal for goal in task.goals)
                 return replace(self, task=replace(task, goals=goals))

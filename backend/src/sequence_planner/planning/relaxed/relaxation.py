@@ -55,12 +55,10 @@ def unreached(automaton: Automaton, relaxed: Relaxation) -> Proof:
 
 
 def counted_on(automaton: Automaton, circumstances: Circumstances) -> tuple[Transition, ...]:
-    """The transitions a plan may be made of: no faults, and nothing that an offline resource would have to do."""
+    """The transitions a plan may be made of: no faults, and nothing that does not happen or start."""
     offline = circumstances.offline
     idle = {effect.name for effect in automaton.effects if effect.fault or effect.resource in offline}
-    for ability in automaton.abilities.values():
-        if ability.resource in offline or (ability.restart and not circumstances.restart):
-            idle.add(f"{ability.name}.start")
+    idle |= {f"{name}.start" for name, ability in automaton.abilities.items() if circumstances.bars(ability)}
     return tuple(transition for transition in transitions(automaton) if transition.name not in idle)
 
 

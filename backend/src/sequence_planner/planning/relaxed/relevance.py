@@ -124,8 +124,7 @@ class Relevance:
             return None if move.fault or self._resources[move.name] in circumstances.offline else move
         ability = self._automaton.abilities[move.name.rpartition(".")[0]]
         if move.phase is Phase.START:
-            barred = ability.resource in circumstances.offline or (ability.restart and not circumstances.restart)
-            return None if barred else move
+            return None if circumstances.bars(ability) else move
         if state[ability.flag("executing")] is True:
             return move
         # What has not started must do so before it finishes.

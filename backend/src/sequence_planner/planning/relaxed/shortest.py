@@ -26,7 +26,7 @@ class Shortest:
         while self._searched < longest:
             length = self._searched + 1
             unrolling.extend(length, budget)
-            unrolling.solver.add_clauses([unrolling.avoids(each, length)] for each in task.circumstances.avoid)
+            unrolling.solver.add_clauses([literal] for literal in unrolling.keeps(task.circumstances, length))
             wanted = [unrolling.reached(goal, length) for goal in task.goals]
             answer = unrolling.solver.solve(wanted, budget)
             if answer is None:

@@ -106,9 +106,9 @@ class Acceptance:
         """Whether the circumstances allow that this happens and that this starts, each of it once."""
         effects = [self._tick.effects.get(name) for name in tick.effects]
         abilities = [self._automaton.abilities.get(name) for name in tick.starts]
-        offline, restart = task.circumstances.offline, task.circumstances.restart
+        offline, bars = task.circumstances.offline, task.circumstances.bars
         return (
             all(effect and not effect.fault and effect.resource not in offline for effect in effects)
-            and all(a and a.resource not in offline and (restart or not a.restart) for a in abilities)
+            and all(ability and not bars(ability) for ability in abilities)
             and max(Counter((*tick.effects, *tick.starts)).values(), default=1) == 1
         )

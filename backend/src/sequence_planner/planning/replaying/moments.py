@@ -45,11 +45,7 @@ class Moments:
         self._outputs = tuple(sorted(automaton.outputs))
         self._places = {effect.name: place for place, effect in enumerate(automaton.effects)}
         self._absent = frozenset(effect.name for effect in automaton.effects if effect.resource in offline)
-        self._barred = frozenset(
-            ability.name
-            for ability in automaton.abilities.values()
-            if ability.resource in offline or (ability.restart and not circumstances.restart)
-        )
+        self._barred = frozenset(name for name, ability in automaton.abilities.items() if circumstances.bars(ability))
         self._avoided = Compiler(compiled.names).truths(circumstances.avoid)
 
     def present(self, run: CompiledRun, published: State, goals: Iterable[Goal]) -> Moment:

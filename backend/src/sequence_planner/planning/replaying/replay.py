@@ -139,7 +139,7 @@ class Replay(Immutable):
             return None  # an ability starts once in a tick
         for name in names:
             ability = self.automaton.abilities[name]
-            if ability.resource in self.circumstances.offline or (ability.restart and not self.circumstances.restart):
+            if self.circumstances.bars(ability):
                 return None
             after = supervised_start(self.automaton, self.supervisor, published, state, ability)
             left = None if after is None or not self._allowed(after) else moved(goals, after)

@@ -38,6 +38,10 @@ class SymbolicTick(NamedTuple):
         """The state at the end of the tick."""
         return self.positions[-1][1] if self.positions else self.synchronised
 
+    def without(self, barred: Set[str]) -> list[int]:
+        """The literals that say none of the abilities `barred` starts."""
+        return [-choice for name, choice in self.starts if name in barred]
+
 
 class Encoding:
     """Reads an automaton under its supervisor into a circuit; `unknown` variables have no value and get none.
@@ -73,7 +77,10 @@ class Encoding:
         self._restart = circuit.fresh()
 
     def assumptions(self, circumstances: Circumstances) -> list[int]:
-        """The literals that say which resources are online, and whether restart abilities may start."""
+        """The literals that say which resources are online, and whether restart abilities may start.
+
+        Which abilities are barred is said of each tick (`SymbolicTick.without`): mostly none is.
+        """
         online = [-one if name in circumstances.offline else one for name, one in self._online.items()]
         return [*online, self._restart if circumstances.restart else -self._restart]
 

@@ -121,7 +121,7 @@ class Search:
                 given = []
             for length in range(1, longest + 1):
                 unrolling.extend(length, budget)
-                given += [unrolling.avoids(condition, length) for condition in circumstances.avoid]
+                given += unrolling.keeps(circumstances, length)
                 assumptions = [*given, *wanted(unrolling, length)]
                 answer = unrolling.solver.solve(assumptions, budget)
                 if answer is None:

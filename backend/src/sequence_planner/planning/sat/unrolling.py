@@ -79,7 +79,12 @@ class Unrolling:
             progress.append(self._tracker.after(goal, progress[-1], self.ticks[len(progress) - 1]))
         return progress[length].reached
 
-    def avoids(self, condition: Expression, length: int) -> int:
+    def keeps(self, circumstances: Circumstances, length: int) -> list[int]:
+        """The literals that say the tick at `length` starts nothing barred, and avoids what is to be avoided."""
+        barred = self.ticks[length - 1].without(circumstances.barred)
+        return [*barred, *(self._avoids(condition, length) for condition in circumstances.avoid)]
+
+    def _avoids(self, condition: Expression, length: int) -> int:
         """The literal that says no position of the tick at `length` satisfies `condition` or leaves it open."""
         avoided = self._avoided.setdefault(condition, [])
         while len(avoided) < length:
