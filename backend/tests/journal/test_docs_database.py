@@ -82,7 +82,7 @@ def test_a_copy_of_sqlite_while_it_is_written_to(sqlite: Database, tmp_path: Pat
         other.execute(statement.replace("copy.sqlite", str(copy)))
     code, out, err = command("journal", "--database", f"sqlite:///{copy}", "--verify")
     assert (code, err) == (0, "")
-    assert out.startswith("5 records, all as they were written; ")
+    assert out.startswith("who did what: 5 records, all as they were written; ")
     _is_guarded(f"sqlite:///{copy}")
 
 
@@ -100,7 +100,9 @@ def test_a_copy_of_postgresql(postgresql: Server, tmp_path: Path) -> None:
     restore = ["pg_restore", f"--dbname={_name(place)}", str(copy)]
     for name, *arguments in (dump, restore):
         subprocess.run([programs / name, *arguments], env=environment, check=True, timeout=60)
-    assert command("journal", "--database", place, "--verify")[1].startswith("5 records, all as they were written; ")
+    assert command("journal", "--database", place, "--verify")[1].startswith(
+        "who did what: 5 records, all as they were written; "
+    )
     _is_guarded(place)
 
 

@@ -51,7 +51,7 @@ def test_a_station_is_named_by_its_folder(tmp_path: Path) -> None:
     assert "has no tables yet" in command("journal", tmp_path)[2]
     database.upgrade()
     assert command("journal", tmp_path) == (0, "", "")
-    assert command("journal", tmp_path, "--verify") == (0, "no records yet\n", "")
+    assert command("journal", tmp_path, "--verify") == (0, "nobody did anything yet\nnothing happened yet\n", "")
     filled(database, 1)
     database.close()
     assert command("journal", tmp_path)[1].startswith("1  1970-01-01")
@@ -60,15 +60,15 @@ def test_a_station_is_named_by_its_folder(tmp_path: Path) -> None:
 def test_verifying(database: Database, database_url: str) -> None:
     records = filled(database, 4)
     code, out, _ = command("journal", "--database", database_url, "--verify")
-    said = f"4 records, all as they were written; the hash of the last one is {records[3].hash}\n"
-    assert (code, out) == (0, said)
+    said = f"who did what: 4 records, all as they were written; the hash of the last one is {records[3].hash}\n"
+    assert (code, out) == (0, f"{said}nothing happened yet\n")
     with database.writing() as connection:
         sqlite = connection.dialect.name == "sqlite"
         off = "DROP TRIGGER audit_no_delete" if sqlite else "ALTER TABLE audit DISABLE TRIGGER ALL"
         connection.execute(text(off))
         connection.execute(text("DELETE FROM audit WHERE number = 2"))
     code, out, _ = command("journal", "--database", database_url, "--verify")
-    assert (code, out) == (1, "record 2 is missing, or is not as it was written\n")
+    assert (code, out) == (1, "record 2 of who did what is missing, or is not as it was written\n")
 
 
 def test_all_of_it_as_json_lines(database: Database, database_url: str) -> None:
@@ -107,6 +107,8 @@ def test_the_url_may_come_from_the_environment(database: Database, database_url:
         (["--database", "sqlite:////nowhere.sqlite", "--verify", "--jsonl"], "give one of them"),
         (["--database", "sqlite:////nowhere.sqlite", "--verify", "--limit", "3"], "give one of them"),
         (["--database", "sqlite:////nowhere.sqlite", "--jsonl", "--action", "sign-in"], "give one of them"),
+        (["--database", "sqlite:////nowhere.sqlite", "--checkpoint", __file__], "give both"),
+        (["trim", "--older-than", "3"], "say whose journal"),
     ],
 )
 def test_what_cannot_be_answered(arguments: list[str], said: str) -> None:

@@ -1,49 +1,127 @@
-"""`journal`: who did what, and whether the record of it is whole."""
+"""`journal`: who did what, what has happened at the station, and whether the record of both is whole."""
 
 from __future__ import annotations
 
-from contextlib import closing
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from sequence_planner.cli.options import FINDINGS, FINE, DatabaseOption, refuse
 from sequence_planner.storage.error import StorageError
 from sequence_planner.storage.location import default_url
 
+if TYPE_CHECKING:
+    from sequence_planner.storage.database import Database
+
 Model = Annotated[Path | None, typer.Argument(metavar="[MODEL]", help="The station's folder.", show_default=False)]
 DEFAULT_LIMIT = 50
+_DAY = 86400.0  # seconds
+_LIST = "list"
 
 
-def journal(
+class _Group(TyperGroup):
+    """`journal MODEL` is `journal list MODEL`."""
+
+    def parse_args(self, ctx: Any, args: list[str]) -> list[str]:  # noqa: ANN401 (a class that typer does not show)
+        named = bool(args) and (args[0] in self.commands or args[0] == "--help")
+        return super().parse_args(ctx, args if named else [_LIST, *args])
+
+
+journal = typer.Typer(
+    cls=_Group,
+    help="Who did what, and what has happened. Without a command it is list, as in: journal MODEL --verify",
+)
+
+
+@journal.command(_LIST)
+def list_acts(
     model: Model = None,
     database: DatabaseOption = None,
     limit: Annotated[int, typer.Option(min=1, help="So many records, the latest.")] = DEFAULT_LIMIT,
     action: Annotated[str | None, typer.Option(help="Only records of this action, such as set-mode.")] = None,
     verify: Annotated[bool, typer.Option("--verify", help="Say whether all records are as they were written.")] = False,
+    checkpoint: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", exists=True, dir_okay=False, help="With --verify: a checkpoint kept elsewhere."),
+    ] = None,
     jsonl: Annotated[bool, typer.Option("--jsonl", help="All records in order, one JSON document a line.")] = False,
 ) -> None:
     """Show who did what, when, from where, on what and why: the latest records, the newest last.
 
-    With --verify the exit code is 1 if a record was changed or is missing.
+    With --verify, which is also about what has happened, the exit code is 1 if a record was changed or is missing.
     """
     if (verify or jsonl) and (action is not None or limit != DEFAULT_LIMIT or (verify and jsonl)):
         refuse("--verify and --jsonl are about all records: give one of them, without --action and --limit")
+    if checkpoint is not None and not verify:
+        refuse("--checkpoint is what --verify compares with: give both")
+    with the_database(model, database) as opened:
+        from sequence_planner.cli.journal_lines import documents, latest, verification  # noqa: PLC0415
+
+        if verify:
+            wrong, lines = verification(opened, checkpoint)
+            typer.echo("\n".join(lines))
+            raise typer.Exit(FINDINGS if wrong else FINE)
+        for line in documents(opened) if jsonl else latest(opened, limit, action):
+            typer.echo(line)
+
+
+@journal.command()
+def export(
+    model: Model = None,
+    database: DatabaseOption = None,
+    after: Annotated[int, typer.Option(min=0, help="Only records with numbers above this one.")] = 0,
+) -> None:
+    """Write all that has happened, in order, one JSON document a line."""
+    with the_database(model, database) as opened:
+        from sequence_planner.cli.journal_lines import happenings  # noqa: PLC0415
+
+        for line in happenings(opened, after):
+            typer.echo(line)
+
+
+@journal.command()
+def checkpoint(model: Model = None, database: DatabaseOption = None) -> None:
+    """Sign how far the journal has come, and print that, to be kept where nobody of the station can write."""
+    with the_database(model, database) as opened:
+        from sequence_planner.journal import checkpoints  # noqa: PLC0415
+
+        typer.echo(checkpoints.make(opened, time.time()).model_dump_json())
+
+
+@journal.command()
+def trim(
+    older_than: Annotated[float, typer.Option(metavar="DAYS", min=0, help="What happened so many days ago goes.")],
+    model: Model = None,
+    database: DatabaseOption = None,
+) -> None:
+    """Take out what happened long ago, up to the last snapshot before; who did what stays."""
+    with the_database(model, database) as opened:
+        from sequence_planner.cli.acting import at_the_command_line  # noqa: PLC0415
+        from sequence_planner.journal.retention import trim  # noqa: PLC0415
+
+        trimmed = trim(opened, time.time() - older_than * _DAY, at_the_command_line())
+    typer.echo(f"{trimmed.removed} records were taken out; what happened begins with record {trimmed.begin + 1}")
+
+
+@contextmanager
+def the_database(model: Path | None, database: str | None) -> Iterator[Database]:
+    """A station's database; what cannot be read or written is said with exit code 2."""
     if model is None and not database:
         refuse("say whose journal: a station's folder, or --database URL")
     # The other commands do without a database, and start sooner for it.
-    from sequence_planner.cli.journal_lines import documents, latest, verification  # noqa: PLC0415
     from sequence_planner.storage.database import Database  # noqa: PLC0415
 
     try:
-        with closing(Database.open(database or default_url(model or Path()), create=False)) as opened:
+        opened = Database.open(database or default_url(model or Path()), create=False)
+        try:
             opened.check()
-            if verify:
-                broken, said = verification(opened)
-                typer.echo(said)
-                raise typer.Exit(FINDINGS if broken else FINE)
-            for line in documents(opened) if jsonl else latest(opened, limit, action):
-                typer.echo(line)
+            yield opened
+        finally:
+            opened.close()
     except StorageError as error:
         refuse(str(error))

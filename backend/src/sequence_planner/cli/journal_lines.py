@@ -3,40 +3,45 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from datetime import UTC, datetime
+from pathlib import Path
 
-from sequence_planner.journal import audit
+from pydantic import ValidationError
+from sqlalchemy import Connection
+
+from sequence_planner.journal import audit, run_journal
+from sequence_planner.journal.chain import START, Link
+from sequence_planner.journal.checkpoints import Checkpoint
 from sequence_planner.journal.entry import Record
-from sequence_planner.storage.database import Database
+from sequence_planner.journal.signing_key import key_file, public_key
+from sequence_planner.journal.verification import Verified, verify
+from sequence_planner.storage.database import Database, StorageError
+
+_PAGE = 1000  # records read at once
 
 
-def verification(database: Database) -> tuple[bool, str]:
-    """Whether a record was changed or is missing, and a line that says so or tells the last record."""
+def verification(database: Database, kept: Path | None) -> tuple[bool, Sequence[str]]:
+    """Whether a record was changed or is missing, and lines that say so or tell the last records.
+
+    `kept` is a file with a checkpoint that was kept elsewhere. Raises `StorageError` if it holds none.
+    """
+    checkpoint = None if kept is None else _kept(kept)
     with database.reading() as connection:
-        broken = audit.broken_at(connection)
-        if broken is not None:
-            return True, f"record {broken} is missing, or is not as it was written"
-        last = audit.read(connection, limit=1)
-    if not last:
-        return False, "no records yet"
-    return False, f"{last[0].number} records, all as they were written; the hash of the last one is {last[0].hash}"
+        verified = verify(connection, public_key(key_file(database.place)), checkpoint)
+    return bool(verified.wrong), verified.wrong or [*_whole(verified, checkpoint)]
 
 
 def documents(database: Database) -> Iterator[str]:
-    """All records in order, as JSON.
+    """All records of who did what in order, as JSON."""
+    return _lines(database, 0, audit.page_after)
 
-    Page by page, as a reader who takes long must not keep SQLite from clearing its log.
-    """
-    number = 0
-    while True:
-        with database.reading() as connection:
-            page = audit.page_after(connection, number)
-        if not page:
-            return
-        for stored in page:
-            yield stored.line()
-        number = page[-1].number
+
+def happenings(database: Database, after: int) -> Iterator[str]:
+    """All records of what happened with numbers above `after`, in order, as JSON."""
+    with database.reading() as connection:
+        number = max(after, run_journal.begin(connection).number)
+    return _lines(database, number, run_journal.after)
 
 
 def latest(database: Database, limit: int, action: str | None) -> Iterator[str]:
@@ -47,13 +52,56 @@ def latest(database: Database, limit: int, action: str | None) -> Iterator[str]:
         yield _line(record)
 
 
+def _lines(database: Database, number: int, read: Callable[[Connection, int, int], Sequence[Link]]) -> Iterator[str]:
+    """Page by page, as a reader who takes long must not keep SQLite from clearing its log."""
+    while True:
+        with database.reading() as connection:
+            page = read(connection, number, _PAGE)
+        if not page:
+            return
+        for record in page:
+            yield record.line()
+        number = page[-1].number
+
+
+def _kept(file: Path) -> Checkpoint:
+    try:
+        checkpoint = Checkpoint.model_validate_json(file.read_bytes())
+        checkpoint.statement()
+    except OSError as error:
+        raise StorageError(f"{file} cannot be read: {error.strerror}") from error
+    except (ValidationError, StorageError) as error:
+        raise StorageError(f"{file} holds no checkpoint as `journal checkpoint` prints it") from error
+    return checkpoint
+
+
+def _whole(verified: Verified, kept: Checkpoint | None) -> Iterator[str]:
+    who, what, begin = verified.audit, verified.run, verified.run_begin
+    if who == START:
+        yield "nobody did anything yet"
+    else:
+        yield f"who did what: {who.number} records, all as they were written; the hash of the last one is {who.hash}"
+    if what == START:
+        yield "nothing happened yet"
+    else:
+        cut = "" if begin == START else f" behind the hash {begin.hash}"
+        yield (
+            f"what happened: records {begin.number + 1} to {what.number}{cut}, all as they were written; "
+            f"the hash of the last one is {what.hash}"
+        )
+    if verified.newest is not None:
+        said = verified.newest.statement()
+        yield f"checkpoint {said.checkpoint} of {_moment(said.time)}, signed with the key {verified.newest.public_key}"
+    if kept is not None:
+        yield f"the checkpoint of {_moment(kept.statement().time)} that was kept fits"
+
+
 def _line(record: Record) -> str:
     """A record for people. What would steer a terminal is written as its escape."""
     entry, actor = record.entry, record.entry.actor
-    when = datetime.fromtimestamp(record.time, UTC).isoformat(" ", "milliseconds")
     told = [
         str(record.number),
-        when.removesuffix("+00:00") + " UTC",
+        _moment(record.time),
         actor.name + (f" ({actor.address})" if actor.address else ""),
         entry.action,
         entry.subject,
@@ -65,3 +113,7 @@ def _line(record: Record) -> str:
         each if each.isprintable() else each.encode("unicode_escape").decode("ascii")
         for each in "  ".join(part for part in told if part)
     )
+
+
+def _moment(epoch: float) -> str:
+    return datetime.fromtimestamp(epoch, UTC).isoformat(" ", "milliseconds").removesuffix("+00:00") + " UTC"

@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
 from pydantic import ValidationError
-from sqlalchemy import (
-    BigInteger,
-    Column,
-    Connection,
-    Double,
-    Integer,
-    String,
-    Table,
-    Text,
-    insert,
-    select,
-    update,
-)
+from sqlalchemy import Column, Connection, Double, String, Table, Text, insert, select
 
+from sequence_planner.journal import chain
+from sequence_planner.journal.chain import BELOW_ALL, NUMBER, START, Link, Position, digest
 from sequence_planner.journal.entry import Entry, Record
 from sequence_planner.storage.error import StorageError
 from sequence_planner.storage.metadata import METADATA
 
-_NUMBER: Final = BigInteger().with_variant(Integer, "sqlite")
-
 AUDIT: Final = Table(
     "audit",
     METADATA,
-    Column("number", _NUMBER, primary_key=True, autoincrement=False),
+    Column("number", NUMBER, primary_key=True, autoincrement=False),
     Column("time", Double, nullable=False),
     Column("action", String(100), nullable=False, index=True),
     Column("actor", String(200), nullable=False, index=True),
@@ -41,21 +28,14 @@ AUDIT: Final = Table(
 )
 """`entry` is the JSON text of the entry, of which `action` and `actor` (its id) are copies to search by."""
 
-AUDIT_END: Final = Table(
-    "audit_end",
-    METADATA,
-    Column("id", Integer, primary_key=True, autoincrement=False),
-    Column("number", _NUMBER, nullable=False),
-    Column("hash", String(64), nullable=False),
-)
+AUDIT_END: Final = chain.position_table("audit_end")
 """One row with the number and the hash of the last record, so that records missing at the end show."""
 
 _PAGE: Final = 1000  # records read at once
-_BELOW_ALL: Final = -(2**63)  # also below numbers that were never given
 
 
 @dataclass(frozen=True)
-class Stored:
+class Stored(Link):
     """A record as it is in the database."""
 
     number: int
@@ -65,20 +45,13 @@ class Stored:
     entry: str
     hash: str
 
-    def line(self) -> str:
-        """The record as a line of JSON that anybody can verify: the hash is over all that stands before it.
-
-        It is the SHA-256 over the hash of the record before (nothing, for the first), and the line up to `,"hash":`.
-        """
-        return f'{self._text()},"hash":"{self.hash}"}}'
-
-    def digest(self, before: str) -> str:
-        """What its hash must be behind a record with the hash `before`."""
-        return hashlib.sha256((before + self._text()).encode()).hexdigest()
+    def text(self) -> str:
+        """It as a line of JSON, up to its hash."""
+        return f'{{"number":{self.number},"time":{self.time!r},"entry":{self.entry}'
 
     def is_whole(self, before: str) -> bool:
-        """Whether it is what was written behind a record with the hash `before`."""
-        if self.hash != self.digest(before):
+        """Whether it is what was written, also to search by."""
+        if not super().is_whole(before):
             return False
         entry = json.loads(self.entry)
         return (self.action, self.actor) == (entry["action"], entry["actor"]["id"])
@@ -91,16 +64,15 @@ class Stored:
         except ValidationError as error:
             raise StorageError(f"record {self.number} of the journal cannot be read: it was changed") from error
 
-    def _text(self) -> str:
-        return f'{{"number":{self.number},"time":{self.time!r},"entry":{self.entry}'
-
 
 def append(connection: Connection, entry: Entry, now: float) -> Record:
     """Write a record. Call it within a `writing()` block: the record is there if, and only if, all of the block is."""
-    number, before = connection.execute(select(AUDIT_END.c.number, AUDIT_END.c.hash)).one()
-    number += 1
+    before = end(connection)
+    if before is None:
+        raise StorageError("the journal's end was taken out of the database: put a copy in its place")
+    number = before.number + 1
     written = Stored(number, float(now), entry.action, entry.actor.id, entry.model_dump_json(), "")
-    digest = written.digest(before)
+    hash_ = digest(before.hash, written.text())
     connection.execute(
         insert(AUDIT),
         {
@@ -109,11 +81,16 @@ def append(connection: Connection, entry: Entry, now: float) -> Record:
             "action": written.action,
             "actor": written.actor,
             "entry": written.entry,
-            "hash": digest,
+            "hash": hash_,
         },
     )
-    connection.execute(update(AUDIT_END), {"number": number, "hash": digest})
-    return Record(number=number, time=written.time, entry=entry, hash=digest)
+    chain.move(connection, AUDIT_END, Position(number, hash_), before)
+    return Record(number=number, time=written.time, entry=entry, hash=hash_)
+
+
+def end(connection: Connection) -> Position | None:
+    """Where the record ends; None if somebody has taken that out."""
+    return chain.position(connection, AUDIT_END)
 
 
 def read(
@@ -146,20 +123,11 @@ def page_after(connection: Connection, number: int, limit: int = _PAGE) -> list[
 
 def broken_at(connection: Connection) -> int | None:
     """The number of the first record that is not as it was written, or is missing; None when all are whole."""
-    number, last = 0, ""
-    for stored in _everything(connection):
-        number += 1
-        if stored.number != number or not stored.is_whole(last):
-            return number
-        last = stored.hash
-    end = connection.execute(select(AUDIT_END.c.number, AUDIT_END.c.hash)).one_or_none()
-    if end is None or end.number > number:
-        return number + 1
-    return None if tuple(end) == (number, last) else number
+    return chain.broken_at(_everything(connection), START, end(connection))
 
 
 def _everything(connection: Connection) -> Iterator[Stored]:
-    number = _BELOW_ALL
+    number = BELOW_ALL
     while page := page_after(connection, number):
         yield from page
         number = page[-1].number

@@ -21,8 +21,13 @@ def default_url(model: Path) -> str:
     resolved = model.resolve()
     mark = hashlib.sha256(os.fsencode(resolved)).hexdigest()[:8]
     name = re.sub(r"[^\w.-]", "_", resolved.name)
-    file = _state_home() / "sequence-planner" / f"{name}-{mark}" / "station.sqlite"
+    file = state_folder() / f"{name}-{mark}" / "station.sqlite"
     return f"sqlite:///{quote(str(file))}"
+
+
+def state_folder() -> Path:
+    """This user's folder for what stations keep. Raises `StorageError` where there is no home."""
+    return _state_home() / "sequence-planner"
 
 
 def _state_home() -> Path:

@@ -16,6 +16,7 @@ from sequence_planner.storage.error import StorageError
 from sequence_planner.storage.trouble import PATIENCE
 
 READING: Final = {"sequence_planner_reading": True}  # execution options of a connection
+_LAST: Final = "sequence_planner_last_read"  # what a connection was last used for, in its `info`
 
 
 def engine(file: SqliteFile, create: bool) -> Engine:
@@ -108,7 +109,11 @@ def _begin(connection: Connection, file: SqliteFile, identity: tuple[int, int] |
     if _identity(file) != identity:
         raise StorageError(f"{file} was removed or replaced while it was in use: start the station again")
     reading = bool(connection.get_execution_options().get("sequence_planner_reading"))
-    connection.exec_driver_sql(f"PRAGMA query_only = {'ON' if reading else 'OFF'}")
+    if connection.info.get(_LAST) is not reading:
+        # A writer has nothing to wait for behind its turn, for which it waits by itself.
+        connection.exec_driver_sql(f"PRAGMA query_only = {'ON' if reading else 'OFF'}")
+        connection.exec_driver_sql(f"PRAGMA busy_timeout = {int(PATIENCE * 1000) if reading else 0}")
+        connection.info[_LAST] = reading
     if reading:
         connection.exec_driver_sql("BEGIN")
     else:
@@ -121,17 +126,14 @@ def _become_the_writer(connection: Connection) -> None:
     SQLite by itself looks ever more seldom, down to ten times a second, and is then kept out by whoever writes a lot.
     """
     until = time.monotonic() + PATIENCE
-    connection.exec_driver_sql("PRAGMA busy_timeout = 0")
-    try:
-        while True:
-            try:
-                connection.exec_driver_sql("BEGIN IMMEDIATE")
-            except OperationalError as error:
-                code = getattr(error.orig, "sqlite_errorcode", None)
-                if code != sqlite3.SQLITE_BUSY or time.monotonic() > until:
-                    raise
-                time.sleep(0.001)
-            else:
-                return
-    finally:
-        connection.exec_driver_sql(f"PRAGMA busy_timeout = {int(PATIENCE * 1000)}")
+    while True:
+        try:
+            connection.exec_driver_sql("BEGIN IMMEDIATE")
+        except OperationalError as error:
+            code = getattr(error.orig, "sqlite_errorcode", 0)
+            # The last eight bits are the kind of error: also while another process restores the log, it is busy.
+            if code & 0xFF != sqlite3.SQLITE_BUSY or time.monotonic() > until:
+                raise
+            time.sleep(0.001)
+        else:
+            return
