@@ -14,14 +14,17 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from control.journalling import journal
 from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.commands import StartProduction
 from sequence_planner.control.controller import Controller
+from sequence_planner.control.process import what_is_known
 from sequence_planner.control.view import StationIdentity
 from sequence_planner.ros.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.ros.transport import QualityOfService, Sample
 from sequence_planner.station import ReadyStation, prepare_station
+from sequence_planner.storage.database import Database
 from sequence_planner.synthesis.supervision import synthesise
 
 CELL = Path(__file__).parents[1] / "stations" / "cell"
@@ -85,6 +88,7 @@ class Bench:
     transport: MemoryTransport
     controller: Controller
     running: asyncio.Task[None]
+    database: Database
 
     async def start(self) -> None:
         await self.controller.command(StartProduction(actor=SYSTEM))
@@ -104,17 +108,20 @@ async def until(what: Callable[[], bool], seconds: float = 20) -> None:
 
 
 @asynccontextmanager
-async def bench() -> AsyncIterator[Bench]:
-    """A controller that runs, and waits for production to be started."""
+async def bench(network: MemoryNetwork | None = None, database: Database | None = None) -> AsyncIterator[Bench]:
+    """A controller that runs, and waits for production to be started; it knows what `database` does."""
     station, supervisor = cell()
-    network = MemoryNetwork()
+    network = network or MemoryNetwork()
     transport = network.join(station.registry, "sequence_planner", asyncio.get_running_loop())
-    controller = Controller(IDENTITY, station, supervisor, transport)
-    running = asyncio.create_task(controller.run())
-    await asyncio.sleep(0)  # what has not begun would not end in good order either
-    try:
-        yield Bench(network, transport, controller, running)
-    finally:
-        running.cancel()
-        await asyncio.gather(running, return_exceptions=True)
-        transport.close()
+    with contextlib.ExitStack() as kept:
+        database = database or kept.enter_context(journal())
+        known = what_is_known(database, station.automaton)
+        controller = Controller(IDENTITY, station, supervisor, transport, database, known)
+        running = asyncio.create_task(controller.run())
+        await asyncio.sleep(0)  # what has not begun would not end in good order either
+        try:
+            yield Bench(network, transport, controller, running, database)
+        finally:
+            running.cancel()
+            await asyncio.gather(running, return_exceptions=True)
+            transport.close()

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 
 import pytest
 
+from control.journalling import journal
 from control.rig import truck_engine
 from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.structure import Kind
@@ -28,6 +29,7 @@ from sequence_planner.planning.plan import PlanAnswer, PlanRequest
 from sequence_planner.planning.replaying.replay import Replay
 from sequence_planner.ros.memory import MemoryNetwork
 from sequence_planner.ros.transport import Sample
+from sequence_planner.storage.database import Database
 
 LONGEST_TICK = 20.0  # milliseconds, of 99 in 100 ticks
 STEPS = (1, 2, 5, 10, 20)  # milliseconds, in which the length of ticks is told
@@ -129,7 +131,7 @@ class Trouble:
         execution = self.controller.execution
         name = self.chance.choice(execution.automaton.names(Kind.ESTIMATED))
         value = self.chance.choice(execution.automaton.variables[name].type.domain)
-        execution.state = {**execution.state, name: value}
+        execution.correct({name: value}, "somebody", "disturbed", Moment.now())
         self.seen["estimates corrected"] += 1
 
     def _send_away(self) -> None:
@@ -167,13 +169,18 @@ def watched(into: Disturbed, clock: Clock) -> Iterator[None]:
 
 async def disturbed(seconds: float, seed: str, clock: Clock = time.perf_counter) -> Disturbed:
     """The station under disturbances for so long. Ticks are timed by `clock`, in seconds."""
+    with journal() as database:
+        return await _disturbed(seconds, seed, clock, database)
+
+
+async def _disturbed(seconds: float, seed: str, clock: Clock, database: Database) -> Disturbed:
     seen = Disturbed()
     chance = random.Random(seed)
     station, supervisor, _ = truck_engine()
     network = MemoryNetwork()
     devices = Devices(network, chance.randrange(1000))
     transport = network.join(station.registry, "sequence_planner", asyncio.get_running_loop())
-    controller = Controller(IDENTITY, station, supervisor, transport)
+    controller = Controller(IDENTITY, station, supervisor, transport, database)
     trouble = Trouble(controller, devices, chance, seen.seen)
     with watched(seen, clock):
         living = [asyncio.create_task(devices.live()), asyncio.create_task(controller.run())]

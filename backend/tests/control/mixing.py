@@ -9,10 +9,11 @@ import asyncio
 import os
 import time
 from collections.abc import Awaitable, Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from functools import cache
 from pathlib import Path
 
+from control.journalling import journal
 from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.commands import StartProduction
@@ -52,6 +53,8 @@ class Plant:
         self._memory = MemoryNetwork()
         self._transports: list[Transport] = []
         self._running: list[asyncio.Task[None]] = []
+        self._kept = ExitStack()
+        self._database = self._kept.enter_context(journal())
 
     def join(self, node: str) -> Transport:
         """Join the network as a node."""
@@ -67,7 +70,7 @@ class Plant:
     def controller(self, supervisor: Supervisor) -> Controller:
         """A controller that runs, and waits for production to be started."""
         identity = StationIdentity(name="mixer", title="", description="", transport=self._kind, emulated=True)
-        controller = Controller(identity, self.station, supervisor, self.join("sequence_planner"))
+        controller = Controller(identity, self.station, supervisor, self.join("sequence_planner"), self._database)
         self._running.append(asyncio.create_task(controller.run()))
         return controller
 
@@ -90,6 +93,7 @@ class Plant:
         await self.stop_controllers()
         for transport in self._transports:
             transport.close()
+        self._kept.close()
 
 
 def play(kind: str, scenario: Callable[[Plant], Awaitable[None]], station: ReadyStation | None = None) -> None:
@@ -140,5 +144,6 @@ def value(controller: Controller, name: str) -> Value | None:
 
 
 def alarms(controller: Controller) -> list[str]:
-    """The texts of all alarms."""
-    return [alarm.text for alarm in controller.view().alarms.values()]
+    """The texts of all alarms whose causes are there, and of their parts."""
+    there = [alarm for alarm in controller.view().alarms.values() if alarm.ended is None]
+    return [text for alarm in there for text in (alarm.text, *alarm.parts)]

@@ -12,7 +12,8 @@ from pathlib import Path
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.commands import CommandRefused
-from sequence_planner.control.execution import Execution, TickOutcome
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.questions import BETTER_EVERY
 from sequence_planner.control.tasks import Task, TaskDesk
@@ -65,6 +66,7 @@ class Rig:
     step: float = 0.1
     now: float = 1000.0
     thinking: int = 0  # ticks that pass until the planner answers
+    patience: float = 20.0  # seconds within which it has to
     improves: bool = True  # whether better plans are asked for
     folder: Path = TRUCK_ENGINE
     silent: set[str] = field(default_factory=set)  # topics from which nothing comes
@@ -105,7 +107,8 @@ class Rig:
                     self.desk.acknowledge(id_, task.revision)
                 except CommandRefused:
                     continue
-        outcome = self.execution.tick(self.measured() | self.desk.measured(), Moment(self.now, self.now))
+        measured, now = self.measured() | self.desk.measured(), Moment(self.now, self.now)
+        outcome = self.execution.tick(measured, now, (), self.offline)
         self.ticks.append(outcome)
         self.started += outcome.started
         self.completed += sorted(outcome.completed)
@@ -125,10 +128,10 @@ class Rig:
 
     def _question(self) -> PlanRequest | None:
         """As the controller asks: for a plan that is needed, and now and then for a better one."""
-        request = self.execution.request(deadline=20)
+        request = self.execution.request(deadline=self.patience)
         if request is None and self.improves and self.now >= self._next_better:
             self._next_better = self.now + BETTER_EVERY
-            request = self.execution.better(deadline=20)
+            request = self.execution.better(deadline=self.patience)
         return request
 
     def check_law(self, outcome: TickOutcome) -> None:
@@ -144,6 +147,11 @@ class Rig:
             if speaks:
                 self.pipelines.take(name, self.devices.report(name), self.now)
         return self.pipelines.values(speaking)
+
+    @property
+    def offline(self) -> frozenset[str]:
+        """The resources that are not heard."""
+        return frozenset()
 
     def value(self, name: str) -> Value | None:
         return self.execution.state[name]

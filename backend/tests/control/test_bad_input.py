@@ -214,7 +214,7 @@ def test_a_publisher_that_is_started_anew(folder: Path) -> None:
 
 def test_a_flood(folder: Path) -> None:
     async def scenario(plant: Plant, controller: Controller) -> None:
-        feed = controller.feeds.topics[TOPIC]
+        feed = controller.devices.feeds.topics[TOPIC]
         async with talker(folder, 10_000, {}):
             await until(lambda: feed.messages > 5_000, "the flood is heard")
             seen = controller.execution.ticks

@@ -11,6 +11,7 @@ from typing import NoReturn
 import pytest
 
 from control.bench import COMMAND, COMMAND_TYPE, IDENTITY, Arm, Bench, bench, cell, until
+from control.journalling import journal
 from core.building import Does, automaton
 from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import StateSet, Supervisor
@@ -23,6 +24,7 @@ from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.ros.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.ros.transport import QualityOfService, TransportError
 from sequence_planner.station import ReadyStation
+from sequence_planner.storage.database import Database
 
 
 def run(scenario: Callable[[Bench], Awaitable[None]]) -> None:
@@ -34,7 +36,9 @@ def run(scenario: Callable[[Bench], Awaitable[None]]) -> None:
 
 
 def alarm(on: Bench, key: str) -> bool:
-    return key in on.controller.view().alarms
+    """Whether the alarm is there and its cause lasts."""
+    found = on.controller.view().alarms.get(key)
+    return found is not None and found.ended is None
 
 
 def completed(on: Bench) -> int:
@@ -129,15 +133,15 @@ def test_a_command_that_cannot_be_sent_is_owed_and_nothing_is_started_meanwhile(
                 broken.setattr(on.transport, "publish", refuses.__get__(on.transport))
                 await on.start()
                 await on.until(lambda: on.controller.execution.plan.status is PlanStatus.FOLLOWED)
-                await asyncio.sleep(0.2)
+                await on.until(lambda: alarm(on, "command"))
                 shown = on.controller.view()
-                assert shown.alarms[f"command:{COMMAND}"].priority is Priority.HIGH
+                assert shown.alarms["command"].priority is Priority.HIGH
                 assert shown.topics[COMMAND].trouble == "the network is down"
                 assert shown.plan.steps[0].waits_for == [f"the command on {COMMAND} to be sent"]
                 assert value(on, "arm.goto") == "home"
             await on.until(lambda: arm.commands[-1:] == ["out"])
             assert arm.commands[0] == "home", "what was owed comes first"
-            assert not alarm(on, f"command:{COMMAND}")
+            assert not alarm(on, "command")
 
     run(scenario)
 
@@ -162,7 +166,7 @@ def test_nothing_is_started_while_another_commands_the_same_devices() -> None:
         await on.start()
         other = on.network.join(cell()[0].registry, "other", asyncio.get_running_loop())
         other.advertise(COMMAND, COMMAND_TYPE, QualityOfService.RELIABLE)
-        await on.until(lambda: alarm(on, f"rival:{COMMAND}"))
+        await on.until(lambda: alarm(on, "rival"))
         with arm.saying("home"):
             await on.until(lambda: on.controller.execution.plan.status is PlanStatus.FOLLOWED)
             await asyncio.sleep(0.2)
@@ -275,11 +279,11 @@ def test_a_station_that_never_comes_to_rest_is_said_and_paced() -> None:
     )
     everything_is_safe = Supervisor(StateSet((), ()), {})
 
-    async def scenario() -> None:
+    async def scenario(database: Database) -> None:
         registry = cell()[0].registry
         transport = MemoryNetwork().join(registry, "sequence_planner", asyncio.get_running_loop())
         station = ReadyStation(blinking, StationPipelines({}, {}), registry)
-        controller = Controller(IDENTITY, station, everything_is_safe, transport)
+        controller = Controller(IDENTITY, station, everything_is_safe, transport, database)
         running = asyncio.create_task(controller.run())
         await until(lambda: "restless" in controller.view().alarms)
         assert "blink" in controller.view().alarms["restless"].text
@@ -289,4 +293,5 @@ def test_a_station_that_never_comes_to_rest_is_said_and_paced() -> None:
         running.cancel()
         await asyncio.gather(running, return_exceptions=True)
 
-    asyncio.run(scenario())
+    with journal() as database:
+        asyncio.run(scenario(database))

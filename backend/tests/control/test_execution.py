@@ -7,6 +7,7 @@ from collections import Counter
 import pytest
 
 from control.rig import PAIRS, Rig, at_once, never
+from sequence_planner.control.moment import Moment
 from sequence_planner.control.tasks import Task
 from sequence_planner.control.view import Mode, PlanStatus
 from sequence_planner.control.waiting import waits_for
@@ -65,13 +66,13 @@ def test_paused_lets_the_running_finish_and_starts_nothing() -> None:
     rig = Rig()
     rig.start_production()
     assert rig.run(60, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
-    rig.execution.mode = Mode.PAUSED
+    rig.execution.change_mode(Mode.PAUSED, "Eva", Moment(rig.now, rig.now))
     before = len(rig.started)
     assert rig.run(30, until=lambda: not [s for s in rig.execution.plan.order.running if s.ability in MOVES])
     rig.run(10)
     assert len(rig.started) == before
     assert waits_for(rig.execution, "nutrunner.run_nut", {}) == ["automatic mode: the station is paused"]
-    rig.execution.mode = Mode.AUTOMATIC
+    rig.execution.change_mode(Mode.AUTOMATIC, "Eva", Moment(rig.now, rig.now))
     assert rig.run(90, until=lambda: engines(rig) >= 1)
 
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from hypothesis import given
 
+from control.alarming.scene import alarms
 from control.bench import CELL
 from control.rig import Rig
-from control.test_alarms import alarms
 from control.test_ticks import EVERYTHING_IS_SAFE, NOW
 from core.budget import examples
 from core.building import Does, automaton
@@ -25,9 +25,10 @@ from sequence_planner.automaton.tick import (
     synchronise,
     update_operations,
 )
-from sequence_planner.control.execution import Execution, TickOutcome
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import PlanStatus, Production
+from sequence_planner.control.view import PlanStatus
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.traces import satisfies
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
@@ -147,7 +148,6 @@ def test_a_violation_raises_an_alarm_that_says_which(tmp_path: Path) -> None:
 
 def test_what_happens_before_production_is_started_is_not_held_against_anybody() -> None:
     execution = Execution(BOX, EVERYTHING_IS_SAFE)
-    execution.production = Production.WAITING
     execution.tick({"full": None, "closed": None}, NOW)
     execution.tick({"full": False, "closed": True}, NOW)
     execution.tick({"full": False, "closed": False}, NOW)
@@ -209,7 +209,7 @@ def test_what_is_violated_is_what_the_positions_do_not_satisfy(lived: Life) -> N
     execution = Execution(station, lived.problem.supervisor)
     execution.state = lived.problem.state
     execution.start_production()
-    execution.face(lived.problem.circumstances)
+    silent = lived.problem.circumstances.offline
     witness = Witness(station)
     for happening in lived.happening:
         before, active = execution.state, execution.active
@@ -217,7 +217,7 @@ def test_what_is_violated_is_what_the_positions_do_not_satisfy(lived: Life) -> N
         for place in happening:
             after = apply_effects({**before, **measured}, [station.effects[place]])
             measured = measured if after is None else {name: after[name] for name in measured}
-        outcome = execution.tick(measured, NOW)
+        outcome = execution.tick(measured, NOW, silent=silent)
         violated = execution.pursued.violated
         for name, kept in witness.sees(before, measured, active, outcome).items():
             assert kept == (name not in violated), "at its end"

@@ -137,11 +137,11 @@ def test_the_graph_is_published_only_when_it_has_changed() -> None:
     async def scenario() -> None:
         async with bench() as b:
             link = Link()
-            showing = asyncio.create_task(show_network(b.controller.network, link))
+            showing = asyncio.create_task(show_network(b.controller.devices.network, link))
             await until(lambda: bool(link.told) and STATE in link.told[-1].nodes["/sequence_planner"].subscribes)
             before = len(link.told)
-            looks = b.controller.network.seen
-            await until(lambda: b.controller.network.seen is not looks)
+            looks = b.controller.devices.network.seen
+            await until(lambda: b.controller.devices.network.seen is not looks)
             arm = Arm(b.network)
             await until(lambda: len(link.told) > before and "/emulated_devices" in link.told[-1].nodes)
             assert len(link.told) <= before + 1

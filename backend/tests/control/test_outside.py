@@ -12,7 +12,7 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.outside import Difference, Outside
-from sequence_planner.control.view import DifferenceView, PlanStatus, SpecificationView, WayBackView
+from sequence_planner.control.view import AlarmState, DifferenceView, PlanStatus, SpecificationView, WayBackView
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.way_back import WaysBack
 from sequence_planner.synthesis.supervision import synthesise
@@ -213,7 +213,7 @@ def test_a_device_moved_by_hand_raises_an_alarm_that_says_what_is_wrong_and_whic
             with arm.saying("home"):  # and the command is what it was
                 execution.state = {**execution.state, "arm.goto": "home"}
                 await on.until(lambda: on.controller.view().way_back is None)
-                assert UNSAFE not in on.controller.view().alarms
+                assert on.controller.view().alarms[UNSAFE].state is AlarmState.RETURNED
 
     asyncio.run(scenario())
 

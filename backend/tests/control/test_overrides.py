@@ -8,9 +8,11 @@ from pathlib import Path
 import pytest
 
 from control.bench import IDENTITY, until
+from control.journalling import journal
 from core.actors import EVA
 from pipelines.station_writing import station_with
 from sequence_planner.actor import SYSTEM
+from sequence_planner.control.asks import AboutFlows, AboutPipelines
 from sequence_planner.control.clients import Clients
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.commands import ClearOverride, CommandRefused, SetOverride, StartProduction, TakeControl
@@ -23,6 +25,7 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.ros.memory import MemoryNetwork
 from sequence_planner.ros.transport import QualityOfService, Sample
 from sequence_planner.station import ReadyStation
+from sequence_planner.storage.database import Database
 from sequence_planner.synthesis.supervision import synthesise
 
 TANK = """
@@ -146,14 +149,14 @@ def test_the_controller_sets_shows_and_tells_what_passes(tmp_path: Path) -> None
     station = station_with(tmp_path, TANK, FIELDS)
     supervisor = synthesise(station.automaton)
 
-    async def scenario() -> None:
+    async def scenario(database: Database) -> None:
         network = MemoryNetwork()
         loop = asyncio.get_running_loop()
         transport = network.join(station.registry, "sequence_planner", loop)
         tank = network.join(station.registry, "tank", loop)
         orders: list[object] = []
         tank.subscribe("/tank/order", "tank_msgs/msg/Order", QualityOfService.RELIABLE, orders.extend)
-        controller = Controller(IDENTITY, station, supervisor, transport)
+        controller = Controller(IDENTITY, station, supervisor, transport, database)
         running = asyncio.create_task(controller.run())
         await asyncio.sleep(0)
         await controller.command(StartProduction(actor=SYSTEM))
@@ -166,15 +169,16 @@ def test_the_controller_sets_shows_and_tells_what_passes(tmp_path: Path) -> None
             await controller.command(SetOverride(actor=EVA, name="tank.speed", fields={"speed": 9}))
         await controller.command(ClearOverride(actor=EVA, name="tank.speed"))
         await until(lambda: len(orders) == 3)
-        check_told(controller, station)
+        await check_told(controller, station)
         running.cancel()
         await asyncio.gather(running, return_exceptions=True)
 
-    asyncio.run(scenario())
+    with journal() as database:
+        asyncio.run(scenario(database))
 
 
-def check_told(controller: Controller, station: ReadyStation) -> None:
-    graph, flows = controller.answer("pipelines"), controller.answer("flows")
+async def check_told(controller: Controller, station: ReadyStation) -> None:
+    graph, flows = await controller.answer(AboutPipelines()), await controller.answer(AboutFlows())
     assert isinstance(graph, PipelinesView)
     assert isinstance(flows, FlowsView)
     assert set(graph.pipelines) == set(flows.pipelines) == {*station.pipelines.incoming, *station.pipelines.outgoing}

@@ -20,7 +20,7 @@ import pytest
 
 from control.bench import CELL, cell, until
 from sequence_planner.automaton.tick import initial_state
-from sequence_planner.control import planner_process
+from sequence_planner.control import answering_process
 from sequence_planner.control.planner_process import Listener, PlannerProcess
 from sequence_planner.expressions.syntax import Variable
 from sequence_planner.expressions.types import BOOLEAN
@@ -147,7 +147,7 @@ def test_one_that_stands_still_holds_up_nothing_and_is_replaced(monkeypatch: pyt
         (still,) = processes()
         assert still.pid is not None
         os.kill(still.pid, signal.SIGSTOP)
-        monkeypatch.setattr(planner_process, "GRACE", -4.5)  # with the deadline, half a second
+        monkeypatch.setattr(answering_process, "GRACE", -4.5)  # with the deadline, half a second
         began = time.monotonic()
         asking.ask()
         assert time.monotonic() - began < 0.1

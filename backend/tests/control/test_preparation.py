@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -13,7 +14,7 @@ from sequence_planner.analysis.process import SynthesisEndedError
 from sequence_planner.control.preparation import Preparation, analyse
 
 
-def test_a_process_that_cannot_be_started_is_said() -> None:
+def test_a_process_that_cannot_be_started_is_said(tmp_path: Path) -> None:
     async def scenario() -> None:
         preparation = Preparation()
 
@@ -21,22 +22,37 @@ def test_a_process_that_cannot_be_started_is_said() -> None:
             """No process can be given a function that only this one has."""
 
         title: Any = unsendable
-        await analyse(replace(cell()[0].automaton, title=title), preparation)
+        await analyse(replace(cell()[0].automaton, title=title), preparation, tmp_path)
         with pytest.raises(SynthesisEndedError, match="could not be computed"):
             await preparation.supervisor
 
     asyncio.run(scenario())
 
 
-def test_what_was_found_before_the_end_stays() -> None:
+def test_what_was_found_before_the_end_stays(tmp_path: Path) -> None:
     async def scenario() -> None:
         preparation = Preparation()
-        await analyse(cell()[0].automaton, preparation)
+        await analyse(cell()[0].automaton, preparation, tmp_path)
         assert preparation.analysis is not None
         assert preparation.analysis.supervised is True
         preparation.end(SynthesisEndedError("killed"))
         assert preparation.analysis.pending is None
         assert preparation.analysis.guards is not None
         assert (await preparation.supervisor) is not None
+
+    asyncio.run(scenario())
+
+
+def test_at_the_next_start_it_is_there_at_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    tmp_path.chmod(0o700)
+
+    async def scenario() -> None:
+        first = Preparation()
+        await analyse(cell()[0].automaton, first, tmp_path)
+        monkeypatch.setattr("sequence_planner.control.preparation.analysing", None)  # nothing is computed again
+        second = Preparation()
+        await analyse(cell()[0].automaton, second, tmp_path)
+        assert await second.supervisor == await first.supervisor
+        assert second.analysis == first.analysis
 
     asyncio.run(scenario())

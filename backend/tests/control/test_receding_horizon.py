@@ -125,7 +125,7 @@ def test_an_answer_is_not_taken_once_an_ability_it_may_hold_has_been_started(fol
 def test_that_there_is_nothing_better_changes_nothing(following: Execution) -> None:
     request = asked_better(following)
     following.adopt(request, PlanAnswer(Verdict.LATE, None, (), (), 3, 5.0))
-    following.plan.unanswered("the planner has ended", again=True)
+    following.unanswered("the planner has ended", again=True)
     assert following.plan.status is PlanStatus.FOLLOWED
     assert following.plan.order.names == ("aside", "onwards", "ring")
 
@@ -165,9 +165,8 @@ def test_while_a_robot_is_offline_an_operator_does_its_work() -> None:
     request = asked(execution)
     execution.adopt(request, found(DIRECT))
     offline = Circumstances(frozenset({"robot"}))
-    execution.face(offline)
+    assert execution.tick(AT_REST, NOW, silent=offline.offline).started == ()
     assert execution.startable("directly") is None
-    assert execution.tick(AT_REST, NOW).started == ()
     assert execution.plan.status is PlanStatus.BROKEN
 
     request = asked(execution)
@@ -204,14 +203,14 @@ def test_it_is_shown_what_kind_of_plan_is_followed_and_who_found_it() -> None:
 
 def test_that_there_was_no_plan_is_asked_again_once_a_resource_is_back() -> None:
     execution, planner = beginning(by_hand(), **AT_REST)
-    execution.face(Circumstances(frozenset({"robot", "operator"})))
+    execution.tick(AT_REST, NOW, silent=frozenset({"robot", "operator"}))
     request = asked(execution)
     answer = planner.answer(request)
     assert answer.plan is None
     assert execution.adopt(request, answer)
     assert execution.plan.status is PlanStatus.NONE
     assert execution.request(5) is None
-    execution.face(Circumstances(frozenset({"robot"})))
+    execution.tick(AT_REST, NOW, silent=frozenset({"robot"}))
     assert asked(execution).circumstances.offline == {"robot"}
 
 
@@ -228,7 +227,7 @@ def test_the_truck_station_assembles_as_fast_when_better_plans_are_asked_for(see
 
 def test_goals_left_out_for_what_was_so_for_a_moment_are_asked_for_again(following: Execution) -> None:
     """A device was silent when the plan was asked for; all is as it was before when the answer comes."""
-    following.mode = Mode.PAUSED  # so that nothing else changes
+    following.change_mode(Mode.PAUSED, "Eva", NOW)  # so that nothing else changes
     asked_better(following)
     following.tick({"at": None, "rung": False}, NOW)
     assert following.plan.status is PlanStatus.BROKEN

@@ -7,6 +7,7 @@ import pytest
 from control.rig import PAIRS, Rig, never, truck_engine
 from sequence_planner.automaton.structure import State
 from sequence_planner.control.commands import CommandRefused
+from sequence_planner.control.moment import Moment
 from sequence_planner.control.tasks import Task, TaskDesk
 from sequence_planner.control.view import Mode
 
@@ -108,7 +109,7 @@ def test_a_task_acknowledged_twice_completes_one() -> None:
 
 def test_a_task_is_finished_while_the_station_is_paused() -> None:
     rig, task = waiting()
-    rig.execution.mode = Mode.PAUSED
+    rig.execution.change_mode(Mode.PAUSED, "Eva", Moment(rig.now, rig.now))
     before = len(rig.started)
     rig.desk.acknowledge(task.id, task.revision)
     rig.run(1)

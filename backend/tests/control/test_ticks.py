@@ -10,9 +10,10 @@ import pytest
 from control.rig import PAIRS, Rig, never
 from core.building import Does, automaton
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.control.execution import Execution, TickOutcome
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import PlanStatus, Production
+from sequence_planner.control.view import PlanStatus
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.planning.plan import Plan, PlanAnswer, PlanTick, Verdict
 from sequence_planner.planning.reasons.diagnosis import Diagnosis
@@ -76,7 +77,6 @@ def none(searched: int = 60) -> PlanAnswer:
 def test_outputs_that_change_before_production_are_no_news_and_let_the_station_rest() -> None:
     """Else every tick is followed by another at once, for as long as nobody starts production."""
     execution = Execution(LAMP, EVERYTHING_IS_SAFE)
-    execution.production = Production.WAITING
     execution.state = {**execution.state, "lamp": True}
     outcomes = [execution.tick({"lit": True}, NOW) for _ in range(4)]
     assert execution.state["lamp"] is False
@@ -184,7 +184,7 @@ def test_why_there_is_no_plan_at_all_is_asked_until_it_is_answered() -> None:
     assert question == execution.plan.unexplained(20), "it may have been called off"
     assert (question.state, [goal.name for goal in question.goals]) == (execution.state, ["light"])
     diagnosis = Diagnosis(None, ())
-    execution.plan.explained(diagnosis)
+    execution.explained(diagnosis)
     assert execution.plan.diagnosis is diagnosis
     assert execution.plan.unexplained(20) is None
     execution.state = {**execution.state, "lamp": False}
@@ -235,7 +235,7 @@ def test_a_question_without_an_answer_is_asked_again_only_if_that_may_help(again
     execution.start_production()
     execution.tick({"lit": False}, NOW)
     assert execution.request(5) is not None
-    execution.plan.unanswered("the planner has ended", again)
+    execution.unanswered("the planner has ended", again)
     assert status(execution) is PlanStatus.NONE
     assert execution.plan.reason == "no plan: the planner has ended"
     assert (execution.request(5) is not None) == again
@@ -243,7 +243,6 @@ def test_a_question_without_an_answer_is_asked_again_only_if_that_may_help(again
 
 def test_what_is_active_before_production_is_shown_with_the_reason_for_no_plan() -> None:
     execution = Execution(LAMP, EVERYTHING_IS_SAFE)
-    execution.production = Production.WAITING
     execution.tick({"lit": False}, NOW)
     assert execution.active == {"light"}
     assert execution.plan.reason == "production has not been started"

@@ -4,64 +4,38 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import Field, TypeAdapter
 
-from sequence_planner.actor import Actor
+from sequence_planner.control.alarm_commands import (
+    AcknowledgeAlarm,
+    RestoreAlarm,
+    ShelveAlarm,
+    SuppressAlarm,
+    UnshelveAlarm,
+)
+from sequence_planner.control.command_base import CommandBase, CommandRefused
 from sequence_planner.control.override_view import FieldValue
-from sequence_planner.control.view import Mode
-from sequence_planner.journal.entry import LONGEST_REASON
+from sequence_planner.control.production_commands import (
+    EnterRestart,
+    LeaveRestart,
+    SetMode,
+    SetService,
+    SetStepping,
+    StartProduction,
+    TakeStep,
+)
+from sequence_planner.control.restart_commands import (
+    ConfirmEstimates,
+    CorrectEstimates,
+    DecideOutputs,
+    ForceVariable,
+    ReleaseForce,
+    StopErrand,
+    TakeErrand,
+    UndoCorrection,
+)
 
-
-class CommandBase(BaseModel):
-    """`actor` is who asks, `reason` why, in that person's words.
-
-    What moves devices is for the one session in control. `harmless` is what only ever stops them: it is carried out
-    even where it cannot be recorded.
-    """
-
-    model_config = ConfigDict(frozen=True, extra="forbid")
-    for_control: ClassVar[bool] = False
-    actor: Actor
-    reason: str | None = Field(default=None, max_length=LONGEST_REASON)
-
-    @property
-    def needs_control(self) -> bool:
-        """Whether its actor must be in control."""
-        return self.for_control
-
-    @property
-    def harmless(self) -> bool:
-        """Whether it can only bring devices to rest."""
-        return False
-
-    @property
-    def subject(self) -> str:
-        """On what it acts, for the record."""
-        return ""
-
-
-class SetMode(CommandBase):
-    """Change the mode of execution."""
-
-    kind: Literal["set-mode"] = "set-mode"
-    mode: Mode
-
-    @property
-    def needs_control(self) -> bool:
-        """To go on needs it; anybody who may act may pause."""
-        return not self.harmless
-
-    @property
-    def harmless(self) -> bool:
-        """Pausing is."""
-        return self.mode is Mode.PAUSED
-
-
-class StartProduction(CommandBase):
-    """Allow outputs to be published. Nothing else implies it."""
-
-    kind: Literal["start-production"] = "start-production"
-    for_control: ClassVar[bool] = True
+__all__ = ["COMMAND", "Command", "CommandBase", "CommandRefused", "SetMode", "StartProduction"]
 
 
 class AcknowledgeTask(CommandBase):
@@ -130,7 +104,25 @@ class WithdrawControl(CommandBase):
 
 Command = Annotated[
     SetMode
+    | EnterRestart
+    | LeaveRestart
     | StartProduction
+    | SetStepping
+    | TakeStep
+    | SetService
+    | CorrectEstimates
+    | UndoCorrection
+    | ConfirmEstimates
+    | DecideOutputs
+    | TakeErrand
+    | StopErrand
+    | ForceVariable
+    | ReleaseForce
+    | AcknowledgeAlarm
+    | ShelveAlarm
+    | UnshelveAlarm
+    | SuppressAlarm
+    | RestoreAlarm
     | AcknowledgeTask
     | SetOverride
     | ClearOverride
@@ -140,18 +132,3 @@ Command = Annotated[
     Field(discriminator="kind"),
 ]
 COMMAND: TypeAdapter[Command] = TypeAdapter(Command)
-
-
-class CommandRefused(Exception):
-    """The controller does not carry out a command.
-
-    `slug` names the kind of problem for machines (the `type` of RFC 9457), `detail` says to a person what to do;
-    `status` is the HTTP status that says the same.
-    """
-
-    def __init__(self, slug: str, title: str, detail: str, status: int = 409) -> None:
-        super().__init__(detail)
-        self.slug = slug
-        self.title = title
-        self.detail = detail
-        self.status = status

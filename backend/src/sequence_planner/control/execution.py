@@ -1,183 +1,212 @@
-"""Ticks on a live station, and the start order followed through them.
+"""A running station: its course, and all that can happen to it.
 
-Pure: it has no clock, does no I/O and starts nothing but in its own state. Whoever runs it brings measurements and
-plans, and carries out what a tick's outcome says.
+All that changes it is a happening, of which those who listen are told: the same happenings lead to the same state
+again, bit for bit. Whoever runs it brings measurements, plans and what people ask for, and carries out what a tick's
+outcome says.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
 
-from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, Kind, State
-from sequence_planner.automaton.tick import reverts
-from sequence_planner.control.live_plan import LivePlan, Present
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.control.conduct import Beginning, Force, OutOfService
+from sequence_planner.control.course import Course
+from sequence_planner.control.errand import NAME as ERRAND
+from sequence_planner.control.errand import Errand
+from sequence_planner.control.happenings import (
+    Answered,
+    Asked,
+    CalledOff,
+    Confirmed,
+    Corrected,
+    ErrandStopped,
+    ErrandTaken,
+    Explained,
+    Forced,
+    ForceReleased,
+    Happening,
+    ModeChanged,
+    ProductionStarted,
+    ServiceChanged,
+    SteppingChanged,
+    StepTaken,
+    Ticked,
+    Unanswered,
+)
+from sequence_planner.control.heard import Heard, TickOutcome
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.pursued import Pursued
+from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view import Mode, Production
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.plan import Circumstances, PlanAnswer, PlanRequest
-from sequence_planner.planning.replaying.lookahead import Lookahead
+from sequence_planner.immutable import replace
+from sequence_planner.planning.plan import Contract, PlanAnswer, PlanRequest
+from sequence_planner.planning.reasons.diagnosis import Diagnosis
 
 
-@dataclass(frozen=True)
-class TickOutcome:
-    """What a tick did. `outputs` are the output variables to be published now.
+class Execution(Course):
+    """A running station. `listeners` hear of each happening right after it."""
 
-    `finished` are the abilities that took their finish actions, which one may do again and again while its finish guard
-    holds; `ended` are those of them that had been running.
-    """
+    def __init__(self, automaton: Automaton, supervisor: Supervisor, beginning: Beginning | None = None) -> None:
+        super().__init__(automaton, supervisor, beginning)
+        self.listeners: list[Callable[[Heard], None]] = []
 
-    finished: tuple[str, ...]
-    ended: tuple[str, ...]
-    started: tuple[str, ...]
-    activated: frozenset[str]
-    completed: frozenset[str]
-    conflicts: tuple[tuple[str, str, str], ...]
-    outputs: frozenset[str]
-    changed: bool
-
-
-class Execution:
-    """The state of a running station."""
-
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
-        self.automaton = automaton
-        self.supervisor = supervisor
-        self._compiled = CompiledTick(automaton)
-        self._lookahead = Lookahead(self._compiled, supervisor)
-        unmeasured = dict.fromkeys(automaton.names(Kind.MEASURED), None)
-        self._run = CompiledRun(self._compiled, {**automaton.initial_valuation, **unmeasured})
-        self._run.synchronise()
-        self.published: State = self.state
-        self.active: frozenset[str] = frozenset()
-        self.pursued = Pursued()
-        self.circumstances = Circumstances()
-        self.plan = LivePlan(automaton, self._lookahead)
-        self.mode = Mode.AUTOMATIC
-        self.production = Production.PREPARING
-        self.ticks = 0
-        self.obstacles: tuple[str, ...] = ()  # what keeps everything from starting, as one waits for it
-
-    @property
-    def state(self) -> State:
-        """The values of all variables and flags. It can be set to any other state, from which the ticks then go on."""
-        return self._run.state
-
-    @state.setter
-    def state(self, state: State) -> None:
-        self._run = CompiledRun(self._compiled, state)
-
-    @property
-    def safe(self) -> bool:
-        """Whether the state is in the safe set for every value its unknown variables could have."""
-        return self.supervisor.safe.includes(self.state)
-
-    @property
-    def blind(self) -> bool:
-        """Whether some measured variable has no value."""
-        return any(self.state[name] is None for name in self.automaton.names(Kind.MEASURED))
+    def tick(
+        self,
+        measured: Mapping[str, Value | None],
+        now: Moment,
+        obstacles: tuple[str, ...] = (),
+        silent: frozenset[str] = frozenset(),
+    ) -> TickOutcome:
+        """One tick with the given measured values. One that raises has not happened: all is as it was before."""
+        before = self.state
+        kept = (self._run.state, self.published, self.active, self._operations, self.plan.copy(), self.conduct)
+        kept_obstacles = self.obstacles
+        try:
+            self.obstacles = obstacles
+            if silent != self.conduct.silent:
+                self._change(silent=silent)
+            outcome = self._tick(measured, now)
+        except BaseException:
+            self.state, self.published, self.active, self._operations, self.plan, self.conduct = kept
+            self.obstacles = kept_obstacles
+            self._face()
+            self.forget()
+            raise
+        self.ticks += 1
+        if outcome.changed:
+            self.revision += 1
+        self._tell(Ticked(measured, obstacles, silent, now), before, outcome)
+        return outcome
 
     def start_production(self) -> None:
         """From now on outputs are published; all of them at once, by whoever runs this."""
-        self.production = Production.STARTED
-        self.published = self.state
-
-    def face(self, circumstances: Circumstances) -> None:
-        """From now on plans are made, and followed, in these circumstances."""
-        if circumstances != self.circumstances:
-            self.circumstances = circumstances
-            self._lookahead.face(circumstances)
-
-    def tick(self, measured: Mapping[str, Value | None], now: Moment) -> TickOutcome:
-        """One tick with the given measured values. One that raises has not happened: all is as it was before."""
-        kept = (self.state, self.published, self.active, self.pursued, self.plan.copy())
-        try:
-            outcome = self._tick(measured, now)
-        except BaseException:
-            self.state, self.published, self.active, self.pursued, self.plan = kept
-            raise
-        self.ticks += 1
-        return outcome
-
-    def _tick(self, measured: Mapping[str, Value | None], now: Moment) -> TickOutcome:
         before = self.state
-        self._run.sense(measured)
-        finishing = self._run.finish()
-        self._run.synchronise()
-        ended = tuple(name for name in finishing.finished if self.plan.order.finish(name, now))
-        activated, completed = self._update_operations(now)
-        started = self._start(now)
-        self.plan.look(self._present, self.active)
-        # Before production is started nothing is published, and then all outputs are: no change of one is news.
-        news = self.automaton.outputs if self.production is Production.STARTED else ()
-        outputs = frozenset(name for name in news if self.state[name] != self.published[name])
+        self._change(production=Production.STARTED, returned=frozenset())
         self.published = self.state
-        moved = self.state is not before and self.state != before
-        changed = bool(started or ended or activated or completed or outputs) or moved
-        return TickOutcome(
-            finishing.finished, ended, started, activated, completed, finishing.conflicts, outputs, changed
-        )
+        self._tell(ProductionStarted(), before)
 
-    def _update_operations(self, now: Moment) -> tuple[frozenset[str], frozenset[str]]:
-        """Step 4: the operations that are activated by it, and those that are completed."""
-        active = self._run.update_operations(self.active)
-        activated, completed = active - self.active, self.active - active
-        self.pursued = self.pursued.settled(completed, self._run.values, now)
-        self._run.record_activity(active)
-        if self.production is Production.STARTED:
-            begun = active - self.pursued.goals.keys()
-            self.pursued = self.pursued.activated(self.automaton, begun, self._run.values, now)
-        self.active = active
-        self.plan.settle(active, self.pursued.hopeful)
-        return activated, completed
+    def change_mode(self, mode: Mode, by: str, now: Moment) -> None:
+        """Another mode. An errand ends with it, and holding calls off what runs."""
+        before = self.state
+        self._end_errand(f"{by} chose {mode}", now, by=by)
+        if mode is Mode.HOLD:
+            self._call_off(now)
+        restarts = Mode.RESTART in (mode, self.mode)
+        self._change(mode=mode, steps=0)  # a step is for what can be seen now
+        if restarts:
+            self.plan.drop("operations wait in restart mode" if mode is Mode.RESTART else "restart mode was left")
+        self._tell(ModeChanged(mode, by, now), before)
+
+    def call_off(self, by: str, now: Moment) -> None:
+        """Call off what runs, and the errand; the mode stays."""
+        before = self.state
+        self._end_errand(f"{by} chose to hold", now, by=by)
+        self._change(steps=0)
+        self._call_off(now)
+        self._tell(CalledOff(by, now), before)
+
+    def set_stepping(self, on: bool) -> None:
+        """From now on every start waits for a step, or none does."""
+        self._change(stepping=on, steps=0)
+        self._tell(SteppingChanged(on), self.state)
+
+    def take_step(self) -> None:
+        """One start may be taken."""
+        self._change(steps=1)
+        self._tell(StepTaken(), self.state)
+
+    def set_service(self, of: ServiceKind, name: str, in_service: bool, by: str, why: str, now: Moment) -> None:
+        """Take something out of service, or put it back."""
+        service = {key: each for key, each in self.conduct.service.items() if key != (of, name)}
+        if not in_service:
+            service[of, name] = OutOfService(of, name, now, by, why)
+        done = self.conduct.done - {name} if of is ServiceKind.OPERATION else self.conduct.done
+        tried = {each: times for each, times in self.conduct.tried.items() if each != name}
+        self._change(service=service, done=done, tried=tried)
+        self._tell(ServiceChanged(of, name, in_service, by, why, now), self.state)
+
+    def correct(self, values: Mapping[str, Value], by: str, why: str, now: Moment) -> None:
+        """Estimated variables have these values from now on; outputs too, before production is started."""
+        before = self.state
+        forces = self.conduct.forces
+        real = {name: replace(force, real=values[name]) for name, force in forces.items() if name in values}
+        self._write({name: value for name, value in values.items() if name not in real})
+        self._change(returned=self.conduct.returned - values.keys(), forces={**forces, **real} if real else forces)
+        self._tell(Corrected(values, by, why, now), before)
+
+    def confirm(self, names: frozenset[str], by: str, now: Moment) -> None:
+        """A person has seen that these estimates are as believed."""
+        self._tell(Confirmed(names, by, now), self.state)
+
+    def force(self, name: str, value: Value, until: Moment, by: str, why: str) -> None:
+        """Let a measured variable or an output have a value until then; a measured one is sensed by the next tick."""
+        before = self.state
+        held = self.conduct.forces.get(name)
+        real = before[name] if held is None else held.real
+        self._change(forces={**self.conduct.forces, name: Force(value, until, by, why, real)})
+        if name in self.automaton.outputs:
+            self._write({name: value})
+        self._tell(Forced(name, value, until, by, why), before)
+
+    def release(self, name: str) -> None:
+        """Let a forced variable be as it comes."""
+        before = self.state
+        self._release((name,))
+        self._tell(ForceReleased(name), before)
+
+    def take_errand(self, errand: Errand, now: Moment) -> None:
+        """Carry out a plan that a person has taken."""
+        self._end_errand("another was taken", now, by=errand.by)
+        self._change(errand=errand)
+        self.plan.carry_out(errand.plan, ERRAND, errand.title)
+        self._tell(ErrandTaken(errand, now), self.state)
+
+    def stop_errand(self, by: str, now: Moment) -> None:
+        """Start no more of it."""
+        self._end_errand(f"{by} stopped it", now, by=by)
+        self._tell(ErrandStopped(by, now), self.state)
+
+    # Its plan.
 
     def request(self, deadline: float) -> PlanRequest | None:
         """What to ask the planner now, or None when there is nothing to ask or it would answer the same again."""
-        return self.plan.request(self._present, deadline)
+        request = self.plan.request(self._present, deadline) if self.conduct.executes_operations else None
+        return self._note_asked(request, Contract.FAST)
 
     def better(self, deadline: float) -> PlanRequest | None:
         """What to ask a planner that has nothing else to do; None when there is nothing that could become better."""
-        return self.plan.better(self._present, deadline)
+        request = self.plan.better(self._present, deadline) if self.conduct.executes_operations else None
+        return self._note_asked(request, Contract.MINIMAL)
 
     def adopt(self, request: PlanRequest, answer: PlanAnswer) -> bool:
         """Follow an answered plan, if it still fits the state. False when a new one must be asked for."""
-        return self.plan.adopt(self._present, request, answer)
+        if not self.conduct.executes_operations:
+            return True
+        adopted = self.plan.adopt(self._present, request, answer)
+        self._tell(Answered(answer), self.state)
+        return adopted
 
-    def may_go_on(self, name: str) -> bool:
-        """Whether the order still reaches the goals once its first ability, `name`, has been started now."""
-        after = self.startable(name)
-        return after is not None and self.plan.may_go_on(self._present, after)
+    def unanswered(self, why: str, again: bool) -> None:
+        """The planner could not answer. With `again` the same question is asked once more, else only another one."""
+        self.plan.unanswered(why, again)
+        self._tell(Unanswered(why, again), self.state)
 
-    def startable(self, name: str) -> CompiledRun | None:
-        """The run after the start of the ability, if its guards and the supervisor allow it now."""
-        ability = self.automaton.abilities[name]
-        if ability.resource in self.circumstances.offline or (ability.restart and not self.circumstances.restart):
-            return None
-        if name not in self._run.startable():
-            return None
-        after = self._run.fork()
-        if not after.start(name) or reverts(self.automaton, self.published, self._run.values, after.values):
-            return None
-        return after if self.supervisor.allows(self._run.values, after.values) else None
+    def explained(self, diagnosis: Diagnosis) -> None:
+        """Take note of why there is no plan, as far as that was found."""
+        self.plan.explained(diagnosis)
+        self._tell(Explained(diagnosis), self.state)
 
-    @property
-    def _present(self) -> Present:
-        return Present(self._run, self.published, self.pursued, self.circumstances)
+    def _note_asked(self, request: PlanRequest | None, contract: Contract) -> PlanRequest | None:
+        if request is not None:
+            self.asked = request
+            self._tell(Asked(contract), self.state)
+        return request
 
-    def _start(self, now: Moment) -> tuple[str, ...]:
-        """Step 5: the first abilities of the order start, as long as they may."""
-        started: list[str] = []
-        if self.mode is not Mode.AUTOMATIC or self.production is not Production.STARTED or self.obstacles:
-            return ()
-        # An ability starts once in a tick, or its first command would never be published.
-        while self.plan.next_may_start(self._present, lambda name: None if name in started else self.startable(name)):
-            step = self.plan.start(now)
-            self._run.start(step.ability)
-            self.pursued = self.pursued.moved(self._run.values, now)
-            if self.automaton.abilities[step.ability].finish_guard is None:
-                step.ended = now
-            started.append(step.ability)
-        return tuple(started)
+    def _tell(self, happening: Happening, before: State, outcome: TickOutcome | None = None) -> None:
+        if outcome is None and not isinstance(happening, Asked | Answered | Unanswered | Explained):
+            self.revision += 1
+        heard = Heard(happening, before, self.state, outcome)
+        for listener in self.listeners:
+            listener(heard)

@@ -60,9 +60,10 @@ class Feeds:
         self._all = self.topics | self.answers
         self._initial = initial or {}
         polled = {use.response.name for use in pipelines.services.values() if use.every is not None}
-        self._expected = {name: feed for name, feed in self._all.items() if name in self.topics or name in polled}
+        self.expected = {name: feed for name, feed in self._all.items() if name in self.topics or name in polled}
         self._asked = [feed for name, feed in self.answers.items() if name not in polled]
         self.heard_on = pipelines.heard_on
+        self.sources = {name: pipelines.topics_of(feed) for name, feed in pipelines.feeds.items()}  # of each variable
         self._registry = registry
         self._forgotten: set[str] = set(self._all)  # topics of which nothing is remembered
 
@@ -144,7 +145,7 @@ class Feeds:
 
     def awaited(self, now: float) -> list[str]:
         """The topics that are not fresh, and the services called every so often that do not answer."""
-        return [name for name, feed in self._expected.items() if not feed.fresh(now)]
+        return [name for name, feed in self.expected.items() if not feed.fresh(now)]
 
     def resource_of(self, name: str) -> str:
         """The resource of a topic, or of a service or action by the name of a part."""

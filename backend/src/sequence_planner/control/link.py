@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import time
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
@@ -21,28 +20,26 @@ from pathlib import Path
 from types import TracebackType
 
 import structlog
-from pydantic import ValidationError
 
+from sequence_planner.control.asks import Ask
 from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.lines import read_lines
 from sequence_planner.control.link_messages import (
-    FROM_SERVER,
     LONGEST_COMMAND,
-    About,
+    AnswerMessage,
     AskMessage,
-    FlowsAnswer,
+    CommandMessage,
     LinkMessage,
     NetworkMessage,
-    PipelinesAnswer,
-    Refusal,
     Reply,
     ViewMessage,
     encode,
 )
+from sequence_planner.control.link_replies import MOST_ASKS, failed, late, read, refusal, too_many
 from sequence_planner.control.network_view import NetworkView
-from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.unix_socket import listen_on
 from sequence_planner.control.view import StationView
+from sequence_planner.control.view_part import View
 
 LOG = structlog.get_logger(__name__)
 SHORTEST_INTERVAL = 0.05  # seconds between two views to the same peer
@@ -50,21 +47,22 @@ MOST_PEERS = 8
 MOST_COMMANDS = 32  # of one peer, being carried out at the same time
 
 Handle = Callable[[Command], Awaitable[None]]
-Answer = Callable[[About], PipelinesView | FlowsView]
+Answer = Callable[[Ask], Awaitable[View]]
 
 
 @dataclass(eq=False)
 class _Peer:
-    """A connection: what it was shown last of each kind, and how many more commands it may give."""
+    """A connection: what it was shown last of each kind, how many more commands it may give, and what it asks."""
 
     reader: asyncio.StreamReader
     writer: asyncio.StreamWriter
     shown: dict[str, bytes] = field(default_factory=dict)
     fresh: asyncio.Event = field(default_factory=asyncio.Event)
     slots: asyncio.Semaphore = field(default_factory=lambda: asyncio.Semaphore(MOST_COMMANDS))
+    asks: set[asyncio.Task[None]] = field(default_factory=set)
 
 
-def _nothing_to_tell(about: About) -> PipelinesView | FlowsView:
+async def _nothing_to_tell(ask: Ask) -> View:
     raise CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
 
 
@@ -141,6 +139,8 @@ class ControllerLink:
             self._peers.discard(peer)
             self._connections.discard(task)
             showing.cancel()
+            for asking in peer.asks:
+                asking.cancel()  # nobody waits for the answer any more
             writer.transport.abort()
 
     async def _show(self, peer: _Peer) -> None:
@@ -148,14 +148,17 @@ class ControllerLink:
         with contextlib.suppress(ConnectionError):
             while True:
                 await peer.fresh.wait()
-                peer.fresh.clear()
-                for kind in list(self._newest):
-                    line = self._encoded(kind)
-                    if line is not peer.shown.get(kind):
-                        peer.shown[kind] = line
-                        peer.writer.write(line)
-                        await peer.writer.drain()
+                await self._show_newest(peer)
                 await asyncio.sleep(SHORTEST_INTERVAL)
+
+    async def _show_newest(self, peer: _Peer) -> None:
+        peer.fresh.clear()
+        for kind in list(self._newest):
+            line = self._encoded(kind)
+            if line is not peer.shown.get(kind):
+                peer.shown[kind] = line
+                peer.writer.write(line)
+                await peer.writer.drain()
 
     def _encoded(self, kind: str) -> bytes:
         line = self._lines.get(kind)
@@ -164,76 +167,71 @@ class ControllerLink:
         return line
 
     async def _listen(self, peer: _Peer) -> None:
-        """Start a task for each command; when the peer has too many under way, it is not read further."""
+        """Start a task for each command; when the peer has too many under way, it is not read further.
+
+        Asks have tasks of their own, so that no command ever waits for an answer that takes long.
+        """
         async for line in read_lines(peer.reader, LONGEST_COMMAND):
+            message = read(line)
+            if isinstance(message, AskMessage):
+                self._hear_ask(peer, message)
+                continue
             await peer.slots.acquire()
             # Not a child of the connection: a command that was begun is carried out even if the peer leaves.
-            task = asyncio.create_task(self._answer(peer, line))
+            task = asyncio.create_task(self._answer(peer, message))
             self._commands.add(task)
             task.add_done_callback(self._commands.discard)
 
-    async def _answer(self, peer: _Peer, line: bytes | None) -> None:
+    def _hear_ask(self, peer: _Peer, message: AskMessage) -> None:
+        if len(peer.asks) >= MOST_ASKS:
+            peer.writer.write(encode(refusal(message.id, too_many())))
+            return
+        task = asyncio.create_task(self._tell(peer, message))
+        peer.asks.add(task)
+        task.add_done_callback(peer.asks.discard)
+
+    async def _tell(self, peer: _Peer, message: AskMessage) -> None:
+        await _say(peer, await self._told(message))
+
+    async def _answer(self, peer: _Peer, message: CommandMessage | Reply) -> None:
         try:
-            reply = await self._carry_out(line)
-            peer.writer.write(encode(reply))
-            with contextlib.suppress(ConnectionError):
-                await peer.writer.drain()
+            if isinstance(message, CommandMessage):
+                message = await self._carry_out(message)
+                # Whoever asks for the station after the reply sees what the command has done.
+                with contextlib.suppress(ConnectionError):
+                    await self._show_newest(peer)
+            await _say(peer, message)
         finally:
             peer.slots.release()
 
-    async def _carry_out(self, line: bytes | None) -> LinkMessage:
-        if line is None:
-            return _refused(None, _malformed(f"The line is longer than {LONGEST_COMMAND} bytes."))
-        try:
-            message = FROM_SERVER.validate_json(line)
-        except ValidationError as error:
-            places = ", ".join(".".join(map(str, each["loc"])) or "the line" for each in error.errors()[:5])
-            return _refused(_id_in(line), _malformed(f"Not a command of this controller: see {places}."))
-        if isinstance(message, AskMessage):
-            return self._told(message)
+    async def _carry_out(self, message: CommandMessage) -> Reply:
         if message.expires is not None and time.monotonic() > message.expires:
             detail = "It came too late and was not carried out. Look at the station, then try again."
-            return _refused(message.id, CommandRefused("command-expired", "The command came too late", detail))
+            return refusal(message.id, CommandRefused("command-expired", "The command came too late", detail))
         try:
             await self._handle(message.command)
         except CommandRefused as refused:
-            return _refused(message.id, refused)
+            return refusal(message.id, refused)
         except Exception:
             LOG.exception("a command failed", command=message.command.kind)
-            return _refused(message.id, _failed("The command failed"))
+            return refusal(message.id, failed("The command failed"))
         return Reply(id=message.id, ok=True)
 
-    def _told(self, message: AskMessage) -> LinkMessage:
+    async def _told(self, message: AskMessage) -> LinkMessage:
         try:
-            view = self._answer_to(message.about)
+            async with asyncio.timeout(message.expires - time.monotonic()):
+                view = await self._answer_to(message.ask)
+        except TimeoutError:
+            return refusal(message.id, late())
         except CommandRefused as refused:
-            return _refused(message.id, refused)
+            return refusal(message.id, refused)
         except Exception:
-            LOG.exception("a question failed", about=message.about)
-            return _refused(message.id, _failed("The question could not be answered"))
-        if isinstance(view, PipelinesView):
-            return PipelinesAnswer(id=message.id, view=view)
-        return FlowsAnswer(id=message.id, view=view)
+            LOG.exception("a question failed", about=message.ask.kind)
+            return refusal(message.id, failed("The question could not be answered"))
+        return AnswerMessage(id=message.id, answer=view.model_dump(mode="json"))
 
 
-def _failed(title: str) -> CommandRefused:
-    detail = "The controller met an error of its own; it is written in the controller's log."
-    return CommandRefused("controller-error", title, detail, 500)
-
-
-def _malformed(detail: str) -> CommandRefused:
-    return CommandRefused("malformed-command", "The command cannot be read", detail, 422)
-
-
-def _refused(command: int | None, refused: CommandRefused) -> Reply:
-    return Reply(id=command, ok=False, problem=Refusal.of(refused))
-
-
-def _id_in(line: bytes) -> int | None:
-    """The id in a message that is otherwise wrong, so that whoever waits for its reply gets it."""
-    try:
-        found = json.loads(line)
-    except (ValueError, RecursionError):
-        return None
-    number = found.get("id") if isinstance(found, dict) else None
-    return number if isinstance(number, int) and not isinstance(number, bool) else None
+async def _say(peer: _Peer, message: LinkMessage) -> None:
+    peer.writer.write(encode(message))
+    with contextlib.suppress(ConnectionError):
+        await peer.writer.drain()

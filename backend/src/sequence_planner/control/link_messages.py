@@ -8,14 +8,12 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
+from pydantic import BaseModel, ConfigDict, Field, JsonValue, TypeAdapter
 
+from sequence_planner.control.asks import Ask
 from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.network_view import NetworkView
-from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.view import StationView
-
-About = Literal["pipelines", "flows"]
 
 LONGEST_COMMAND = 64 * 1024  # bytes in a line from the server
 LONGEST_VIEW = 16 * 1024 * 1024  # bytes in a line from the controller
@@ -59,24 +57,16 @@ class NetworkMessage(LinkMessage):
     network: NetworkView
 
 
-class PipelinesAnswer(LinkMessage):
-    """The graph of the pipelines, to who asked for it."""
+class AnswerMessage(LinkMessage):
+    """What answers an ask: a document of its `answer_type`, to who asked for it."""
 
-    kind: Literal["pipelines"] = "pipelines"
+    kind: Literal["answer"] = "answer"
     id: int
-    view: PipelinesView
-
-
-class FlowsAnswer(LinkMessage):
-    """What has passed the pipelines, to who asked for it."""
-
-    kind: Literal["flows"] = "flows"
-    id: int
-    view: FlowsView
+    answer: dict[str, JsonValue]
 
 
 class Reply(LinkMessage):
-    """What became of a command; `problem` is there when `ok` is false."""
+    """What became of a command, or that an ask is refused; `problem` is there when `ok` is false."""
 
     kind: Literal["reply"] = "reply"
     id: int | None
@@ -98,14 +88,18 @@ class CommandMessage(LinkMessage):
 
 
 class AskMessage(LinkMessage):
-    """A wish to be told what is not shown unasked, and the number under which the answer is awaited."""
+    """A wish to be told what is not shown unasked, and the number under which the answer is awaited.
+
+    `expires` is when nobody waits for it any more; see `CommandMessage`.
+    """
 
     kind: Literal["ask"] = "ask"
     id: int = Field(ge=0)
-    about: About
+    ask: Ask
+    expires: float
 
 
-FromController = ViewMessage | NetworkMessage | Reply | PipelinesAnswer | FlowsAnswer
+FromController = ViewMessage | NetworkMessage | Reply | AnswerMessage
 FROM_CONTROLLER: TypeAdapter[FromController] = TypeAdapter(Annotated[FromController, Field(discriminator="kind")])
 FromServer = CommandMessage | AskMessage
 FROM_SERVER: TypeAdapter[FromServer] = TypeAdapter(Annotated[FromServer, Field(discriminator="kind")])

@@ -34,7 +34,7 @@ class Present:
 
 
 @dataclass(frozen=True)
-class _Question:
+class Question:
     """What an answer is about: it would be the same again."""
 
     goals: frozenset[str]
@@ -53,8 +53,8 @@ class LivePlan:
         self.replanned = 0
         self._automaton = automaton
         self._lookahead = lookahead
-        self._asked: _Question | None = None
-        self._asked_better: _Question | None = None
+        self._asked: Question | None = None
+        self._asked_better: Question | None = None
         self._started_since_asked = False
         self._none_while_blind = False  # the last answer was that there is no plan, and values were unknown
         self._undecided = False  # whether there is a plan: nobody could say when asked last
@@ -155,6 +155,31 @@ class LivePlan:
             self._asked_better = None  # it may be an answer about what was for a moment, such as a device being silent
         return True
 
+    def carry_out(self, plan: Plan, goal: str, reason: str) -> None:
+        """Follow a plan for one goal that a person has taken."""
+        self.order.adopt(plan, {goal}, {goal})
+        self.status, self.reason = PlanStatus.FOLLOWED, reason
+        self._rest()
+
+    def drop(self, reason: str) -> None:
+        """Nothing is planned for until further notice."""
+        self.order.adopt(None, (), ())
+        self.status, self.reason = PlanStatus.IDLE, reason
+        self._rest()
+
+    def _rest(self) -> None:
+        """Whatever has been asked or said about another plan is of no interest any more."""
+        self.answer = self._asked = self._asked_better = self._none = self.diagnosis = None
+        self._none_while_blind = self._undecided = False
+
+    def looks(self, lookahead: Lookahead) -> bool:
+        """Whether it is `lookahead` that says where the rest of the plan leads."""
+        return self._lookahead is lookahead
+
+    def look_with(self, lookahead: Lookahead) -> None:
+        """From now on `lookahead` says it."""
+        self._lookahead = lookahead
+
     def settle(self, active: frozenset[str], hopeful: frozenset[str]) -> None:
         """After step 4: what is reached, or can no more be reached as it should be, is no longer planned for."""
         if self.status is PlanStatus.FOLLOWED and not self.order.goals & active <= hopeful:
@@ -191,11 +216,14 @@ class LivePlan:
                 return True
         return False
 
-    def may_go_on(self, present: Present, after: CompiledRun) -> bool:
-        """Whether the order after its first start, which leads to `after`, still reaches the goals."""
+    def may_go_on(self, present: Present, after: CompiledRun, lookahead: Lookahead | None = None) -> bool:
+        """Whether the order after its first start, which leads to `after`, still reaches the goals.
+
+        With a `lookahead` of one's own, nothing is changed by asking.
+        """
         starts, ticks = self.order.rest(taken=1)
         goals = self._goals_after(present, after)
-        return goals is not None and self._lookahead.may_go_on(
+        return goals is not None and (lookahead or self._lookahead).may_go_on(
             present.run, after, present.published, goals, starts, ticks
         )
 
@@ -228,6 +256,10 @@ class LivePlan:
             self.order.adopt(None, (), ())
         elif self.status is PlanStatus.FOLLOWED and self.order.goals and self._left(present) is None:
             self.status = PlanStatus.BROKEN
+
+    def still_leads(self, present: Present) -> bool:
+        """Whether what is left of the plan reaches its goals from here."""
+        return self._left(present) is not None
 
     def _following(self, present: Present) -> bool:
         return bool(present.pursued.hopeful) and not self._wanted(present)
@@ -270,7 +302,7 @@ class LivePlan:
         asked = frozenset(goal.name for goal in request.goals)
         if asked != present.pursued.hopeful:
             return False
-        current = _Question(asked, request.state, request.circumstances) == _question(present, asked)
+        current = Question(asked, request.state, request.circumstances) == _question(present, asked)
         self.answer = answer
         self.status = PlanStatus.NONE
         self._none_while_blind = any(request.state[name] is None for name in self._automaton.names(Kind.MEASURED))
@@ -289,8 +321,8 @@ def _is_proven(plan: Plan | None) -> bool:
     return plan is not None and plan.minimal_ticks and plan.minimal_starts
 
 
-def _question(present: Present, goals: frozenset[str]) -> _Question:
-    return _Question(goals, present.run.state, present.circumstances)
+def _question(present: Present, goals: frozenset[str]) -> Question:
+    return Question(goals, present.run.state, present.circumstances)
 
 
 def _request(present: Present, goals: frozenset[str], deadline: float, contract: Contract) -> PlanRequest:

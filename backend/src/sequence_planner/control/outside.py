@@ -8,12 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.control.execution import Execution
 from sequence_planner.expressions.printing import print_expression, print_value
 from sequence_planner.expressions.syntax import Comparison, Constant, Expression, Not, Variable
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.plan import WayBack, WayBackAnswer, WayBackRequest
+from sequence_planner.planning.plan import Circumstances, WayBack, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.way_back import deciding, violated
 
 
@@ -44,6 +45,11 @@ class Situation:
         return bool(self.violated or self.differences)
 
 
+def surely_outside(safe: StateSet, state: State) -> bool:
+    """Whether a state is outside the safe states whatever its unknown values are."""
+    return any(state[name] is not None for name in safe.nearest(state) or ())
+
+
 class Outside:
     """Looks at the state of `execution`, asks for a way back where one is wanted, and remembers the last answer."""
 
@@ -51,7 +57,7 @@ class Outside:
         self._execution = execution
         self._deciding = deciding(execution.automaton, execution.supervisor.safe)
         self._seen: tuple[tuple[Value | None, ...], Situation | None] | None = None
-        self._asked: tuple[Value | None, ...] | None = None
+        self._asked: tuple[tuple[Value | None, ...], Circumstances] | None = None
         self._answer: tuple[tuple[Value | None, ...], WayBackAnswer | str] | None = None
 
     @property
@@ -72,11 +78,11 @@ class Outside:
 
     def request(self, deadline: float) -> WayBackRequest | None:
         """What to ask the planner now; None when there is nothing to ask or it would answer the same again."""
-        key = self._key(self._execution.state)
+        key = (self._key(self._execution.state), self._execution.circumstances)
         if key == self._asked or self.situation is None or not self.situation.certain:
             return None
         self._asked = key
-        return WayBackRequest(dict(self._execution.state), deadline)
+        return WayBackRequest(dict(self._execution.state), deadline, circumstances=self._execution.circumstances)
 
     def take(self, request: WayBackRequest, answer: WayBackAnswer) -> None:
         """Remember an answer."""

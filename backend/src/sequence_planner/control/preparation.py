@@ -4,19 +4,23 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
+from pathlib import Path
 
 import structlog
 
 from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.analysis.document import AnalysisDocument, document_of
 from sequence_planner.analysis.process import SynthesisEndedError, analysing
+from sequence_planner.analysis.remembering import remember, remembered
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.view import (
+    AlarmState,
     AlarmView,
     Mode,
+    PackML,
     PlanStatus,
     PlanView,
     Priority,
@@ -92,7 +96,20 @@ def preparing_view(
     if trouble is not None:
         text = "The specifications cannot be met, so nothing is started"
         action = "See why under Supervisor, change the model, and run it again."
-        alarms["no-supervisor"] = AlarmView(priority=Priority.HIGH, text=text, action=action, since=began)
+        alarms["no-supervisor"] = AlarmView(
+            priority=Priority.HIGH,
+            state=AlarmState.UNACKNOWLEDGED,
+            text=text,
+            consequence="The station does not run.",
+            action=action,
+            since=began,
+            ended=None,
+            by=None,
+            until=None,
+            why=None,
+            count=1,
+            parts=[],
+        )
     plan = PlanView(
         status=PlanStatus.IDLE,
         reason="the safe states are being computed" if trouble is None else "there is no supervisor",
@@ -110,14 +127,25 @@ def preparing_view(
         station=identity,
         tick=0,
         time=now,
+        revision=0,
         mode=Mode.AUTOMATIC,
+        packml=PackML.RESETTING,
+        stepping=False,
         production=Production.PREPARING,
+        unconfirmed=False,
+        undecided={},
         control=None,
         resources={},
         variables={},
         abilities={},
         operations={},
         plan=plan,
+        errand=None,
+        last_errand=None,
+        forces={},
+        out_of_service=[],
+        questions=[],
+        last_correction=None,
         tasks={},
         topics={},
         overrides={},
@@ -127,12 +155,22 @@ def preparing_view(
     )
 
 
-async def analyse(automaton: Automaton, preparation: Preparation) -> None:
-    """Have all found that synthesis can find, as long as that takes no unreasonable time."""
+async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) -> None:
+    """Have all found that synthesis can find, as long as that takes no unreasonable time.
+
+    What an earlier life of the controller has left of it in `folder` is there at once.
+    """
     try:
+        known = await asyncio.to_thread(remembered, folder, automaton)
+        if known is not None and known.supervisor is not None:
+            preparation.take(document_of(automaton, known), known)
+            if known.pending is None:
+                return
         async with asyncio.timeout(ANALYSIS_DEADLINE), analysing(automaton) as finding:
             async for found in finding:
                 preparation.take(document_of(automaton, found), found)
+                if found.supervisor is not None:
+                    await asyncio.to_thread(remember, folder, automaton, found)
     except SynthesisEndedError as ended:
         LOG.error("synthesis ended early", because=str(ended))
         preparation.end(ended)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import json
 import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Generator
 from dataclasses import dataclass
@@ -13,19 +14,28 @@ import structlog
 
 from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
 from sequence_planner.collection import keep_everything
+from sequence_planner.control.alarming.keeping import KIND as ASIDE
+from sequence_planner.control.alarming.keeping import aside_from
+from sequence_planner.control.asks import Ask
+from sequence_planner.control.belief import KIND as BELIEFS
+from sequence_planner.control.belief import beliefs_from
 from sequence_planner.control.commands import Command, CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
+from sequence_planner.control.known import Known
 from sequence_planner.control.link import ControllerLink, Handle
-from sequence_planner.control.link_messages import About
+from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_graph import network_steps
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.network_watch import NetworkWatch
-from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.preparation import Preparation, analyse, preparing_view
 from sequence_planner.control.recording import Recording
 from sequence_planner.control.view import Production, StationIdentity
+from sequence_planner.control.view_part import View
 from sequence_planner.emulation.process import NODE as EMULATED_DEVICES
+from sequence_planner.history.restoring import beginning
+from sequence_planner.journal.run_journal import last
 from sequence_planner.ros.exclusivity import require_sole_publisher
 from sequence_planner.ros.transport import Transport
 from sequence_planner.station import ReadyStation
@@ -66,10 +76,10 @@ async def control(running: Running) -> None:
         database.upgrade()
         recording = Recording(database, preparation.note_unrecorded)
         kept.push_async_callback(recording.close)
-        await _live(running, preparation, recording)
+        await _live(running, preparation, recording, database)
 
 
-async def _live(running: Running, preparation: Preparation, recording: Recording) -> None:
+async def _live(running: Running, preparation: Preparation, recording: Recording, database: Database) -> None:
     """Prepare the station, then run it."""
 
     async def act(command: Command) -> None:
@@ -79,15 +89,17 @@ async def _live(running: Running, preparation: Preparation, recording: Recording
 
     async def handle(command: Command) -> None:
         await recording.carry_out(command, preparation.tasks, act)
+        if preparation.controller is not None:
+            link.publish(preparation.controller.view())
 
-    def answer(about: About) -> PipelinesView | FlowsView:
+    async def answer(ask: Ask) -> View:
         if preparation.controller is None:
             raise preparation.refusal()
-        return preparation.controller.answer(about)
+        return await preparation.controller.answer(ask)
 
     async with (
         ControllerLink(running.socket, handle, answer) as link,
-        _beside(analyse(running.station.automaton, preparation)),
+        _beside(analyse(running.station.automaton, preparation, running.socket.parent)),
     ):
         async with _beside(_show_preparing(running, preparation, link)):
             supervisor = await _prepared(running, preparation)
@@ -97,12 +109,14 @@ async def _live(running: Running, preparation: Preparation, recording: Recording
                 return
         transport = running.connect(NODE)
         try:
-            controller = Controller(_identity(running, transport.name), running.station, supervisor, transport)
+            known = await asyncio.to_thread(what_is_known, database, running.station.automaton)
+            identity = _identity(running, transport.name)
+            controller = Controller(identity, running.station, supervisor, transport, database, known)
             keep_everything()  # a running station must not be held up
             preparation.give(controller)
             async with contextlib.AsyncExitStack() as stack:
                 await stack.enter_async_context(_beside(_show(controller, link)))
-                await stack.enter_async_context(_beside(show_network(controller.network, link)))
+                await stack.enter_async_context(_beside(show_network(controller.devices.network, link)))
                 if running.start:
                     await stack.enter_async_context(_beside(start_when_alone(controller, handle)))
                 await controller.run()
@@ -114,7 +128,9 @@ async def start_when_alone(controller: Controller, handle: Handle, look_every: f
     """Let production be started by `handle`, without a person, once emulated devices and nobody else are there."""
     said: list[str] = []
     while controller.execution.production is Production.WAITING:
-        strangers = controller.strangers(f"/{EMULATED_DEVICES}")
+        strangers = controller.devices.strangers(f"/{EMULATED_DEVICES}")
+        # What would be refused is not tried again and again, as each try is recorded.
+        strangers += [f"it is not decided what {name} shall be" for name in controller.undecided]
         if not strangers:
             with contextlib.suppress(CommandRefused):  # since the network was looked at, somebody has come
                 await handle(StartProduction(actor=SYSTEM, reason="started with --start"))
@@ -169,6 +185,20 @@ async def _require_sole_command(running: Running) -> None:
         await require_sole_publisher(question, commanded, "the controller")
     finally:
         question.close()
+
+
+def what_is_known(database: Database, automaton: Automaton) -> Known:
+    """What the journal knows of the station from before. Raises `StorageError`."""
+    with database.reading() as connection:
+        restored = beginning(connection, automaton, Moment.now())
+        aside, beliefs = last(connection, ASIDE), last(connection, BELIEFS)
+    if restored is not None and restored.left_out:
+        LOG.warning("not all that was known fits the model", left_out=restored.left_out)
+    return Known(
+        restored.beginning if restored else None,
+        {} if aside is None else aside_from(json.loads(aside.content)),
+        {} if beliefs is None else beliefs_from(json.loads(beliefs.content)),
+    )
 
 
 async def _show(controller: Controller, link: ControllerLink) -> None:

@@ -44,6 +44,16 @@ class Pursued:
         """A start has led to `state`."""
         return _stepped(self.goals, self.violated, self.goals, state, now)
 
+    def without(self, names: Iterable[str]) -> Pursued:
+        """Operations are pursued no longer, and what they violated is forgotten."""
+        gone = set(names)
+        if gone.isdisjoint(self.goals) and gone.isdisjoint(self.violated):
+            return self
+        return Pursued(
+            {name: goal for name, goal in self.goals.items() if name not in gone},
+            {name: since for name, since in self.violated.items() if name not in gone},
+        )
+
     @property
     def hopeful(self) -> frozenset[str]:
         """The operations whose goals can still be reached as their formulas demand."""

@@ -85,7 +85,7 @@ class Questions:
                 self._take(lambda: self._outside.take(request, answer))
                 LOG.info("way back", found=answer.way is not None, searched=answer.searched)
             case DiagnosisRequest(), Diagnosis():
-                self._take(lambda: self._execution.plan.explained(answer))
+                self._take(lambda: self._execution.explained(answer))
 
     def _adopt(self, request: PlanRequest, answer: PlanAnswer) -> None:
         self._execution.adopt(request, answer)
@@ -97,8 +97,8 @@ class Questions:
         self._spare = False
         match request:
             case PlanRequest():
-                self._take(lambda: self._execution.plan.unanswered(why, again))
+                self._take(lambda: self._execution.unanswered(why, again))
             case WayBackRequest():
                 self._take(lambda: self._outside.unanswered(request, why, again))
             case DiagnosisRequest():
-                self._take(lambda: self._execution.plan.explained(Diagnosis(None, ())))
+                self._take(lambda: self._execution.explained(Diagnosis(None, ())))

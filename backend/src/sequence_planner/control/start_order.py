@@ -14,13 +14,14 @@ REMEMBERED_STEPS = 12
 
 @dataclass
 class Step:
-    """One start, planned or taken; `ended` is None while it runs."""
+    """One start, planned or taken; `ended` is None while it runs. It has `reacted` once it was seen executing."""
 
     number: int
     ability: str
     tick: int
     started: Moment | None = None
     ended: Moment | None = None
+    reacted: bool = False
 
 
 @dataclass

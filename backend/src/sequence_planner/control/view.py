@@ -21,7 +21,24 @@ class Mode(StrEnum):
     """How the station executes (see `docs/semantics.md`)."""
 
     AUTOMATIC = "automatic"
-    PAUSED = "paused"
+    PAUSED = "paused"  # what runs may finish, nothing is started
+    HOLD = "hold"  # paused, and what runs was called off where it can be
+    RESTART = "restart"  # operations are paused; errands are carried out one by one
+
+
+class PackML(StrEnum):
+    """The state that PackML (ISA-TR88.00.02) has for it; see `docs/control.md` for what it is made of."""
+
+    RESETTING = "resetting"
+    IDLE = "idle"
+    EXECUTE = "execute"
+    SUSPENDED = "suspended"
+    HOLDING = "holding"
+    HELD = "held"
+    STOPPING = "stopping"
+    STOPPED = "stopped"
+    ABORTED = "aborted"
+    CLEARING = "clearing"
 
 
 class Production(StrEnum):
@@ -95,6 +112,19 @@ class ResourceView(View):
     awaited_topics: list[str]
 
 
+class BeliefView(View):
+    """Why an estimated variable is believed to have its value.
+
+    `writer` is an ability, a person, or what it was at the beginning; `evidence` is what was measured as it wrote. As
+    long as `unconfirmed_since` is set, nobody has seen whether the value is still true.
+    """
+
+    writer: str
+    at: float
+    evidence: list[str]
+    unconfirmed_since: float | None
+
+
 class VariableView(View):
     """A variable and its value; `value` is null when it is unknown, and `awaits` then names the topic."""
 
@@ -104,6 +134,7 @@ class VariableView(View):
     domain: list[Value]
     since: float | None
     awaits: str | None
+    belief: BeliefView | None  # of an estimated one
 
 
 class AbilityView(View):
@@ -129,6 +160,7 @@ class OperationView(View):
     goal: str
     precondition: str
     left_out: bool  # active, but not part of the plan, because not all goals can be planned together
+    repeat: bool  # it becomes active again after it was completed, whenever its precondition holds
 
 
 class PlanStepView(View):
@@ -198,13 +230,36 @@ class TopicView(View):
     trouble: str | None
 
 
+class AlarmState(StrEnum):
+    """Where an alarm stands in its life (ISA-18.2, figure 4.2)."""
+
+    UNACKNOWLEDGED = "unacknowledged"
+    ACKNOWLEDGED = "acknowledged"
+    RETURNED = "returned"  # its cause has gone, and nobody has acknowledged it yet
+    SHELVED = "shelved"
+    OUT_OF_SERVICE = "out-of-service"
+
+
 class AlarmView(View):
-    """Something that wants a person's attention, for as long as it lasts."""
+    """Something that wants a person's attention. `ended` is when its cause has gone, null while it lasts.
+
+    One that was acknowledged goes with its cause. `by` is who acknowledged or shelved it or took it out of service,
+    `until` when it is shelved no more, `why` the reason that was given. `count` is how often it came since it was
+    last acknowledged; `part_of` lists what else the same cause has brought about.
+    """
 
     priority: Priority
-    text: str
-    action: str
+    state: AlarmState
+    text: str  # what is wrong
+    consequence: str  # what comes of it
+    action: str  # what to do
     since: float
+    ended: float | None
+    by: str | None
+    until: float | None
+    why: str | None
+    count: int
+    parts: list[str]
 
 
 class SpecificationView(View):
@@ -248,20 +303,107 @@ class WayBackView(View):
     reason: str  # which way leads back, or why none is known
 
 
+class ForceView(View):
+    """A forced variable: what it is taken to be, what it would be, until when, by whom and why."""
+
+    value: Value
+    real: Value | None
+    until: float
+    by: str
+    why: str
+
+
+class ServiceView(View):
+    """What is out of service since when, by whom and why; `by` is null where the station gave an ability up itself."""
+
+    of: str  # resource, ability or operation
+    name: str
+    title: str
+    since: float
+    by: str | None
+    why: str
+
+
+class ErrandView(View):
+    """What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for."""
+
+    kind: str  # way-back, reset, goal
+    title: str
+    by: str
+    why: str
+    since: float
+    ends: str  # when it is done, in the model's language
+
+
+class LastErrandView(View):
+    """How the last errand has ended: `done`, or why not."""
+
+    title: str
+    done: bool
+    why: str
+    ended: float
+
+
+class UndecidedOutputView(View):
+    """An output that came back from the journal, and would make its device react as soon as it is published.
+
+    `reacts` says how; with each of `quiet` its device would stay as it is.
+    """
+
+    value: Value
+    reacts: list[str]
+    quiet: list[Value]
+
+
+class QuestionView(View):
+    """What to look at: the station's belief does not fit what is measured. The first question separates most.
+
+    `variable` is what is asked about, `believed` its value, `possible` those that would fit; `because` says which
+    belief does not go together with which measurement.
+    """
+
+    variable: str
+    believed: Value
+    possible: list[Value]
+    because: list[str]
+
+
+class LastCorrectionView(View):
+    """The last correction, which can be undone in one step while `undoable`."""
+
+    values: dict[str, Value]
+    before: dict[str, Value]
+    by: str
+    why: str
+    at: float
+    undoable: bool
+
+
 class StationView(View):
     """The whole document."""
 
     station: StationIdentity
     tick: int
     time: float
+    revision: int  # of the state: counts up with every change of a value or an activity
     mode: Mode
+    packml: PackML
+    stepping: bool  # every start waits for a person's step
     production: Production
+    unconfirmed: bool  # whether estimates came back from the journal that nobody has confirmed
+    undecided: dict[str, UndecidedOutputView]  # outputs on which a person must decide before production is started
     control: ControlView | None  # null while nobody is in control
     resources: dict[str, ResourceView]
     variables: dict[str, VariableView]
     abilities: dict[str, AbilityView]
     operations: dict[str, OperationView]
     plan: PlanView
+    errand: ErrandView | None
+    last_errand: LastErrandView | None
+    forces: dict[str, ForceView]
+    out_of_service: list[ServiceView]
+    questions: list[QuestionView]
+    last_correction: LastCorrectionView | None
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
     overrides: dict[str, OverrideView]  # by resource and name, as in `ur10.speed`

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.structure import Kind
+from sequence_planner.control.belief import Beliefs
 from sequence_planner.control.commander import Commander
-from sequence_planner.control.execution import Execution, TickOutcome
+from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
@@ -20,17 +23,27 @@ from sequence_planner.control.view import (
     AlarmView,
     ControlView,
     DiagnosisView,
+    LastCorrectionView,
     OperationView,
     PlanStepView,
     PlanView,
+    QuestionView,
     ResourceView,
     StationIdentity,
     StationView,
     StepStatus,
     TaskView,
     TopicView,
+    UndecidedOutputView,
     VariableKind,
     VariableView,
+)
+from sequence_planner.control.viewing_conduct import (
+    errand_view,
+    force_views,
+    last_errand_view,
+    packml,
+    service_views,
 )
 from sequence_planner.control.viewing_outside import way_back
 from sequence_planner.control.waiting import waits_for
@@ -44,17 +57,33 @@ from sequence_planner.synthesis.guards import Guard
 _NEXT_MOVES = 2
 
 
+@dataclass(frozen=True)
+class Doubts:
+    """What a person has to decide or to look at, and the last correction."""
+
+    undecided: dict[str, UndecidedOutputView]
+    questions: list[QuestionView]
+    last_correction: LastCorrectionView | None
+
+
 class Viewing:
     """Builds views; remembers since when values and operations have been what they are."""
 
     def __init__(
-        self, identity: StationIdentity, execution: Execution, outside: Outside, feeds: Feeds, network: NetworkWatch
+        self,
+        identity: StationIdentity,
+        execution: Execution,
+        outside: Outside,
+        feeds: Feeds,
+        network: NetworkWatch,
+        beliefs: Beliefs,
     ) -> None:
         self._identity = identity
         self._execution = execution
         self._outside = outside
         self._feeds = feeds
         self._network = network
+        self._beliefs = beliefs
         self._feeding = feeds.heard_on
         self._since: dict[str, tuple[Value | None, float]] = {}
         self._active_since: dict[str, float] = {}
@@ -72,6 +101,11 @@ class Viewing:
                 self._since[name] = (value, now)
         self._active_since = {name: self._active_since.get(name, now) for name in self._execution.active}
 
+    def since(self, name: str) -> float | None:
+        """When a variable was first seen with the value that it has; None before the first tick."""
+        seen = self._since.get(name)
+        return None if seen is None else seen[1]
+
     def view(
         self,
         desk: TaskDesk,
@@ -79,22 +113,34 @@ class Viewing:
         overrides: dict[str, OverrideView],
         alarms: dict[str, AlarmView],
         control: ControlView | None,
+        doubts: Doubts,
         moment: Moment,
     ) -> StationView:
         """The whole document."""
-        execution = self._execution
+        execution, conduct = self._execution, self._execution.conduct
         return StationView(
             station=self._identity,
             tick=execution.ticks,
             time=moment.epoch,
+            revision=execution.revision,
             mode=execution.mode,
+            packml=packml(execution),
+            stepping=conduct.stepping,
             production=execution.production,
+            unconfirmed=self._beliefs.unconfirmed,
+            undecided=doubts.undecided,
             control=control,
             resources=self._resources(moment),
             variables=self._variables(),
             abilities=self._abilities(),
             operations=self._operations(),
             plan=self._plan(),
+            errand=errand_view(execution),
+            last_errand=last_errand_view(conduct),
+            forces=force_views(conduct),
+            out_of_service=service_views(execution.automaton, conduct),
+            questions=doubts.questions,
+            last_correction=doubts.last_correction,
             tasks=self._tasks(desk),
             topics=self._topics(commander, moment),
             overrides=overrides,
@@ -126,6 +172,7 @@ class Viewing:
                 domain=list(variable.type.domain),
                 since=since[1] if since else None,
                 awaits=self._feeding.get(name) if value is None else None,
+                belief=self._beliefs.of(name) if variable.kind is Kind.ESTIMATED else None,
             )
         return views
 
@@ -158,6 +205,7 @@ class Viewing:
                 goal=print_expression(operation.goal),
                 precondition=print_expression(operation.precondition),
                 left_out=operation.name in left_out & execution.active,
+                repeat=operation.repeat,
             )
             for operation in execution.automaton.operations.values()
         }

@@ -5,6 +5,7 @@ from __future__ import annotations
 Joints = tuple[float, ...]
 
 PAIRS = tuple(f"AtBoltPair{number}TCPPose" for number in range(1, 7))
+HOME = "HomeJOINTPose"
 ABOVE_ENGINE = "AboveEngineTCPPose"
 FRAME_IN_KIT = "AtLadderFrameTCPPose"
 FRAME_ON_ENGINE = "LadderFrameOnEngineTCPPose"
@@ -14,7 +15,7 @@ OIL_FILTER = "OF_1_TIGHTENED"
 TOOL_PLACES = {"LFTOOL": "AttachLFToolTCPPose", "ATLASTOOL": "AttachAtlasTCPPose", "OFTOOL": "AttachOFToolTCPPose"}
 
 POSES: dict[str, Joints] = {
-    "HomeJOINTPose": (0.0, -1.57, 1.57, -1.57, -1.57, 0.0),
+    HOME: (0.0, -1.57, 1.57, -1.57, -1.57, 0.0),
     ABOVE_ENGINE: (0.8, -1.2, 1.4, -1.77, -1.57, 0.8),
     **{
         pair: (0.65 + 0.06 * number, -0.95, 1.55, -2.17, -1.57, 0.65 + 0.06 * number)

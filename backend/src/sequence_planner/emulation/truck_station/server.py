@@ -2,7 +2,8 @@
 
 A node sends `{"node": "ur10", "put": {..}}` and gets `{"read": {..}, "fault": {..}}`. Whoever judges or disturbs sends
 `{"verdict": true}`, `{"fault": {"node": .., "kind": .., "seconds": .., "fields": {..}}}` or `{"world": {..}}`, which
-sets what a person at the station could: `takes_over`, `slowness`, `jammed` (names of devices).
+sets what a person at the station could: `takes_over` (the key of the robot), `slowness`, `jammed` (names of devices),
+`tripped` (the robot drops what it was told), `bolts` (what a hand makes of pairs).
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import time
 from dataclasses import dataclass, field
 
 from sequence_planner.emulation.truck_station.mir import MirServer
+from sequence_planner.emulation.truck_station.poses import PAIRS
 from sequence_planner.emulation.truck_station.signals import NODES, put, read
 from sequence_planner.emulation.truck_station.world import World
 
@@ -111,4 +113,8 @@ class WorldServer:
         if isinstance(jammed := changes.get("jammed"), list):
             world.arm.jammed, world.agv.jammed = "arm" in jammed, "agv" in jammed
             world.nutrunner.jammed, world.effector.jammed = "nutrunner" in jammed, "effector" in jammed
+        if changes.get("tripped") is True:
+            world.arm.trip()
+        if isinstance(bolts := changes.get("bolts"), dict) and world.line.engine is not None:
+            world.line.engine.bolts.update({pair: str(bolts[pair]) for pair in PAIRS if pair in bolts})
         return {"done": True}

@@ -52,11 +52,11 @@ def _put_line(world: World, signals: Signals) -> None:
 
 def _put_arm(world: World, signals: Signals) -> None:
     goal, scaling = POSES.get(str(signals.get("pose"))), signals.get("scaling")
-    if goal is None or not isinstance(scaling, float) or (goal, scaling) == (world.arm.goal, world.arm.scaling):
+    if goal is None or not isinstance(scaling, float) or (goal, scaling) == world.arm.told:
         return
     is_planned = signals.get("action") == "PLANNED"
     tool = world.held if world.effector.locked else None
-    if is_planned and goal != world.arm.goal and world.scene != ([] if tool is None else [tool]):
+    if is_planned and not world.arm.off and goal != world.arm.goal and world.scene != ([] if tool is None else [tool]):
         world.verdict.note(world.now, f"wrong plan: the scene has {world.scene}, and the robot {tool}")
     world.arm.command(goal, scaling)
 
@@ -70,7 +70,7 @@ def _put_scene(world: World, signals: Signals) -> None:
 
 
 def _put_watch(world: World, signals: Signals) -> None:
-    if (task := signals.get("task")) in ("none", "place", "guide"):
+    if (task := signals.get("task")) in ("none", "place", "guide", "free"):
         world.person.task, world.person.pair = str(task), str(signals.get("pair"))
 
 

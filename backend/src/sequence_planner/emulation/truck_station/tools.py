@@ -8,6 +8,7 @@ from typing import Literal
 Run = Literal["idle", "forward", "reverse", "inhibit"]
 
 STARTS_IN, VALVE_TAKES = 0.3, 0.4
+LASTS = {"place": 3.0, "guide": 6.0, "free": 8.0}
 
 
 @dataclass
@@ -75,7 +76,7 @@ class Person:
     task: str = "none"
     pair: str = ""
     acknowledged: bool = False
-    takes_over: bool = False
+    takes_over: bool = False  # has switched the robot off by its key and pushes it out of the way
     slowness: float = 1.0
     busy_at: str = ""  # the pair at which the hands are
     _due: float | None = None
@@ -86,8 +87,8 @@ class Person:
             self.acknowledged, self._due, self.busy_at = False, None, ""
         elif not self.acknowledged:
             if self._due is None:
-                self._due = now + self.slowness * (3.0 if self.task == "place" else 6.0)
-                self.busy_at = self.pair
+                self._due = now + self.slowness * LASTS[self.task]
+                self.busy_at = "" if self.task == "free" else self.pair
             elif now >= self._due:
                 self.acknowledged, self._due, self.busy_at = True, None, ""
                 return self.task

@@ -15,8 +15,10 @@ from sequence_planner.emulation.truck_station.poses import (
     AT_ENGINE,
     FRAME_IN_KIT,
     FRAME_ON_ENGINE,
+    HOME,
     OIL_FILTER,
     PAIRS,
+    POSES,
     TOOL_PLACES,
     named,
 )
@@ -54,6 +56,9 @@ class World:
     def advance(self, seconds: float) -> None:
         """Let so much time pass, at most some hundredths of a second."""
         self.now += seconds
+        self.arm.off = self.person.takes_over
+        if self.arm.off and self._at not in TOOL_PLACES.values():
+            self.arm.push(POSES[HOME])
         self.arm.advance(seconds)
         self._meet(named(self.arm.joints, CONTACT))
         self.nutrunner.advance(self.now)
@@ -182,11 +187,26 @@ class World:
             engine.bolts[pair] = "placed"
             self.agv.pairs -= 1
             self._note(f"bolts placed: {pair}")
-        elif engine is None or state != "placed" or self.nutrunner.lift != "float" or self.held == "ATLASTOOL":
+        elif done == "free":
+            self._free()
+        elif engine is None or state == "empty" or self.nutrunner.lift != "float" or self.held == "ATLASTOOL":
             self._note(f"wrong task: nothing can be tightened by hand at {pair}")
+        elif state == "tightened":
+            self._note(f"bolt found tight: {pair} by hand")  # the tool stops at once
         else:
             engine.bolts[pair] = "tightened"
             self._note(f"bolt tightened: {pair} by hand")
+
+    def _free(self) -> None:
+        """The nutrunner comes off the robot by hand, and is hung back."""
+        if not self.arm.off or self.held != "ATLASTOOL" or self.nutrunner.turning or self.nutrunner.lift != "float":
+            self._note("wrong task: no nutrunner can be taken off the robot")
+            return
+        self.effector.locked = self.effector.lock_wanted = False
+        self.held = None
+        self.away.discard("ATLASTOOL")
+        self.arm.push(POSES[HOME])
+        self._note("nutrunner taken off by hand")
 
     def _leave(self, engine: Engine) -> None:
         if self._at in AT_ENGINE:

@@ -1,0 +1,50 @@
+"""The search for what is never together, in a process of its own that gives way to all others."""
+
+from __future__ import annotations
+
+import asyncio
+import multiprocessing
+import os
+import signal
+from multiprocessing.connection import Connection
+
+from sequence_planner.analysis.never_together import NeverTogether, never_together
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.lifeline import end_without_parent
+from sequence_planner.planning.budget import Budget
+
+_NICENESS = 15  # it only serves questions
+
+
+async def find_never_together(automaton: Automaton, supervisor: Supervisor, seconds: float) -> NeverTogether | None:
+    """What is never together; None when that is not found within so many seconds of work. It can be cancelled."""
+    context = multiprocessing.get_context("spawn")
+    ours, theirs = context.Pipe(duplex=False)
+    with ours:
+        with theirs:
+            work = (theirs, automaton, supervisor, seconds)
+            process = context.Process(target=_work, args=work, daemon=True, name="never-together")
+            await asyncio.to_thread(process.start)
+        hearing = asyncio.get_running_loop().run_in_executor(None, _heard, ours)
+        try:
+            return await asyncio.shield(hearing)
+        finally:
+            process.kill()
+            await asyncio.wait({hearing})  # at once, as nobody is left who could speak
+            process.join()
+
+
+def _heard(connection: Connection) -> NeverTogether | None:
+    try:
+        found: NeverTogether | None = connection.recv()
+    except (EOFError, OSError):
+        return None
+    return found
+
+
+def _work(connection: Connection, automaton: Automaton, supervisor: Supervisor, seconds: float) -> None:
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
+    end_without_parent()
+    os.nice(_NICENESS)
+    connection.send(never_together(automaton, supervisor, Budget(float("inf")).working(seconds)))

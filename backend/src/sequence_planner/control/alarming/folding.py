@@ -1,0 +1,78 @@
+"""Flood protection: one cause, one alarm. What follows from a cause is a part of its alarm.
+
+What follows can outlast its cause for a moment: when a network comes back, its devices speak one after the other. So
+an alarm lasts until nothing of what followed is left, but not much longer than its cause.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import dataclass, replace
+
+from sequence_planner.control.alarming.cause import Cause, most_urgent
+
+LINGERS = 10.0  # seconds that an alarm lasts longer than its cause at most, for what followed from it
+
+
+@dataclass(frozen=True)
+class Folded:
+    """`alarms` by key, each with all its parts; `folded` are the keys of those that are parts."""
+
+    alarms: Mapping[str, Cause]
+    folded: frozenset[str]
+
+
+class Folding:
+    """Remembers which alarms had parts, and since when their causes are over."""
+
+    def __init__(self) -> None:
+        self._had_parts: dict[str, Cause] = {}
+        self._over: dict[str, float] = {}
+
+    def fold(self, causes: Iterable[Cause], alone: Collection[str], monotonic: float) -> Folded:
+        """What is an alarm now. To those that stand `alone` nothing is added."""
+        present = {cause.key: cause for cause in causes}
+        lingering = self._lingering(present, monotonic)
+        bearing = {key: cause for key, cause in {**present, **lingering}.items() if key not in alone}
+        parts: dict[str, list[Cause]] = {}
+        folded: set[str] = set()
+        for key, cause in present.items():
+            top = _top(cause, bearing)
+            # Of causes that follow from one another one is told.
+            if top != key and top not in folded and key not in parts:
+                parts.setdefault(top, []).append(cause)
+                folded.add(key)
+        self._had_parts = {key: bearing[key] for key in parts}
+        alarms = {key: _with(cause, parts.get(key, ())) for key, cause in present.items() if key not in folded}
+        over = {key: _with(_over(cause), parts[key]) for key, cause in lingering.items() if key in parts}
+        return Folded({**alarms, **over}, frozenset(folded))
+
+    def _lingering(self, present: Mapping[str, Cause], monotonic: float) -> dict[str, Cause]:
+        gone = {key: cause for key, cause in self._had_parts.items() if key not in present}
+        self._over = {key: self._over.get(key, monotonic) for key in gone}
+        return {key: cause for key, cause in gone.items() if monotonic - self._over[key] < LINGERS}
+
+
+def _top(cause: Cause, bearing: Mapping[str, Cause]) -> str:
+    """The key of the cause from which this one follows in the end; its own where it follows from none that is there."""
+    seen = {cause.key}
+    while (above := next((key for key in cause.follows if key in bearing and key not in seen), None)) is not None:
+        seen.add(above)
+        cause = bearing[above]
+    return cause.key
+
+
+def _with(cause: Cause, parts: Iterable[Cause]) -> Cause:
+    """The alarm with what follows from its cause. It is as urgent as the most urgent of it."""
+    every = list(parts)
+    texts = [text for part in every for text in (part.parts or (part.text,))]
+    return replace(
+        cause,
+        priority=most_urgent(cause.priority, *(part.priority for part in every)),
+        parts=tuple(dict.fromkeys((*cause.parts, *texts))),
+    )
+
+
+def _over(cause: Cause) -> Cause:
+    """The cause as it is told when it is over and what followed is not."""
+    return replace(cause, text=f"{cause.text} (this is over, but not all that followed)", parts=())

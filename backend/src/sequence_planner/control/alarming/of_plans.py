@@ -1,0 +1,174 @@
+"""Alarms of what is done: plans that are missing, abilities that are late or given up, formulas that were violated."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sequence_planner.automaton.structure import Ability
+from sequence_planner.control.alarming.cause import Cause
+from sequence_planner.control.alarming.consequence import Consequences, listed
+from sequence_planner.control.alarming.of_devices import MANY, silent_key
+from sequence_planner.control.conduct import OutOfService
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.plan_reasons import violation
+from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.standing_still import StandingStill
+from sequence_planner.control.timeouts import overdue
+from sequence_planner.control.value_text import value_text
+from sequence_planner.control.view import PlanStatus, Priority, Production
+from sequence_planner.expressions.syntax import variables
+from sequence_planner.planning.plan import PlanAnswer
+
+
+class PlanAlarms:
+    """Looks at what `execution` does; `feeds` say which resources tell a measured variable."""
+
+    def __init__(self, execution: Execution, feeds: Feeds) -> None:
+        self._execution = execution
+        self._consequences = Consequences(execution)
+        self._still = StandingStill(execution)
+        self._tellers = {
+            name: frozenset(feeds.resource_of(topic) for topic in topics) for name, topics in feeds.sources.items()
+        }
+
+    def causes(self, planner_trouble: str | None, monotonic: float) -> Iterator[Cause]:
+        """All that there are now."""
+        yield from self._late(monotonic)
+        yield from self._standing_still(monotonic)
+        yield from self._given_up()
+        yield from self._called_off()
+        if planner_trouble is not None:
+            yield Cause(
+                "planner",
+                Priority.MEDIUM,
+                planner_trouble,
+                f"No new plan is made. {self._consequences.waiting(self._execution.active)}",
+                "Tell the maintainers of this station's model.",
+            )
+        elif self._execution.production is Production.STARTED:  # that there is no plan has no other cause
+            yield from self._violated()
+            yield from self._missing()
+
+    def _late(self, monotonic: float) -> Iterator[Cause]:
+        """Abilities that take longer than they may; those that are planned anew then are called off instead."""
+        automaton = self._execution.automaton
+        for step in self._execution.plan.order.running:
+            ability = automaton.abilities[step.ability]
+            late = overdue(step, ability, monotonic)
+            if late is None or (ability.timeouts.replan and self._execution.conduct.executes_operations):
+                continue
+            resource = automaton.resources[ability.resource]
+            receives = f"Check that {resource} receives its commands and is ready."
+            yield Cause(
+                f"overdue:{ability.name}",
+                Priority.MEDIUM,
+                f"{ability.title} {late}",
+                self._consequences.waiting(self._consequences.held_up({ability.resource}), " until it does"),
+                receives if "begun" in late else f"Look after {resource}.",
+                follows=self._silences(ability),
+            )
+
+    def _standing_still(self, monotonic: float) -> Iterator[Cause]:
+        """Resources that do not do what they should, though nothing of them is overdue."""
+        automaton, state = self._execution.automaton, self._execution.state
+        running = [(step, automaton.abilities[step.ability]) for step in self._execution.plan.order.running]
+        late = {ability.resource for step, ability in running if overdue(step, ability, monotonic)}
+        for name, unchanged in sorted(self._still.devices(monotonic).items()):
+            if name in late:
+                continue
+            resource = automaton.resources[name]
+            known = {each: value for each in sorted(unchanged) if (value := state[each]) is not None}
+            says = listed(value_text(automaton, each, value) for each, value in known.items()) or "nothing"
+            yield Cause(
+                f"still:{name}",
+                Priority.MEDIUM,
+                f"{resource} does not do what it should: it still says {says}",
+                self._consequences.waiting(self._consequences.held_up({name}), " until it does"),
+                f"Look after {resource}.",
+            )
+
+    def _given_up(self) -> Iterator[Cause]:
+        """Of each resource one: what it could not do, and is not asked for any more."""
+        given_up: dict[str, list[OutOfService]] = {}
+        for (of, name), each in self._execution.conduct.service.items():
+            if of is ServiceKind.ABILITY and each.by is None:
+                given_up.setdefault(self._execution.automaton.abilities[name].resource, []).append(each)
+        for resource, gone in given_up.items():
+            abilities = self._execution.automaton.abilities
+            texts = [f"{abilities[each.name].title} {each.why}" for each in gone]
+            titles = listed(abilities[each.name].title for each in gone)
+            yield Cause(
+                f"given-up:{resource}",
+                Priority.MEDIUM,
+                f"{texts[0]}: it is given up" if len(texts) == 1 else f"{len(texts)} abilities are given up: {titles}",
+                self._consequences.without({resource}),
+                f"Look after {self._execution.automaton.resources[resource]}, then put {titles} back in service.",
+                follows=tuple(dict.fromkeys(key for each in gone for key in self._silences(abilities[each.name]))),
+                parts=() if len(texts) == 1 else tuple(texts),
+            )
+
+    def _called_off(self) -> Iterator[Cause]:
+        for name, times in self._execution.conduct.tried.items():
+            ability = self._execution.automaton.abilities[name]
+            yield Cause(
+                f"tried:{name}",
+                Priority.LOW,
+                f"{ability.title} was not in time and was called off{f', {times} times' if times > 1 else ''}",
+                f"It is planned anew, and given up after {ability.timeouts.retries + 1} times.",
+                f"Look after {self._execution.automaton.resources[ability.resource]}.",
+                follows=self._silences(ability),
+            )
+
+    def _violated(self) -> Iterator[Cause]:
+        for name, since in self._execution.pursued.violated.items():
+            active = name in self._execution.active
+            yield Cause(
+                f"local:{name}:{since.epoch}",
+                Priority.MEDIUM,
+                f"The local specification {violation(self._execution.automaton, name)}",
+                "It is not planned for any more." if active else "Its goal was reached all the same.",
+                "Bring its goal about by hand." if active else "Check what was made meanwhile.",
+            )
+
+    def _missing(self) -> Iterator[Cause]:
+        execution = self._execution
+        plan, follows = execution.plan, self._silences(None)
+        if not execution.conduct.executes_operations:
+            return
+        if plan.status is PlanStatus.NONE and (follows or not execution.blind):
+            waiting = self._consequences.waiting(execution.active)
+            yield Cause(
+                "no-plan", Priority.MEDIUM, plan.reason, waiting, "See what the active operations need.", follows
+            )
+        elif plan.status is not PlanStatus.NONE and plan.answer is not None:
+            yield from self._left_out(plan.answer, follows)
+
+    def _left_out(self, answer: PlanAnswer, follows: tuple[str, ...]) -> Iterator[Cause]:
+        """The active operations that the plan does not reach: because it cannot, and because nobody knows."""
+        operations, active = self._execution.automaton.operations, self._execution.active
+        undecided = [name for name in answer.undecided if name in active]
+        excluded = [name for name in answer.left_out if name in active and name not in answer.undecided]
+        waits = self._consequences.waiting
+        if excluded:
+            text = f"Left out of the plan: {', '.join(operations[name].title for name in excluded)}"
+            action = "It is proven that no plan reaches these goals together with the others, as things are."
+            yield Cause("left-out", Priority.LOW, text, waits(excluded), action, follows)
+        if undecided:
+            text = f"Not in the plan yet: {', '.join(operations[name].title for name in undecided)}"
+            action = "No plan that reaches these goals too was found in time, and none is ruled out; it is tried again."
+            yield Cause("undecided", Priority.LOW, text, waits(undecided), action, follows)
+
+    def _silences(self, ability: Ability | None) -> tuple[str, ...]:
+        """The silences from which it can follow that an ability is late, or without one that there is no plan."""
+        silent = self._execution.conduct.silent
+        if ability is not None:
+            awaited = frozenset[str]().union(*(self._tellers.get(name, ()) for name in _deciding(ability)))
+            silent = silent & (awaited | {ability.resource})
+        return (MANY, *(silent_key(name) for name in sorted(silent))) if silent else ()
+
+
+def _deciding(ability: Ability) -> set[str]:
+    """The variables that decide whether the ability is under way, and whether it has finished."""
+    guard = ability.executing if ability.finish_guard is None else ability.finish_guard
+    return {*variables(ability.executing), *variables(guard)}

@@ -1,0 +1,51 @@
+"""Who answers what the controller is asked: each ask has its place."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from sequence_planner.control.asks import (
+    AboutFlows,
+    AboutPipelines,
+    Ask,
+    AskAdvice,
+    AskCorrection,
+    AskGoal,
+    AskReset,
+    AskWhyNot,
+)
+from sequence_planner.control.corrections import Corrections
+from sequence_planner.control.offers import Offers
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
+from sequence_planner.control.view_part import View
+from sequence_planner.control.why_not import WhyNot
+
+
+@dataclass(frozen=True)
+class Asking:
+    """Answers asks. The event loop is never held up: what takes long is awaited, and done in another process."""
+
+    pipelines: Callable[[], PipelinesView]
+    flows: Callable[[], FlowsView]
+    corrections: Corrections
+    offers: Offers
+    why_not: WhyNot
+
+    async def answer(self, ask: Ask) -> View:
+        """The document that answers it. Raises `CommandRefused`."""
+        match ask:
+            case AboutPipelines():
+                return self.pipelines()
+            case AboutFlows():
+                return self.flows()
+            case AskCorrection(values=values):
+                return await self.corrections.preview(values)
+            case AskAdvice():
+                return await self.offers.advice()
+            case AskGoal(predicate=predicate):
+                return await self.offers.goal(predicate)
+            case AskReset(operation=operation):
+                return await self.offers.reset(operation)
+            case AskWhyNot():
+                return await self.why_not.answer(ask)

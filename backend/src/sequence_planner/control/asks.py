@@ -1,0 +1,97 @@
+"""What is told only to who asks, and takes some work: each kind of ask with the document that answers it.
+
+Asking changes nothing at the station. Who asks waits for `patience` seconds at most; what is found later is dropped.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Generic, Literal, TypeVar
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from sequence_planner.control.correction_view import CorrectionPreview
+from sequence_planner.control.offer_view import AdviceView, OfferView
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
+from sequence_planner.control.restart_commands import GivenValues
+from sequence_planner.control.view_part import View
+from sequence_planner.control.why_not_view import WhyNotView
+
+ADVISED_WITHIN = 15.0  # seconds: the adviser answers one after the other
+LONGEST_PREDICATE = 4000  # characters
+
+Answer = TypeVar("Answer", bound=View)
+
+
+class AskBase(BaseModel, Generic[Answer]):
+    """Base of all asks. `patience` is null where who asks waits as long as for a command."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    patience: ClassVar[float | None] = None
+    kind: str
+
+    @classmethod
+    def answer_type(cls) -> type[Answer]:
+        """The kind of document that answers it."""
+        for base in cls.__mro__:
+            if issubclass(base, BaseModel) and (arguments := base.__pydantic_generic_metadata__["args"]):
+                found: type[Answer] = arguments[0]
+                return found
+        raise TypeError(f"{cls.__name__} does not say what answers it")
+
+
+class AboutPipelines(AskBase[PipelinesView]):
+    """The graph of the pipelines."""
+
+    kind: Literal["about-pipelines"] = "about-pipelines"
+
+
+class AboutFlows(AskBase[FlowsView]):
+    """What has passed the pipelines."""
+
+    kind: Literal["about-flows"] = "about-flows"
+
+
+class AskAdvice(AskBase[AdviceView]):
+    """Ways on from the present state, replayed and ranked."""
+
+    patience: ClassVar[float | None] = ADVISED_WITHIN
+    kind: Literal["ask-advice"] = "ask-advice"
+
+
+class AskGoal(AskBase[OfferView]):
+    """A plan to whatever an engineer wants to hold, in the model's language."""
+
+    patience: ClassVar[float | None] = ADVISED_WITHIN
+    kind: Literal["ask-goal"] = "ask-goal"
+    predicate: str = Field(max_length=LONGEST_PREDICATE)
+
+
+class AskReset(AskBase[OfferView]):
+    """A plan to the precondition of an operation."""
+
+    patience: ClassVar[float | None] = ADVISED_WITHIN
+    kind: Literal["ask-reset"] = "ask-reset"
+    operation: str = Field(max_length=LONGEST_PREDICATE)
+
+
+class AskWhyNot(AskBase[WhyNotView]):
+    """What is in the way of an ability, an operation, or a goal, whose `name` is its predicate."""
+
+    patience: ClassVar[float | None] = ADVISED_WITHIN
+    kind: Literal["ask-why-not"] = "ask-why-not"
+    of: Literal["ability", "operation", "goal"]
+    name: str = Field(max_length=LONGEST_PREDICATE)
+
+
+class AskCorrection(AskBase[CorrectionPreview]):
+    """What a correction of these estimates would bring about."""
+
+    patience: ClassVar[float | None] = ADVISED_WITHIN
+    kind: Literal["ask-correction"] = "ask-correction"
+    values: GivenValues
+
+
+Ask = Annotated[
+    AboutPipelines | AboutFlows | AskCorrection | AskAdvice | AskGoal | AskReset | AskWhyNot,
+    Field(discriminator="kind"),
+]

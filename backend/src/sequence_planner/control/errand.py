@@ -1,0 +1,48 @@
+"""An errand: a plan that a person has seen and taken, and that is carried out as it is and never made anew.
+
+A way back, the reset of an operation and a goal by hand are errands. They have their abilities from one plan; what they
+are for is a goal of its own beside the operations, which wait meanwhile.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from sequence_planner.control.moment import Moment
+from sequence_planner.expressions.syntax import TRUE, Expression
+from sequence_planner.immutable import Immutable
+from sequence_planner.planning.plan import Goal, Plan
+
+
+class ErrandKind(StrEnum):
+    """What an errand is for."""
+
+    WAY_BACK = "way-back"  # into the safe states, or to where operations can go on
+    RESET = "reset"  # to the precondition of an operation
+    GOAL = "goal"  # to what an engineer has asked for
+
+
+NAME = "errand"  # of its goal, beside those of operations
+
+
+class Errand(Immutable):
+    """`goal` is what its `plan` reaches. With `unsupervised` starts outside the safe states go by written guards alone,
+    as a person has confirmed; from inside none leads out all the same. `operation` is the one that is reset. With
+    `restart` its plan may have restart abilities, and it is carried out in restart mode only.
+    """
+
+    kind: ErrandKind
+    title: str
+    plan: Plan
+    goal: Expression = TRUE
+    restart: bool = False
+    unsupervised: bool = False
+    operation: str | None = None
+    by: str = ""
+    why: str = ""
+    taken: Moment = Moment(0.0, 0.0)
+
+    @property
+    def pursued(self) -> Goal:
+        """Its goal, as plans are made for."""
+        return Goal(NAME, self.goal)

@@ -1,0 +1,160 @@
+"""All that happens to an `Execution`: from the same beginning, the same happenings lead to the same state, bit for bit.
+
+An execution tells whoever listens (`Execution.heard`) what happens to it, as soon as it has; the journal writes that
+down, and `history` takes an execution through it again. Nothing here refers to a clock: whoever calls says when it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sequence_planner.control.errand import Errand
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.view import Mode
+from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import Immutable
+from sequence_planner.planning.plan import Contract, PlanAnswer
+from sequence_planner.planning.reasons.diagnosis import Diagnosis
+
+
+class Ticked(Immutable):
+    """A tick with these measured values. `obstacles` keep all from starting, `silent` resources are not heard."""
+
+    measured: Mapping[str, Value | None]
+    obstacles: tuple[str, ...]
+    silent: frozenset[str]
+    now: Moment
+
+
+class Asked(Immutable):
+    """The planner has been asked for a plan: one that is needed, or with `MINIMAL` for a better one."""
+
+    contract: Contract
+
+
+class Answered(Immutable):
+    """The planner has answered what it was asked last. The proof is not kept: nothing follows from it."""
+
+    answer: PlanAnswer
+
+
+class Unanswered(Immutable):
+    """The planner could not answer what it was asked last."""
+
+    why: str
+    again: bool
+
+
+class Explained(Immutable):
+    """It was found why there is no plan, as far as it was."""
+
+    diagnosis: Diagnosis
+
+
+class ProductionStarted(Immutable):
+    """Outputs are published from now on."""
+
+
+class ModeChanged(Immutable):
+    """The mode is another one; `by` names who wanted it. Holding takes the cancel actions of what runs."""
+
+    mode: Mode
+    by: str
+    now: Moment
+
+
+class CalledOff(Immutable):
+    """What runs was called off by its cancel actions, and the errand with it; the mode is as before."""
+
+    by: str
+    now: Moment
+
+
+class SteppingChanged(Immutable):
+    """From now on every start waits for a step, or none does."""
+
+    on: bool
+
+
+class StepTaken(Immutable):
+    """One start may be taken."""
+
+
+class ServiceChanged(Immutable):
+    """Something is in service from now on, or out of it."""
+
+    of: ServiceKind
+    name: str
+    in_service: bool
+    by: str
+    why: str
+    now: Moment
+
+
+class Corrected(Immutable):
+    """Estimated variables, and outputs before production is started, have these values from now on."""
+
+    values: Mapping[str, Value]
+    by: str
+    why: str
+    now: Moment
+
+
+class Confirmed(Immutable):
+    """A person has seen that these estimated variables are as believed."""
+
+    names: frozenset[str]
+    by: str
+    now: Moment
+
+
+class Forced(Immutable):
+    """A variable has this value until then, whatever its device or an ability says."""
+
+    name: str
+    value: Value
+    until: Moment
+    by: str
+    why: str
+
+
+class ForceReleased(Immutable):
+    """A forced variable is as it comes again."""
+
+    name: str
+
+
+class ErrandTaken(Immutable):
+    """A person has taken a plan to be carried out."""
+
+    errand: Errand
+    now: Moment
+
+
+class ErrandStopped(Immutable):
+    """It is carried out no further."""
+
+    by: str
+    now: Moment
+
+
+Happening = (
+    Ticked
+    | Asked
+    | Answered
+    | Unanswered
+    | Explained
+    | ProductionStarted
+    | ModeChanged
+    | CalledOff
+    | SteppingChanged
+    | StepTaken
+    | ServiceChanged
+    | Corrected
+    | Confirmed
+    | Forced
+    | ForceReleased
+    | ErrandTaken
+    | ErrandStopped
+)

@@ -1,0 +1,128 @@
+"""Offers in the words of the people they are shown to."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.offer_view import (
+    ChangeView,
+    EffortView,
+    OfferView,
+    PlanPreviewView,
+    PreviewStepView,
+)
+from sequence_planner.control.view import DiagnosisView, SpecificationView
+from sequence_planner.expressions.printing import print_expression, print_value
+from sequence_planner.planning.advice.offer import Change, Offer, OfferKind
+from sequence_planner.planning.plan import Plan
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, correction_text, member_text
+
+MOST_NAMED = 3  # abilities in a title
+
+
+def offer_view(automaton: Automaton, offer: Offer, id_: str, revision: int, obstacle: str | None) -> OfferView:
+    """An offer as it is shown."""
+    return OfferView(
+        id=id_,
+        revision=revision,
+        kind=str(offer.kind),
+        title=offer_title(automaton, offer),
+        physical=_changes(offer.physical),
+        online=list(offer.online),
+        in_service=list(offer.in_service),
+        assumed=_changes(offer.assumed),
+        corrections=_changes(offer.corrections),
+        errand=None if offer.errand is None else plan_preview(automaton, offer.errand),
+        ends=None if offer.errand is None else print_expression(offer.goal),
+        operation=offer.operation,
+        needs_restart=needs_restart(offer),
+        unsupervised=offer.unsupervised,
+        at_rest=offer.at_rest,
+        breaks=[SpecificationView(name=name, title=automaton.specifications[name].title) for name in offer.breaks],
+        then=None if offer.then is None else plan_preview(automaton, offer.then),
+        goals=list(offer.goals),
+        left_out=list(offer.left_out),
+        effort=EffortView(
+            cost=offer.effort.cost,
+            corrections=offer.effort.changes,
+            physical=offer.effort.physical,
+            returns=offer.effort.returns,
+            starts=offer.effort.starts,
+            seconds=offer.effort.seconds,
+        ),
+        obstacle=obstacle,
+    )
+
+
+def needs_restart(offer: Offer) -> bool:
+    """Whether it can be taken in restart mode only: goals and resets by ordinary abilities go without."""
+    ordinary = offer.kind in (OfferKind.GOAL, OfferKind.RESET)
+    return offer.restart or offer.unsupervised or bool(offer.corrections) or (offer.errand is not None and not ordinary)
+
+
+def offer_title(automaton: Automaton, offer: Offer) -> str:
+    """What is to be done, in one line."""
+    text = ", then ".join(_parts(automaton, offer)) or "go on as it is"
+    return text[0].upper() + text[1:]
+
+
+def _parts(automaton: Automaton, offer: Offer) -> Iterator[str]:
+    returning = [automaton.resources[name] for name in offer.online]
+    returning += [automaton.abilities[name].title for name in offer.in_service]
+    if returning:
+        yield f"bring {' and '.join(returning)} back"
+    if offer.physical:
+        yield f"see to it that {_each(offer.physical, 'is')}"
+    if offer.corrections:
+        yield f"correct {_each(offer.corrections, 'to')}"
+    if offer.operation is not None:
+        yield f"reset {automaton.operations[offer.operation].title}"
+    elif offer.kind is OfferKind.GOAL:
+        yield f"bring about that {print_expression(offer.goal)}"
+    elif offer.errand is not None and offer.errand.starts:
+        titles = [automaton.abilities[name].title for _, name in offer.errand.starts]
+        more = f" and {len(titles) - MOST_NAMED} more" if len(titles) > MOST_NAMED else ""
+        yield f"start {', '.join(titles[:MOST_NAMED])}{more}"
+    elif offer.errand is not None:
+        yield f"wait until {print_expression(offer.goal)}"
+
+
+def _each(changes: Iterable[Change], word: str) -> str:
+    return " and ".join(f"{change.name} {word} {print_value(change.new)}" for change in changes)
+
+
+def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
+    """A plan as it is shown before anybody follows it."""
+    return PlanPreviewView(
+        ticks=len(plan.ticks),
+        steps=[_step(automaton, tick, name) for tick, name in plan.starts],
+        minimal_ticks=plan.minimal_ticks,
+        minimal_starts=plan.minimal_starts,
+    )
+
+
+def diagnosis_view(diagnosis: Diagnosis) -> DiagnosisView:
+    """Why something cannot be done, and what would help."""
+    reason = diagnosis.reason
+    return DiagnosisView(
+        members=[] if reason is None else [member_text(member) for member in reason.members],
+        minimal=reason is not None and reason.minimal,
+        corrections=[correction_text(correction) for correction in diagnosis.corrections],
+    )
+
+
+def _step(automaton: Automaton, tick: int, name: str) -> PreviewStepView:
+    ability = automaton.abilities[name]
+    return PreviewStepView(
+        tick=tick,
+        ability=name,
+        title=ability.title,
+        resource=ability.resource,
+        human=ability.human is not None,
+        restart=ability.restart,
+    )
+
+
+def _changes(changes: Iterable[Change]) -> list[ChangeView]:
+    return [ChangeView(name=change.name, now=change.old, then=change.new) for change in changes]

@@ -1,0 +1,89 @@
+"""What a person may ask of how the station executes: its mode, its steps, and what takes part in it."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from sequence_planner.control.command_base import CommandBase
+from sequence_planner.control.view import Mode
+from sequence_planner.journal.entry import LONGEST_REASON
+
+
+class ServiceKind(StrEnum):
+    """What can be taken out of service."""
+
+    RESOURCE = "resource"
+    ABILITY = "ability"
+    OPERATION = "operation"
+
+
+class SetMode(CommandBase):
+    """Execute automatically, pause, or hold. Restart mode has commands of its own, in and out."""
+
+    kind: Literal["set-mode"] = "set-mode"
+    mode: Literal[Mode.AUTOMATIC, Mode.PAUSED, Mode.HOLD]
+
+    @property
+    def needs_control(self) -> bool:
+        """To go on needs it; anybody who may act may pause and hold."""
+        return not self.harmless
+
+    @property
+    def harmless(self) -> bool:
+        """Pausing and holding are."""
+        return self.mode is not Mode.AUTOMATIC
+
+
+class EnterRestart(CommandBase):
+    """Pause the operations for a restart. Nothing is started by it."""
+
+    kind: Literal["enter-restart"] = "enter-restart"
+    for_control: ClassVar[bool] = True
+
+
+class LeaveRestart(CommandBase):
+    """Leave restart mode for the paused one; to go on is another command."""
+
+    kind: Literal["leave-restart"] = "leave-restart"
+    for_control: ClassVar[bool] = True
+
+
+class StartProduction(CommandBase):
+    """Allow outputs to be published. Nothing else implies it."""
+
+    kind: Literal["start-production"] = "start-production"
+    for_control: ClassVar[bool] = True
+
+
+class SetStepping(CommandBase):
+    """For commissioning: with `on`, every single start waits for a person's step."""
+
+    kind: Literal["set-stepping"] = "set-stepping"
+    for_control: ClassVar[bool] = True
+    on: bool
+
+
+class TakeStep(CommandBase):
+    """One start may be taken, as soon as there is one."""
+
+    kind: Literal["take-step"] = "take-step"
+    for_control: ClassVar[bool] = True
+
+
+class SetService(CommandBase):
+    """Take a resource, an ability or an operation out of service, or put it back."""
+
+    kind: Literal["set-service"] = "set-service"
+    for_control: ClassVar[bool] = True
+    reason: str = Field(min_length=1, max_length=LONGEST_REASON)
+    of: ServiceKind
+    name: str
+    in_service: bool
+
+    @property
+    def subject(self) -> str:
+        """What it is."""
+        return f"{self.of} {self.name}"

@@ -1,0 +1,88 @@
+"""What is shown of how a station executes: its PackML state, what is carried out, forced, and out of service."""
+
+from __future__ import annotations
+
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.conduct import Conduct
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.view import (
+    ErrandView,
+    ForceView,
+    LastErrandView,
+    Mode,
+    PackML,
+    PlanStatus,
+    Production,
+    ServiceView,
+)
+from sequence_planner.expressions.printing import print_expression
+
+_ENDING = {Mode.PAUSED: (PackML.HOLDING, PackML.HELD), Mode.HOLD: (PackML.STOPPING, PackML.STOPPED)}
+
+
+def packml(execution: Execution) -> PackML:
+    """The state of PackML that fits; `docs/control.md` says what it is made of."""
+    if execution.production is not Production.STARTED:
+        return PackML.IDLE
+    moves = bool(execution.running())
+    if execution.mode is Mode.AUTOMATIC:
+        followed = execution.plan.status is PlanStatus.FOLLOWED and bool(execution.plan.order.goals)
+        return PackML.EXECUTE if moves or followed else PackML.SUSPENDED
+    moves = moves or execution.errand is not None
+    if execution.mode is Mode.RESTART:
+        return PackML.CLEARING if moves else PackML.ABORTED
+    during, after = _ENDING[execution.mode]
+    return during if moves else after
+
+
+def errand_view(execution: Execution) -> ErrandView | None:
+    """What is carried out now."""
+    errand = execution.errand
+    if errand is None:
+        return None
+    return ErrandView(
+        kind=errand.kind,
+        title=errand.title,
+        by=errand.by,
+        why=errand.why,
+        since=errand.taken.epoch,
+        ends=print_expression(errand.goal),
+    )
+
+
+def last_errand_view(conduct: Conduct) -> LastErrandView | None:
+    """How the last one has ended."""
+    last = conduct.last_errand
+    if last is None:
+        return None
+    return LastErrandView(title=last.title, done=last.done, why=last.why, ended=last.ended.epoch)
+
+
+def force_views(conduct: Conduct) -> dict[str, ForceView]:
+    """What is forced."""
+    return {
+        name: ForceView(value=force.value, real=force.real, until=force.until.epoch, by=force.by, why=force.why)
+        for name, force in conduct.forces.items()
+    }
+
+
+def service_views(automaton: Automaton, conduct: Conduct) -> list[ServiceView]:
+    """What is out of service, since when."""
+    return [
+        ServiceView(
+            of=each.of,
+            name=each.name,
+            title=_title(automaton, each.of, each.name),
+            since=each.since.epoch,
+            by=each.by,
+            why=each.why,
+        )
+        for each in sorted(conduct.service.values(), key=lambda each: (each.since.epoch, each.of, each.name))
+    ]
+
+
+def _title(automaton: Automaton, of: ServiceKind, name: str) -> str:
+    if of is ServiceKind.RESOURCE:
+        return automaton.resources[name]
+    return (automaton.abilities if of is ServiceKind.ABILITY else automaton.operations)[name].title

@@ -1,0 +1,199 @@
+"""Why not? What is in the way of an ability, an operation or a goal, and who could change it.
+
+Nothing is computed before somebody asks. All of it but plans is found on the controller's own loop, in a moment.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sequence_planner.automaton.structure import Operation
+from sequence_planner.control.adviser import Adviser
+from sequence_planner.control.aims import AIMED_WITHIN, aim
+from sequence_planner.control.asks import AskWhyNot
+from sequence_planner.control.command_base import CommandRefused
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.hindrances import Hindrance, HindranceKind, lacking_text, of_ability, of_station
+from sequence_planner.control.involving import Involving, Surroundings
+from sequence_planner.control.offer_showing import diagnosis_view, plan_preview
+from sequence_planner.control.offer_view import PlanPreviewView
+from sequence_planner.control.predicates import read_predicate
+from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.view import DiagnosisView, Mode
+from sequence_planner.control.why_not_view import WhyNotView
+from sequence_planner.expressions.evaluation import evaluate
+from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.syntax import Expression, Not, conjuncts
+from sequence_planner.immutable import replace
+from sequence_planner.planning.advice.request import ErrandRequest
+
+
+class WhyNot:
+    """Answers about `execution`. Used from one event loop."""
+
+    def __init__(self, execution: Execution, surroundings: Surroundings, adviser: Adviser) -> None:
+        self._execution = execution
+        self._around = surroundings
+        self._adviser = adviser
+        self._involving = Involving(execution, surroundings)
+
+    async def answer(self, ask: AskWhyNot) -> WhyNotView:
+        """What is in the way. Raises `CommandRefused` for what the station does not have."""
+        match ask.of:
+            case "ability":
+                return self._ability(ask.name)
+            case "operation":
+                return self._operation(ask.name)
+            case "goal":
+                return await self._goal(ask.name)
+
+    def _ability(self, name: str) -> WhyNotView:
+        execution = self._execution
+        ability = execution.automaton.abilities.get(name)
+        if ability is None:
+            raise _unknown("ability", name)
+        if name in execution.running():
+            return self._view("ability", name, ability.title, "It runs.", [])
+        guard = self._around.guards().get(name)
+        found = [*of_station(execution), *of_ability(execution, ability, self._around.feeds, guard)]
+        if not found:
+            found = list(self._unplanned(name))
+        if not found:
+            summary = "Nothing is in the way: it starts in the next tick."
+        elif found[0].kind is HindranceKind.PLAN:
+            summary = "It may start, and the plan does not have it now."
+        else:
+            summary = _summary(found)
+        return self._view("ability", name, ability.title, summary, found)
+
+    def _unplanned(self, name: str) -> Iterable[Hindrance]:
+        """Why an ability that may start does not."""
+        order = self._execution.plan.order.names
+        if name not in order:
+            reason = self._execution.plan.reason
+            yield Hindrance(HindranceKind.PLAN, f"a plan that has it{f' ({reason})' if reason else ''}")
+        elif order[0] != name:
+            titles = [self._execution.automaton.abilities[each].title for each in order[: order.index(name)]]
+            yield Hindrance(HindranceKind.PLAN, f"its turn in the plan, after {', '.join(dict.fromkeys(titles))}")
+        elif not self._execution.may_go_on(name):
+            text = "the right moment: started now, the rest of the plan would not reach its goals"
+            yield Hindrance(HindranceKind.PLAN, text)
+
+    def _operation(self, name: str) -> WhyNotView:
+        execution = self._execution
+        operation = execution.automaton.operations.get(name)
+        if operation is None:
+            raise _unknown("operation", name)
+        if name in execution.active:
+            lacking = list(self._lacking(operation.goal))
+            return self._view("operation", name, operation.title, self._progress(operation), lacking, self._reasons())
+        lacking = list(self._inactive(operation))
+        undone = {each.expression for each in lacking}
+        lacking += [each for each in self._lacking(operation.precondition) if each.expression not in undone]
+        summary = f"It is not active. {_summary(lacking)}" if lacking else "It becomes active in the next tick."
+        return self._view("operation", name, operation.title, summary, lacking)
+
+    def _inactive(self, operation: Operation) -> Iterable[Hindrance]:
+        """Why it is not active, beside its precondition."""
+        execution = self._execution
+        if operation.name in execution.conduct.out_of(ServiceKind.OPERATION):
+            yield Hindrance(HindranceKind.SERVICE, f"{operation.title} to be put back in service")
+        if operation.name in execution.conduct.done:
+            text = "a reset: it is completed, and does not become active again by itself"
+            yield Hindrance(HindranceKind.SERVICE, text)
+        if evaluate(operation.goal, execution.state) is True:
+            undone = Not(operation.goal)
+            yield Hindrance(HindranceKind.WRITTEN, f"{print_expression(undone)}: its goal holds", undone)
+
+    def _progress(self, operation: Operation) -> str:
+        """How far an active operation is."""
+        execution, name = self._execution, operation.name
+        if execution.errand is not None:
+            return f"It waits: {execution.errand.title} is being carried out."
+        if execution.mode is Mode.RESTART:
+            return "It waits: the station is in restart mode."
+        if name in execution.pursued.violated:
+            return "It cannot be completed any more as its local specification asks: it has to be reset."
+        answer = execution.plan.answer
+        if answer is not None and name in answer.left_out:
+            return "It is left out of the plan, for it could not be planned together with the others."
+        if name in execution.plan.order.goals:
+            return "It is active, and the plan leads to its goal."
+        return f"It is active and has no plan. {execution.plan.reason}".strip()
+
+    def _reasons(self) -> DiagnosisView | None:
+        diagnosis = self._execution.plan.diagnosis
+        return None if diagnosis is None else diagnosis_view(diagnosis)
+
+    async def _goal(self, text: str) -> WhyNotView:
+        execution = self._execution
+        goal = read_predicate(execution.automaton, text)
+        lacking = list(self._lacking(goal))
+        if not lacking:
+            return self._view("goal", text, print_expression(goal), "It holds.", [])
+        view = self._view("goal", text, print_expression(goal), _summary(lacking), lacking)
+        request = ErrandRequest(
+            state=execution.state,
+            goals=(),
+            target=goal,
+            circumstances=replace(execution.circumstances, restart=execution.mode is Mode.RESTART),
+            deadline=AIMED_WITHIN,
+        )
+        try:
+            aimed = await aim(self._adviser, request)
+        except CommandRefused as refused:
+            return _more(view, f"Whether it can be reached is not known: {refused.detail}")
+        if aimed.offer is not None and aimed.offer.errand is not None:
+            plan = plan_preview(execution.automaton, aimed.offer.errand)
+            return _more(view, f"The station could reach it with {_count(len(plan.steps), 'start')}.", plan=plan)
+        if aimed.proven:
+            reasons = None if aimed.why_not is None else diagnosis_view(aimed.why_not)
+            return _more(view, "The station cannot reach it from here: that is proven.", reasons=reasons)
+        return _more(view, "No plan to it was found; that there is none is not proven.")
+
+    def _lacking(self, condition: Expression) -> Iterable[Hindrance]:
+        """The parts of a condition that do not hold."""
+        for part in conjuncts(condition):
+            truth = evaluate(part, self._execution.state)
+            if truth is not True:
+                text = lacking_text(self._execution, part, truth is None, self._around.feeds)
+                yield Hindrance(HindranceKind.WRITTEN, text, part)
+
+    def _view(
+        self,
+        of: str,
+        name: str,
+        title: str,
+        summary: str,
+        found: Iterable[Hindrance],
+        reasons: DiagnosisView | None = None,
+    ) -> WhyNotView:
+        return WhyNotView(
+            of=of,
+            name=name,
+            title=title,
+            revision=self._execution.revision,
+            summary=summary,
+            conditions=[self._involving.condition(each) for each in found],
+            plan=None,
+            reasons=reasons,
+        )
+
+
+def _summary(found: list[Hindrance]) -> str:
+    return f"It waits for {found[0].text}." if len(found) == 1 else f"It waits for {len(found)} things."
+
+
+def _more(
+    view: WhyNotView, text: str, plan: PlanPreviewView | None = None, reasons: DiagnosisView | None = None
+) -> WhyNotView:
+    return view.model_copy(update={"summary": f"{view.summary} {text}", "plan": plan, "reasons": reasons})
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}" if number == 1 else f"{number} {what}s"
+
+
+def _unknown(kind: str, name: str) -> CommandRefused:
+    detail = f"The station has no {kind} `{name}`. Look at what it has."
+    return CommandRefused(f"unknown-{kind}", f"There is no such {kind}", detail, 404)

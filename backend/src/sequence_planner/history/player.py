@@ -1,0 +1,151 @@
+"""An execution that is taken through records of the journal, each of which says what it must come to."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.happenings import (
+    Answered,
+    Asked,
+    CalledOff,
+    Confirmed,
+    Corrected,
+    ErrandStopped,
+    ErrandTaken,
+    Explained,
+    Forced,
+    ForceReleased,
+    Happening,
+    ModeChanged,
+    ProductionStarted,
+    ServiceChanged,
+    SteppingChanged,
+    StepTaken,
+    Ticked,
+    Unanswered,
+)
+from sequence_planner.control.moment import Moment
+from sequence_planner.history.codec import BEGUN, KINDS, SNAPSHOT, TICKED, Codec, Senses, TickBook
+from sequence_planner.history.error import HistoryError
+from sequence_planner.history.memory import Memory
+from sequence_planner.history.model_digest import model_digest
+from sequence_planner.history.shapes import UnreadableError
+from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.planning.plan import Contract
+
+_DEADLINE = 0.0  # of questions, which nobody answers here: the answers are in the journal
+
+
+class Player:
+    """Plays records in order, from one that says everything on."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self._supervisor = supervisor
+        self._model = model_digest(automaton)
+        self._codec = Codec(automaton)
+        self._memory = Memory(automaton, self._codec)
+        self._book = TickBook()
+        self._execution: Execution | None = None
+        self.now = Moment(0.0, 0.0)
+        """When the last that has a time has happened."""
+
+    @property
+    def execution(self) -> Execution:
+        """The execution as the last record left it."""
+        if self._execution is None:
+            raise HistoryError("history-gone", "begin with a record that says everything: `begun` or `snapshot`")
+        return self._execution
+
+    def play(self, record: RunRecord) -> str | None:
+        """Do what a record says; how it then is not as the record says, None if it is.
+
+        Raises `HistoryError` for a record of another model, and for one that cannot be read.
+        """
+        if record.kind not in KINDS and record.kind not in (BEGUN, SNAPSHOT):
+            return None
+        try:
+            content = json.loads(record.content)
+            if now := content.get("now") or content.get("what", {}).get("now"):
+                self.now = Moment(*(now if isinstance(now, list) else (now["epoch"], now["monotonic"])))
+            if record.kind in KINDS:
+                self._happen(self._happening(record.kind, content))
+            elif record.kind == BEGUN or self._execution is None:
+                self._begin(record, content)
+            else:
+                self._execution.forget()
+        except (ValueError, LookupError, TypeError, AttributeError) as error:
+            raise HistoryError(
+                "history-unreadable", f"record {record.number} cannot be read: {error or type(error).__name__}"
+            ) from error
+        expected, found = content.get("digest"), self._memory.digest(self.execution)
+        return None if found == expected else self._difference(record, content)
+
+    def _begin(self, record: RunRecord, content: dict[str, Any]) -> None:
+        if content.get("model") != self._model:
+            raise HistoryError(
+                "model-changed",
+                f"record {record.number} was written with another model of the station, or another version of it: what "
+                "has happened then can be replayed with that model only",
+            )
+        self._execution = self._memory.execution(self._supervisor, content["memory"])
+        self._book = TickBook(self._codec.decode(Senses, content["senses"]))
+
+    def _happening(self, kind: str, content: dict[str, Any]) -> Happening:
+        return self._book.tick(content) if kind == TICKED else self._codec.happening(kind, content)
+
+    def _happen(self, happening: Happening) -> None:
+        execution = self.execution
+        match happening:
+            case Ticked(measured, obstacles, silent, now):
+                execution.tick(measured, now, obstacles, silent)
+            case Asked(contract):
+                ask = execution.request if contract is Contract.FAST else execution.better
+                ask(_DEADLINE)
+            case Answered(answer) if execution.asked is not None:
+                execution.adopt(execution.asked, answer)
+            case Answered():
+                raise UnreadableError("it is an answer that nobody had asked for")
+            case Unanswered(why, again):
+                execution.unanswered(why, again)
+            case Explained(diagnosis):
+                execution.explained(diagnosis)
+            case ProductionStarted():
+                execution.start_production()
+            case ModeChanged(mode, by, now):
+                execution.change_mode(mode, by, now)
+            case CalledOff(by, now):
+                execution.call_off(by, now)
+            case SteppingChanged(on):
+                execution.set_stepping(on)
+            case StepTaken():
+                execution.take_step()
+            case ServiceChanged(of, name, in_service, by, why, now):
+                execution.set_service(of, name, in_service, by, why, now)
+            case Corrected(values, by, why, now):
+                execution.correct(values, by, why, now)
+            case Confirmed(names, by, now):
+                execution.confirm(names, by, now)
+            case Forced(name, value, until, by, why):
+                execution.force(name, value, until, by, why)
+            case ForceReleased(name):
+                execution.release(name)
+            case ErrandTaken(errand, now):
+                execution.take_errand(errand, now)
+            case ErrandStopped(by, now):
+                execution.stop_errand(by, now)
+
+    def _difference(self, record: RunRecord, content: dict[str, Any]) -> str:
+        """In what the replayed execution is not as it was, as far as the record says how it was."""
+        where = f"record {record.number} ({record.kind})"
+        if "memory" in content:
+            mine = self._memory.document(self.execution)
+            parts = [part for part, was in content["memory"].items() if mine.get(part) != was]
+            return f"{where} comes to another state: {', '.join(parts) or 'nothing that it tells'} is different"
+        state = self.execution.state
+        other = [name for name, value in content.get("changes", {}).items() if state.get(name) != value]
+        what = f"{', '.join(other)} should have changed as it did" if other else "its digest is another one"
+        return f"{where} comes to another state: {what}"

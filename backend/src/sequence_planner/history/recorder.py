@@ -1,0 +1,162 @@
+"""Writes down what happens to an execution, so that it can be done again and goes on after a start of the controller.
+
+Each record says what has happened, what of the estimates and outputs it changed, and the digest of all that the
+execution remembers then. Now and then a `snapshot` says all of it, as the first record, `begun`, does.
+"""
+
+from __future__ import annotations
+
+import json
+import time
+from collections.abc import Callable, Mapping
+from importlib.metadata import version
+from typing import Final
+
+from pydantic import JsonValue
+
+from sequence_planner.automaton.structure import Kind, State
+from sequence_planner.control.conduct import Beginning, OutOfService
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.happenings import Confirmed, Corrected, Ticked
+from sequence_planner.control.heard import Heard, TickOutcome
+from sequence_planner.control.moment import Moment
+from sequence_planner.history.codec import BEGUN, SNAPSHOT, TICKED, Codec, Document, Senses, TickBook, kind_of
+from sequence_planner.history.memory import Memory
+
+SNAPSHOT_EVERY: Final = 1000  # records
+
+Write = Callable[[str, float, str], int]  # kind, seconds since the epoch and content; returns the record's number
+
+
+class RunRecorder:
+    """Listens to `execution`; the first thing it writes is how that begins. `clock` has seconds since the epoch."""
+
+    def __init__(
+        self,
+        execution: Execution,
+        write: Write,
+        station_digest: str,
+        beginning: Beginning | None = None,
+        clock: Callable[[], float] = time.time,
+        snapshot_every: int = SNAPSHOT_EVERY,
+    ) -> None:
+        automaton = execution.automaton
+        self._execution = execution
+        self._write = write
+        self._clock = clock
+        self._snapshot_every = snapshot_every
+        self._codec = Codec(automaton)
+        self._memory = Memory(automaton, self._codec)
+        self._book = TickBook()
+        self._estimates = frozenset(automaton.names(Kind.ESTIMATED))
+        self._kept = (*automaton.names(Kind.ESTIMATED), *automaton.names(Kind.OUTPUT))
+        self._whose: Document = {"model": station_digest, "program": version("sequence-planner")}
+        self._unconfirmed_since = None if beginning is None else beginning.unconfirmed_since
+        self._unconfirmed = self._estimates if self._unconfirmed_since is not None else frozenset()
+        self._service, self._done = execution.conduct.service, execution.conduct.done
+        self._mode, self._stepping = execution.conduct.mode, execution.conduct.stepping
+        self._since_snapshot = 0
+        self._now = Moment(clock(), 0.0) if beginning is None else beginning.now
+        self.last = 0
+        self._put(BEGUN, clock(), self._everything())
+        execution.listeners.append(self._hear)
+
+    def note(self, kind: str, epoch: float, content: Mapping[str, JsonValue]) -> None:
+        """Write down what is no happening of the execution, such as an alarm."""
+        self._put(kind, epoch, content)
+        self._now_and_then(epoch)
+
+    def _hear(self, heard: Heard) -> None:
+        happening, outcome = heard.happening, heard.outcome
+        if isinstance(happening, Ticked):
+            content = self._book.content(happening) | _outcome(outcome)
+        else:
+            content = self._codec.content(happening)
+        content |= self._consequences(heard)
+        content["digest"] = self._memory.digest(self._execution)
+        now = getattr(happening, "now", None)
+        self._now = now if isinstance(now, Moment) else self._now
+        epoch = self._clock() if now is None else self._now.epoch
+        self._put(kind_of_happening(happening), epoch, content)
+        self._now_and_then(epoch)
+
+    def _consequences(self, heard: Heard) -> Document:
+        """What is to be known of it where the execution begins again with what it believes now."""
+        found: Document = {}
+        if changes := self._changes(heard.before, heard.after):
+            found["changes"] = changes
+        conduct = self._execution.conduct
+        if conduct.service != self._service:
+            self._service = conduct.service
+            found["service"] = self._codec.encode(tuple[OutOfService, ...], tuple(conduct.service.values()))
+        if conduct.done != self._done:
+            self._done = conduct.done
+            found["done"] = sorted(conduct.done)
+        if conduct.mode is not self._mode or conduct.stepping != self._stepping:
+            self._mode, self._stepping = conduct.mode, conduct.stepping
+            found["mode"], found["stepping"] = str(conduct.mode), conduct.stepping
+        if self._unconfirmed and (seen := _seen(heard) | changes.keys()):
+            self._unconfirmed -= seen
+        return found
+
+    def _changes(self, before: State, after: State) -> dict[str, JsonValue]:
+        return {} if before is after else {name: after[name] for name in self._kept if before[name] != after[name]}
+
+    def _now_and_then(self, epoch: float) -> None:
+        if self._since_snapshot >= self._snapshot_every:
+            self._since_snapshot = 0
+            self._execution.forget()  # or it would know more than one that goes on from the snapshot
+            self._put(SNAPSHOT, epoch, self._everything())
+
+    def _everything(self) -> Document:
+        execution = self._execution
+        state, conduct = execution.state, execution.conduct
+        return {
+            **self._whose,
+            "now": [self._now.epoch, self._now.monotonic],
+            "values": {name: state[name] for name in self._kept},
+            "service": self._codec.encode(tuple[OutOfService, ...], tuple(conduct.service.values())),
+            "done": sorted(conduct.done),
+            "mode": str(conduct.mode),
+            "stepping": conduct.stepping,
+            "unconfirmed_since": self._unconfirmed_since,
+            "unconfirmed": sorted(self._unconfirmed),
+            "senses": self._codec.encode(Senses, self._book.senses),
+            "memory": self._memory.document(execution),
+            "digest": self._memory.digest(execution),
+        }
+
+    def _put(self, kind: str, epoch: float, content: Mapping[str, JsonValue]) -> None:
+        self.last = self._write(kind, epoch, json.dumps(content, separators=(",", ":")))
+        self._since_snapshot += 1
+
+
+def kind_of_happening(happening: object) -> str:
+    """The kind of the record of a happening."""
+    return TICKED if isinstance(happening, Ticked) else kind_of(type(happening))
+
+
+def _seen(heard: Heard) -> frozenset[str]:
+    """The estimates that a person has confirmed or corrected."""
+    match heard.happening:
+        case Confirmed(names):
+            return names
+        case Corrected(values):
+            return frozenset(values)
+    return frozenset()
+
+
+def _outcome(outcome: TickOutcome | None) -> Document:
+    """What a tick did, for people and programs that read the journal."""
+    if outcome is None:
+        return {}
+    told = {
+        "finished": list(outcome.finished),
+        "ended": list(outcome.ended),
+        "started": list(outcome.started),
+        "activated": sorted(outcome.activated),
+        "completed": sorted(outcome.completed),
+        "called_off": list(outcome.called_off),
+        "given_up": list(outcome.given_up),
+    }
+    return {name: names for name, names in told.items() if names}

@@ -1,0 +1,64 @@
+"""The run done again from the journal: each record must lead to the digest that was written when it happened."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Final
+
+from sqlalchemy import Connection
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.moment import Moment
+from sequence_planner.history.codec import BEGUN, SNAPSHOT
+from sequence_planner.history.error import HistoryError
+from sequence_planner.history.player import Player
+from sequence_planner.journal import run_journal
+from sequence_planner.journal.run_journal import RunRecord
+
+_PAGE: Final = 1000  # records read at once
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """A record that was replayed, and the execution as it is then, until the next one; `now` is when that is.
+
+    `difference` says in what it did not come to what the record says.
+    """
+
+    record: RunRecord
+    execution: Execution
+    now: Moment
+    difference: str | None
+
+
+def replay(
+    connection: Connection, automaton: Automaton, supervisor: Supervisor, from_: int = 1, to: int | None = None
+) -> Iterator[Replayed]:
+    """Replay the records from the last one that says everything and is not above `from_`, up to `to` or all there are.
+
+    It ends with the first record that does not come to what it says. Raises `HistoryError` where the model is another
+    one, or a record cannot be read.
+    """
+    player = Player(automaton, supervisor)
+    number = _start(connection, from_) - 1
+    while page := run_journal.after(connection, number, _PAGE):
+        for record in page:
+            if to is not None and record.number > to:
+                return
+            difference = player.play(record)
+            yield Replayed(record, player.execution, player.now, difference)
+            if difference is not None:
+                return
+        number = page[-1].number
+
+
+def _start(connection: Connection, number: int) -> int:
+    """Where to begin. Raises `HistoryError` where there is nothing to begin with."""
+    whole = (BEGUN, SNAPSHOT)
+    found = run_journal.before(connection, number + 1, 1, whole) or run_journal.after(connection, 0, 1, whole)
+    if not found:
+        raise HistoryError("history-gone", "nothing has happened yet: the journal has no record of a run")
+    return found[0].number

@@ -1,0 +1,139 @@
+"""What is known of the station as its controller starts: what it believed and had commanded, from the journal."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass, replace
+from typing import Any, Final
+
+from sqlalchemy import Connection
+
+from sequence_planner.automaton.structure import Automaton, Kind
+from sequence_planner.control.conduct import Beginning, OutOfService
+from sequence_planner.control.happenings import Confirmed
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.view import Mode
+from sequence_planner.expressions.printing import print_value
+from sequence_planner.expressions.types import Value, contains
+from sequence_planner.history.codec import BEGUN, SNAPSHOT, Codec, kind_of
+from sequence_planner.history.shapes import UnreadableError
+from sequence_planner.journal import run_journal
+from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.storage.error import StorageError
+
+_PAGE: Final = 1000  # records read at once
+_CONDUCT: Final = ("service", "done", "mode", "stepping")  # what records say of it where it changed
+_CONFIRMED: Final = kind_of(Confirmed)
+
+
+@dataclass(frozen=True)
+class Restored:
+    """How an execution begins. `left_out` says what came back and does not fit the model any more."""
+
+    beginning: Beginning
+    left_out: tuple[str, ...]
+
+
+def beginning(connection: Connection, automaton: Automaton, now: Moment) -> Restored | None:
+    """What the journal knows of the last life; None if there was none.
+
+    Raises `StorageError` where a record cannot be read. One that is not as it was written is said, and believed.
+    """
+    whole = run_journal.before(connection, None, 1, (BEGUN, SNAPSHOT))
+    if not whole:
+        return None
+    number = whole[0].number
+    last = run_journal.get(connection, number - 1)
+    changed = [] if whole[0].is_whole((last or run_journal.begin(connection)).hash) else [number]
+    try:
+        known = _Known(whole[0])
+        while page := run_journal.after(connection, number, _PAGE):
+            for record, before in zip(page, [known.record, *page], strict=False):
+                if record.number != before.number + 1 or not record.is_whole(before.hash):
+                    changed.append(record.number)
+                known.take(record)
+            number = page[-1].number
+        found = known.restored(automaton, now)
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        raise StorageError(
+            f"the journal cannot be read from record {whole[0].number} on ({error!r}): see what `sequence-planner "
+            "journal --verify` finds, and start with a copy of the database, or with another one"
+        ) from error
+    if not changed:
+        return found
+    text = f"record {changed[0]} of what happened is missing, or is not as it was written: verify the journal"
+    return replace(found, left_out=(text, *found.left_out))
+
+
+class _Known:
+    """What is known after each of the records."""
+
+    def __init__(self, record: RunRecord) -> None:
+        self.record = record  # the last one
+        self._last = record.time
+        self._found: dict[str, Any] = json.loads(record.content)
+        self._unconfirmed = set(self._found["unconfirmed"])
+
+    def take(self, record: RunRecord) -> None:
+        content = json.loads(record.content)
+        self.record = record
+        self._last = max(self._last, record.time)
+        changes = content.get("changes", {})
+        self._found["values"] |= changes
+        self._found |= {name: content[name] for name in _CONDUCT if name in content}
+        what = content.get("what", {})
+        seen = what.get("names", ()) if record.kind == _CONFIRMED else what.get("values", {})
+        self._unconfirmed.difference_update(changes, seen)
+
+    def restored(self, automaton: Automaton, now: Moment) -> Restored:
+        left_out: list[str] = []
+        beginning = Beginning(
+            self._values(automaton, left_out),
+            self._found["unconfirmed_since"] if self._unconfirmed else self._last,
+            self._service(automaton, left_out),
+            self._done(automaton, left_out),
+            now,
+            Mode(self._found["mode"]),
+            bool(self._found["stepping"]),
+        )
+        return Restored(beginning, tuple(left_out))
+
+    def _values(self, automaton: Automaton, left_out: list[str]) -> dict[str, Value]:
+        fitting: dict[str, Value] = {}
+        for name, value in self._found["values"].items():
+            variable = automaton.variables.get(name)
+            if variable is None or variable.kind not in (Kind.ESTIMATED, Kind.OUTPUT):
+                left_out.append(f"{name} was {print_value(value)}, and is no estimate and no output any more")
+            elif not contains(variable.type, value):
+                left_out.append(f"{name} was {print_value(value)}, and ranges over {variable.type} now")
+            else:
+                fitting[name] = value
+        return fitting
+
+    def _service(self, automaton: Automaton, left_out: list[str]) -> tuple[OutOfService, ...]:
+        parts = {
+            ServiceKind.RESOURCE: automaton.resources,
+            ServiceKind.ABILITY: automaton.abilities,
+            ServiceKind.OPERATION: automaton.operations,
+        }
+        fitting: list[OutOfService] = []
+        for document in self._found["service"]:
+            try:
+                each: OutOfService = Codec(automaton).decode(OutOfService, document)
+            except UnreadableError as error:
+                left_out.append(f"something was out of service, which cannot be read: {error}")
+                continue
+            if each.name in parts[each.of]:
+                fitting.append(each)
+            else:
+                left_out.append(f"{each.of} {each.name} was out of service, and is not there any more")
+        return tuple(fitting)
+
+    def _done(self, automaton: Automaton, left_out: list[str]) -> frozenset[str]:
+        done = frozenset(self._found["done"])
+        once = {name for name, each in automaton.operations.items() if not each.repeat}
+        left_out += [
+            f"operation {name} was completed, and is none that does not repeat" for name in sorted(done - once)
+        ]
+        return done & once

@@ -1,0 +1,200 @@
+"""Values as JSON documents and back, as the annotations of their classes say: a new field cannot be forgotten.
+
+A field that has its default is left out, so a field that is added to a class later is no reason why what was written
+before could not be read. What takes no part in comparison, such as a place in a text, is left out as well.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import types
+from collections.abc import Callable, Mapping
+from enum import Enum
+from typing import Any, Union, cast, get_args, get_origin, get_type_hints
+
+from pydantic import JsonValue
+
+from sequence_planner.immutable import Immutable
+
+Encode = Callable[[Any], JsonValue]
+Decode = Callable[[Any], Any]
+_PRIMITIVES = (bool, int, float, str)
+_MISSING = object()
+
+
+class UnreadableError(ValueError):
+    """A document says nothing that could have been written."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Shape:
+    """How the values of one type are written and read. Reading raises `UnreadableError`."""
+
+    encode: Encode
+    decode: Decode
+
+
+class Shapes:
+    """The shapes of all types that occur; `own` are those that are not made of their annotations.
+
+    The classes in `dropped` are not written: their place is taken by None.
+    """
+
+    def __init__(self, own: Mapping[Any, Shape] | None = None, dropped: tuple[type, ...] = ()) -> None:
+        self._known: dict[Any, Shape] = dict(own or {})
+        self._dropped = dropped
+
+    def of(self, form: Any) -> Shape:  # noqa: ANN401 - what annotations are is no type
+        """The shape of a type, such as `Mapping[str, int | None]` or a class of immutable values."""
+        known = self._known.get(form)
+        if known is None:
+            # A type may be made of itself, as expressions are: what refers to it looks it up when it is used.
+            later = Shape(lambda value: made.encode(value), lambda document: made.decode(document))  # noqa: PLW0108
+            self._known[form] = later
+            known = made = self._known[form] = self._made(form)
+        return known
+
+    def _made(self, form: Any) -> Shape:  # noqa: ANN401
+        origin = get_origin(form)
+        if origin in (Union, types.UnionType):
+            return self._one_of(get_args(form))
+        if origin in (frozenset, set):
+            return self._some(form, sort=True)
+        if origin in (tuple, list):
+            return self._tuple(form) if origin is tuple and Ellipsis not in get_args(form) else self._some(form)
+        if origin is not None and issubclass(origin, Mapping):
+            return self._mapping(*get_args(form))
+        if isinstance(form, type) and issubclass(form, tuple):  # with names for its parts
+            parts = self.of(tuple[tuple(get_type_hints(form).values())])  # type: ignore[misc]
+            return Shape(parts.encode, lambda document: form(*parts.decode(document)))
+        if form in self._dropped:
+            return Shape(lambda value: None, lambda document: None)
+        if form in _PRIMITIVES or form is type(None):
+            return _primitive((form,))
+        if isinstance(form, type) and issubclass(form, Enum):
+            return Shape(lambda value: value.value, lambda document: _guarded(form, document))
+        if isinstance(form, type) and (issubclass(form, Immutable) or dataclasses.is_dataclass(form)):
+            return self._record(form)
+        raise TypeError(f"{form!r} has no shape")
+
+    def _one_of(self, forms: tuple[Any, ...]) -> Shape:
+        """A choice: of primitive values as they are, of one class beside None, or of classes by their names."""
+        some = tuple(form for form in forms if form is not type(None))
+        optional = len(some) < len(forms)
+        if set(some) <= set(_PRIMITIVES):
+            return _primitive(forms)
+        union: Any = Union[some]  # noqa: UP007 - of a number of members that is known here only
+        inner = self.of(union) if optional or len(some) == 1 else self._by_name(some)
+        if not optional:
+            return inner
+        return Shape(
+            lambda value: None if value is None else inner.encode(value),
+            lambda document: None if document is None else inner.decode(document),
+        )
+
+    def _by_name(self, classes: tuple[Any, ...]) -> Shape:
+        named = {each.__name__: self.of(each) for each in classes}
+
+        def encode(value: Any) -> JsonValue:  # noqa: ANN401
+            name = type(value).__name__
+            return [name, named[name].encode(value)]
+
+        def decode(document: Any) -> Any:  # noqa: ANN401
+            match document:
+                case [str(name), content] if name in named:
+                    return named[name].decode(content)
+            raise UnreadableError(f"`{document}` is none of {', '.join(named)}")
+
+        return Shape(encode, decode)
+
+    def _some(self, form: Any, sort: bool = False) -> Shape:  # noqa: ANN401
+        make, inner = get_origin(form), self.of(get_args(form)[0])
+
+        def encode(value: Any) -> JsonValue:  # noqa: ANN401
+            return [inner.encode(each) for each in (sorted(value) if sort else value)]
+
+        return Shape(encode, lambda document: make(inner.decode(each) for each in _expected(list, document)))
+
+    def _tuple(self, form: Any) -> Shape:  # noqa: ANN401
+        parts = tuple(map(self.of, get_args(form)))
+
+        def decode(document: Any) -> Any:  # noqa: ANN401
+            if len(_expected(list, document)) != len(parts):
+                raise UnreadableError(f"`{document}` has not {len(parts)} parts")
+            return tuple(part.decode(each) for part, each in zip(parts, document, strict=True))
+
+        return Shape(lambda value: [part.encode(each) for part, each in zip(parts, value, strict=True)], decode)
+
+    def _mapping(self, key: Any, value: Any) -> Shape:  # noqa: ANN401
+        """An object with its names in order, whatever order they came in; or pairs, where the keys are no texts."""
+        inner = self.of(value)
+        if key is str:
+            return Shape(
+                lambda mapping: {name: inner.encode(mapping[name]) for name in sorted(mapping)},
+                lambda document: {name: inner.decode(each) for name, each in _expected(dict, document).items()},
+            )
+        pairs = self.of(tuple[tuple[key, value], ...])
+        return Shape(
+            lambda mapping: pairs.encode(sorted(mapping.items(), key=lambda pair: pair[0])),
+            lambda document: dict(pairs.decode(document)),
+        )
+
+    def _record(self, form: type) -> Shape:
+        """The fields of a class that are not as their default is."""
+        hints = get_type_hints(form)
+        fields = {name: (self.of(hints[name]), default) for name, default in _fields(form).items()}
+
+        def encode(value: Any) -> JsonValue:  # noqa: ANN401
+            document: dict[str, JsonValue] = {}
+            for name, (shape, default) in fields.items():
+                content = getattr(value, name)
+                if default is not _MISSING and content == default:
+                    continue
+                written = shape.encode(content)
+                if written is not None or default is not None:  # what is dropped is as if it had never been there
+                    document[name] = written
+            return document
+
+        def decode(document: Any) -> Any:  # noqa: ANN401
+            if unknown := _expected(dict, document).keys() - fields.keys():
+                raise UnreadableError(f"a {form.__name__} has no {', '.join(sorted(unknown))}")
+            if missing := {name for name, (_, default) in fields.items() if default is _MISSING} - document.keys():
+                raise UnreadableError(f"a {form.__name__} needs {', '.join(sorted(missing))}")
+            return form(**{name: fields[name][0].decode(content) for name, content in document.items()})
+
+        return Shape(encode, decode)
+
+
+def _fields(form: type) -> dict[str, object]:
+    """The fields of a class, each with its default, or `_MISSING`."""
+    if issubclass(form, Immutable):
+        return {name: vars(form).get(name, _MISSING) for name in form._compared}
+    found: dict[str, object] = {}
+    for field in dataclasses.fields(cast(Any, form)):
+        made = _MISSING if field.default_factory is dataclasses.MISSING else field.default_factory()
+        found[field.name] = made if field.default is dataclasses.MISSING else field.default
+    return found
+
+
+def _primitive(forms: tuple[Any, ...]) -> Shape:
+    allowed = (*forms, int) if float in forms else forms  # a whole number of seconds is read back as written
+
+    def decode(document: Any) -> Any:  # noqa: ANN401
+        if type(document) not in allowed:
+            raise UnreadableError(f"`{document}` is none of {', '.join(each.__name__ for each in forms)}")
+        return document
+
+    return Shape(lambda value: value, decode)
+
+
+def _expected(kind: type, document: Any) -> Any:  # noqa: ANN401
+    if not isinstance(document, kind):
+        raise UnreadableError(f"`{document}` should be a {kind.__name__}")
+    return document
+
+
+def _guarded(form: type[Enum], document: object) -> Enum:
+    try:
+        return form(document)
+    except ValueError as error:
+        raise UnreadableError(str(error)) from None

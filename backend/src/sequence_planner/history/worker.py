@@ -1,0 +1,91 @@
+"""The process that looks back for the server: it replays and simulates, and can be killed at any time.
+
+It keeps the station and its safe states, so that only the first question waits for them.
+"""
+
+from __future__ import annotations
+
+import os
+import signal
+from contextlib import closing
+from functools import cached_property
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+import structlog
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.history.branch import branch
+from sequence_planner.history.error import HistoryError
+from sequence_planner.history.looking_back import looking_back
+from sequence_planner.history.moment_view import moment_view, past_view
+from sequence_planner.history.view import Answer, BranchView, LookBack, Question, Refused, TakeBranch, record_view
+from sequence_planner.lifeline import end_without_parent
+from sequence_planner.model.source import ModelError
+from sequence_planner.station import ReadyStation, prepare_station
+from sequence_planner.storage.database import Database
+from sequence_planner.storage.error import StorageError
+from sequence_planner.synthesis.supervision import SynthesisError, synthesise
+
+LOG = structlog.get_logger(__name__)
+_NICENESS = 10  # ticks come first, and plans
+MOST_TOLD = 5000  # records of a branch
+
+
+class _Room:
+    def __init__(self, model: Path, database: str) -> None:
+        self._model = model
+        self._database = database
+
+    @cached_property
+    def _station(self) -> ReadyStation:
+        return prepare_station(self._model)
+
+    @cached_property
+    def _supervisor(self) -> Supervisor:
+        return synthesise(self._station.automaton)
+
+    def answer(self, question: Question) -> Answer:
+        """What is asked. Raises `HistoryError`, and what else keeps it from being answered."""
+        station, supervisor = self._station, self._supervisor
+        with closing(Database.open(self._database, create=False)) as database, database.reading() as connection:
+            match question:
+                case LookBack(number):
+                    return moment_view(looking_back(connection, station.automaton, supervisor, number))
+                case TakeBranch(number, seconds, corrections, deadline):
+                    found = branch(connection, station, supervisor, number, seconds, corrections, deadline)
+        return BranchView(
+            seconds=found.seconds,
+            records=[record_view(each) for each in found.records[:MOST_TOLD]],
+            cut=len(found.records) > MOST_TOLD,
+            end=past_view(found.execution),
+        )
+
+
+def work(connection: Connection, model: Path, database: str) -> None:
+    """Answer questions until the other end is closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
+    end_without_parent()
+    os.nice(_NICENESS)
+    room = _Room(model, database)
+    while True:
+        try:
+            question: Any = connection.recv()
+        except EOFError:
+            return
+        connection.send(_answered(room, question))
+
+
+def _answered(room: _Room, question: Question) -> Answer:
+    try:
+        return room.answer(question)
+    except HistoryError as error:
+        return Refused(error.slug, error.detail)
+    except StorageError as error:
+        return Refused("storage-unavailable", str(error))
+    except (ModelError, SynthesisError) as error:
+        return Refused("model-changed", f"the model as it is now cannot be replayed with: {error}")
+    except Exception as error:
+        LOG.exception("a look back failed")
+        return Refused("history-failed", f"the replay failed: {type(error).__name__}: {error}")

@@ -1,0 +1,145 @@
+"""The restart advisor: proven ways back to work, those of least effort first."""
+
+from __future__ import annotations
+
+import time
+from collections import OrderedDict
+from collections.abc import Callable, Iterator
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.immutable import replace
+from sequence_planner.planning.advice.changes import Changes
+from sequence_planner.planning.advice.consultation import Consultation, Station
+from sequence_planner.planning.advice.fewest import MOST_OFFERS, FewestActs
+from sequence_planner.planning.advice.offer import Advice, Offer, OfferKind
+from sequence_planner.planning.advice.options import Options
+from sequence_planner.planning.advice.proving import Prover
+from sequence_planner.planning.advice.request import AdviceRequest, ErrandRequest
+from sequence_planner.planning.advice.situation import Situation
+from sequence_planner.planning.advice.stalling import Stall, only_written, stalling, stalls, written_by
+from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.plan import ORDINARY
+from sequence_planner.planning.reasons.diagnosis import Diagnosis
+from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.way_back import WaysBack
+
+Explain = Callable[[Task, Budget], Diagnosis]
+
+_SHARE = 0.85  # of the time, for offers; if there is none, reasons have the rest
+_PREPARING = 10.0  # seconds
+_MOST_KEPT = 3  # stations with and without stalled effects
+
+
+class Advisor:
+    """Advises one station under one supervisor, warm from question to question.
+
+    `explain` says why there is no plan, when nothing can be offered; `most` is how many offers of one kind there are.
+    """
+
+    def __init__(
+        self,
+        automaton: Automaton,
+        supervisor: Supervisor,
+        explain: Explain | None = None,
+        most: int = MOST_OFFERS,
+    ) -> None:
+        self._automaton = automaton
+        self._supervisor = supervisor
+        self._explain = explain
+        self._most = most
+        self._changes = Changes(automaton)
+        self._kept: OrderedDict[frozenset[Stall], Station] = OrderedDict()
+
+    def prepare(self) -> None:
+        """Make what the first question needs."""
+        station = self._station()
+        station.prover.prepare()
+        station.ways.way(initial_state(self._automaton), ORDINARY, 1, Budget.seconds(_PREPARING))
+
+    def advise(self, request: AdviceRequest, budget: Budget | None = None) -> Advice:
+        """Offers until the deadline. `budget` can be called off from another thread."""
+        began = time.monotonic()
+        budget = budget or Budget.seconds(request.deadline)
+        here = self._situation(request)
+        station = self._station(stalls(self._automaton, here.state, request.stalled))
+        consultation = Consultation(station, here, budget.part(_SHARE), request.violated)
+
+        def search() -> Iterator[Offer]:
+            yield from consultation.as_it_is()
+            aside = only_written(self._automaton, request.stalled)
+            acts = [] if consultation.goes_on else station.options.acts(here, request.last, request.fixed, aside)
+            awaited = written_by(self._automaton, request.stalled)
+            fewest = FewestActs(consultation, self._changes, request.impossible, self._most, awaited)
+            yield from fewest.likely(acts)
+            yield from consultation.without_some()
+            yield from consultation.by_errands()
+            yield from consultation.by_resets()
+            yield from fewest.offers(acts)
+            if not consultation.helped:
+                yield from consultation.without_goals()
+
+        offers = self._gathered(consultation, search())
+        return self._advice(consultation, offers, here, budget, began)
+
+    def errand(self, request: ErrandRequest, budget: Budget | None = None) -> Advice:
+        """The errand that is asked for, if there is one, with a plan from its end where that was found."""
+        began = time.monotonic()
+        budget = budget or Budget.seconds(request.deadline)
+        here = self._situation(request)
+        station = self._station(stalls(self._automaton, here.state, request.stalled))
+        consultation = Consultation(station, here, budget.part(_SHARE), request.violated)
+        kind = OfferKind.GOAL if request.operation is None else OfferKind.RESET
+
+        def search() -> Iterator[Offer]:
+            for errand in consultation.asked(request.target, request.operation, request.circumstances.restart):
+                then = None
+                try:
+                    then = consultation.find(errand.end.production()).plan
+                except SpentError:
+                    consultation.undecided = True
+                left_out = errand.end.goals if then is None else ()
+                yield consultation.making.offer(
+                    kind, errand.end, then, errand=errand, operation=request.operation, left_out=left_out
+                )
+
+        offers = self._gathered(consultation, search())
+        return self._advice(consultation, offers, here, budget, began)
+
+    def _gathered(self, consultation: Consultation, search: Iterator[Offer]) -> list[Offer]:
+        offers: list[Offer] = []
+        try:
+            for offer in search:
+                offers.append(offer)
+        except SpentError:
+            consultation.undecided = True
+        return offers
+
+    def _advice(
+        self, consultation: Consultation, offers: list[Offer], here: Situation, budget: Budget, began: float
+    ) -> Advice:
+        reasons = None
+        if not offers and self._explain is not None and not budget.spent:
+            reasons = self._explain(here.production(), budget)
+        ranked = tuple(sorted(offers, key=lambda offer: offer.effort.cost))
+        return Advice(ranked, reasons, not consultation.undecided, time.monotonic() - began)
+
+    def _situation(self, request: AdviceRequest | ErrandRequest) -> Situation:
+        state = synchronise(self._automaton, request.state)
+        circumstances = replace(request.circumstances, restart=False)
+        return Situation(state, missing(request.goals, state), circumstances, request.longest)
+
+    def _station(self, stalled: frozenset[Stall] = frozenset()) -> Station:
+        """One that does not count on what is stalled."""
+        if stalled not in self._kept:
+            automaton = stalling(self._automaton, stalled) if stalled else self._automaton
+            prover = Prover(automaton, self._supervisor, self._station().prover if stalled else None)
+            ways = WaysBack(automaton, self._supervisor.safe)
+            options = Options(automaton, self._automaton.effects)
+            self._kept[stalled] = Station(prover, ways, options, self._changes)
+            if len(self._kept) > _MOST_KEPT:
+                self._kept.pop(next(each for each in self._kept if each))
+        self._kept.move_to_end(stalled)
+        return self._kept[stalled]

@@ -1,0 +1,206 @@
+"""One question to the advisor: what costs a person little is looked for first, until the time is over."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.syntax import TRUE, Expression
+from sequence_planner.immutable import Immutable, replace
+from sequence_planner.planning.advice.changes import Acts, Changes
+from sequence_planner.planning.advice.errands import Errand, Errands
+from sequence_planner.planning.advice.making import Making
+from sequence_planner.planning.advice.offer import Offer, OfferKind
+from sequence_planner.planning.advice.options import Options
+from sequence_planner.planning.advice.proving import Finding, Prover
+from sequence_planner.planning.advice.situation import Situation
+from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.goals.pursuit import Goals
+from sequence_planner.planning.plan import Goal, Plan
+from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.sat.search import SearchTimeoutError
+from sequence_planner.planning.way_back import WaysBack
+
+# Of the time that is left, for one plan, for one without some goals, and for one way into the safe states.
+_PLAN, _PART, _WAY = 0.3, 0.15, 0.4
+
+
+class Station(Immutable):
+    """All that stays warm from question to question."""
+
+    prover: Prover
+    ways: WaysBack
+    options: Options
+    changes: Changes
+
+
+class _DeadEnd(Immutable):
+    """An errand from whose end there is no plan for all goals."""
+
+    kind: OfferKind
+    end: Situation
+    acts: Acts
+    errand: Errand
+    operation: str | None
+
+
+class Consultation:
+    """Looks for offers from the situation `here`. `undecided` says that there may be more than were found.
+
+    Goals that were `violated` are none of the situation's: only the reset of their operations makes them so again.
+    """
+
+    def __init__(self, station: Station, here: Situation, budget: Budget, violated: Goals = ()) -> None:
+        self.undecided = False
+        self.goes_on = False  # as it is, towards all goals
+        self.helped = False  # by an offer that reaches all goals, and does more than say so
+        self.here = here
+        self.prover = station.prover
+        self.making = Making(station.prover, here, tuple(goal.name for goal in violated))
+        self._violated = violated
+        self.budget = budget
+        self._ways = station.ways
+        self._errands = Errands(station.prover, station.ways, self.find, budget)
+        self._dead_ends: list[_DeadEnd] = []
+        self._operations = station.prover.automaton.operations
+
+    def find(self, task: Task, share: float = _PLAN, *, last: bool = True, helped: bool = False) -> Finding:
+        """A plan. What is not decided is asked again, unless this is the `last` time.
+
+        Once a person has `helped` the devices that did not react they are counted on again.
+
+        Raises `SpentError` when there is no time for it any more.
+        """
+        self.budget.require()
+        prover = self.prover.counting if helped else self.prover
+        finding = prover.find(task, self.budget.part(share))
+        self.undecided = self.undecided or (last and not finding.decided)
+        return finding
+
+    def as_it_is(self) -> Iterator[Offer]:
+        """Production goes on towards all goals."""
+        here = self.here
+        if not self.prover.is_safe(here.state):
+            return
+        plan = self.find(here.production()).plan
+        if plan is not None:
+            self.goes_on = self.helped = True
+            yield self.making.offer(OfferKind.REPLAN, here, plan)
+
+    def without_some(self) -> Iterator[Offer]:
+        """Production goes on as it is, without the goals of lowest priority."""
+        if not self.goes_on and self.prover.is_safe(self.here.state):
+            some = self._some(self.here)
+            if some is not None and some[2].goals:
+                yield self.making.offer(OfferKind.REPLAN, self.here, some[0], left_out=some[1])
+
+    def by_errands(self) -> Iterator[Offer]:
+        """Errands without changes: back into the safe states, to rest, or by restart abilities."""
+        kind = OfferKind.RESTART if self.prover.is_safe(self.here.state) else OfferKind.WAY_BACK
+        yield from self.concluded(kind, self._errands_from(self.here), ())
+
+    def by_errands_after(self, acts: Acts, after: Situation) -> Iterator[Offer]:
+        """The same after what a person has changed."""
+        yield from self.concluded(OfferKind.COMBINED, self._errands_from(after), acts)
+
+    def by_resets(self) -> Iterator[Offer]:
+        """Operations begin anew: their preconditions are brought about again."""
+        for goal in (*self.here.goals, *self._violated):
+            if (operation := self._operations.get(goal.name)) is not None:
+                again = not holds(operation.precondition, self.here.state)
+                if again or goal in self._violated or (goal.local != TRUE and goal.at != 0):
+                    errands = self.asked(operation.precondition, goal.name)
+                    yield from self.concluded(OfferKind.RESET, errands, (), goal.name)
+
+    def asked(self, target: Expression, operation: str | None, restart: bool = True) -> Iterator[Errand]:
+        """The errand to `target`, from outside the safe states after the way into them.
+
+        While an operation is reset nothing is asked of it, and then its formula begins anew.
+        """
+        other = self.here.without(frozenset({operation} if operation is not None else ()))
+        all_goals = (*self.here.goals, *self._violated)
+        begun = [replace(goal, at=0) for goal in all_goals if goal.name == operation]
+        way = None if self.prover.is_safe(other.state) else self._way(other)
+        if way is None and not self.prover.is_safe(other.state):
+            return
+        errand = self._errands.to(other if way is None else way.end, target, restart)
+        if errand is not None and way is not None:
+            errand = self._errands.joined(other, way, errand)
+        if errand is not None:
+            end = errand.end
+            goals = missing((*end.goals, *begun), end.state)
+            ordered = [goal.name for goal in all_goals]
+            yield replace(
+                errand, end=replace(end, goals=tuple(sorted(goals, key=lambda goal: ordered.index(goal.name))))
+            )
+
+    def concluded(
+        self, kind: OfferKind, errands: Iterator[Errand], acts: Acts, operation: str | None = None
+    ) -> Iterator[Offer]:
+        """Offers of those errands from whose end there is a plan for all goals."""
+        seen: set[object] = set()
+        for errand in errands:
+            if errand.ticks not in seen:
+                seen.add(errand.ticks)
+                then = self._then(errand)
+                if then is None:
+                    self._dead_ends.append(_DeadEnd(kind, errand.end, acts, errand, operation))
+                else:
+                    self.helped = True
+                    yield self.making.offer(kind, errand.end, then, acts, errand, operation)
+
+    def without_goals(self) -> Iterator[Offer]:
+        """Where nothing else helps: errands after which some goals are given up."""
+        for dead in self._dead_ends:
+            some = self._some(dead.end)
+            if some is not None and (some[2].goals or dead.errand.walk.unsupervised or self._was_outside):
+                then, left_out, _ = some
+                yield self.making.offer(dead.kind, dead.end, then, dead.acts, dead.errand, dead.operation, left_out)
+
+    @property
+    def _was_outside(self) -> bool:
+        return not self.prover.is_safe(self.here.state)
+
+    def _some(self, here: Situation) -> tuple[Plan, tuple[Goal, ...], Situation] | None:
+        """A plan for as many goals as can be, those of lowest priority given up first; which, and for which it is."""
+        left_out: list[Goal] = []
+        while (least := here.least()) is not None:
+            here = here.without(frozenset({least.name}))
+            left_out.append(least)
+            plan = self.find(here.production(), _PART).plan
+            if plan is not None:
+                return plan, tuple(left_out), here
+        return None
+
+    def _then(self, errand: Errand) -> Plan | None:
+        task = errand.end.production()
+        if errand.rest is not None and task.goals and self.prover.accepts(task, errand.rest):
+            return errand.rest
+        return self.find(task).plan
+
+    def _errands_from(self, here: Situation) -> Iterator[Errand]:
+        if self.prover.is_safe(here.state):
+            for errand in self._errands.startable(here):
+                if not self.goes_on or self.making.restarts(errand.ticks):
+                    yield errand
+            if not self.goes_on:
+                rest = self._errands.to_rest(here)
+                if rest is not None:
+                    yield rest
+                yield from self._errands.onwards(here)
+        elif (way := self._way(here)) is not None:
+            dead = len(self._dead_ends)
+            yield way
+            if len(self._dead_ends) > dead:
+                for further in self._errands_from(way.end):
+                    if (both := self._errands.joined(here, way, further)) is not None:
+                        yield both
+
+    def _way(self, here: Situation) -> Errand | None:
+        self.budget.require()
+        try:
+            return self._errands.into_safe(here, _WAY)
+        except (SearchTimeoutError, SpentError):
+            self.undecided = True
+            return None

@@ -1,0 +1,140 @@
+"""The search for the fewest acts of a person after which production goes on towards all goals."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator
+from itertools import islice
+
+from sequence_planner.immutable import Immutable
+from sequence_planner.planning.advice.changes import MOST_ACTS, Acts, Changes, is_possible, kind_of, sets
+from sequence_planner.planning.advice.consultation import Consultation
+from sequence_planner.planning.advice.offer import Offer, OfferKind
+from sequence_planner.planning.advice.options import LIKELY, Act, ActKind
+from sequence_planner.planning.advice.request import Pairing
+from sequence_planner.planning.advice.situation import Situation
+from sequence_planner.planning.plan import Plan
+
+MOST_OFFERS = 5  # of one kind
+
+_AT_A_TIME = 100  # sets of acts that are looked at before plans are looked for
+_FIRST, _SECOND = 0.2, 0.5  # of the time that is left, for one plan
+_MOST_COMBINED = 2
+
+
+class _Changed(Immutable):
+    acts: Acts
+    kind: OfferKind
+    after: Situation
+
+
+class FewestActs:
+    """Looks for offers by acts, in the order of their number. Corrections alone, acts at devices alone and both
+    together are each looked for until some are found; those that only say what the goals ask for do not count.
+    """
+
+    def __init__(
+        self,
+        consultation: Consultation,
+        changes: Changes,
+        impossible: frozenset[Pairing],
+        most: int = MOST_OFFERS,
+        awaited: frozenset[str] = frozenset(),
+    ) -> None:
+        """`awaited` are the variables that devices should have changed, and have not."""
+        self._consultation = consultation
+        self._changes = changes
+        self._impossible = impossible
+        self._most = most
+        self._awaited = awaited
+        self._enough: set[OfferKind] = set()
+        self._found: list[frozenset[Act]] = []
+        self._number: Counter[OfferKind] = Counter()
+
+    def likely(self, acts: list[Act]) -> Iterator[Offer]:
+        """Offers by the most plausible acts, one at a time."""
+        changed = list(self._changed([act for act in acts if act.rank <= LIKELY], 1))
+        yield from self._tried(changed, [], [])
+
+    def offers(self, acts: list[Act]) -> Iterator[Offer]:
+        """Offers by the acts; those of one thing less come first."""
+        for size in range(1, MOST_ACTS + 1):
+            dead: list[_Changed] = []
+            late: list[_Changed] = []
+            changed = self._changed(acts, size)
+            while some := list(islice(changed, _AT_A_TIME)):
+                yield from self._tried(some, dead, late)
+            yield from self._tried(late, dead, None)
+            self._enough.update(kind for kind, number in self._number.items() if number)
+            yield from self._combined(dead)
+
+    def _changed(self, acts: list[Act], size: int) -> Iterator[_Changed]:
+        """All sets of so many acts that may be worth while, each with where it leads."""
+        consultation = self._consultation
+        for each in sets(acts, size):
+            kind = kind_of(each)
+            needless = kind in self._enough or (kind is OfferKind.COMBINED and consultation.helped)
+            if needless or any(found.issubset(each) for found in self._found):
+                continue
+            consultation.budget.require()
+            after = self._changes.applied(consultation.here, each)
+            if is_possible(consultation.here, after, self._impossible):
+                yield _Changed(each, kind, after)
+
+    def _tried(self, some: list[_Changed], dead: list[_Changed], late: list[_Changed] | None) -> Iterator[Offer]:
+        """Offers of those that have a plan; what costs no time goes first. Some are `dead`, some have to be tried once
+        more, `late`; without a list for these it is the last time.
+        """
+        consultation, prover = self._consultation, self._consultation.prover
+        planned: list[_Changed] = []
+        for each in some:
+            task = each.after.production()
+            knowing = prover.counting if self._helps(each) else prover
+            if not prover.is_safe(each.after.state) or knowing.is_refuted(task):
+                dead.append(each)
+            elif consultation.here.goals and not task.goals:
+                yield self._offer(each, consultation.find(task).plan)
+            else:
+                planned.append(each)
+        for each in planned:
+            if each.kind in self._enough or self._is_given(each):
+                continue
+            share, last, helped = (_SECOND if late is None else _FIRST), late is None, self._helps(each)
+            finding = consultation.find(each.after.production(), share, last=last, helped=helped)
+            if finding.plan is not None:
+                yield self._offer(each, finding.plan)
+            elif finding.refuted:
+                dead.append(each)
+            elif late is not None:
+                late.append(each)
+
+    def _helps(self, each: _Changed) -> bool:
+        """Whether a person has done what a device should have done by itself."""
+        acts = (act for act in each.acts if act.kind is ActKind.DEVICE)
+        return any(name in self._awaited for act in acts for name, _ in act.values)
+
+    def _offer(self, each: _Changed, plan: Plan | None) -> Offer:
+        self._found.append(frozenset(each.acts))
+        offer = self._consultation.making.offer(each.kind, each.after, plan, each.acts)
+        if not offer.effort.restates:
+            self._consultation.helped = True
+            self._number[each.kind] += 1
+            if self._number[each.kind] >= self._most:
+                self._enough.add(each.kind)
+        return offer
+
+    def _is_given(self, each: _Changed) -> bool:
+        """Whether an offer found meanwhile asks for less, or for the same in other words."""
+        about = {(act.kind, act.name, dict(act.values).get(act.name)) for act in each.acts}
+        return any({(act.kind, act.name, dict(act.values).get(act.name)) for act in f} <= about for f in self._found)
+
+    def _combined(self, dead: list[_Changed]) -> Iterator[Offer]:
+        """Where nothing has helped so far, an errand after the acts."""
+        number = 0
+        for each in dead:
+            if self._consultation.helped and number in (0, _MOST_COMBINED):
+                return
+            for offer in self._consultation.by_errands_after(each.acts, each.after):
+                number += 1
+                yield offer
+                break

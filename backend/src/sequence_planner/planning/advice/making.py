@@ -1,0 +1,108 @@
+"""Offers made of what has been found: everything about them is worked out here, and nowhere else."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from sequence_planner.automaton.structure import Kind, State
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.planning.advice.errands import Errand
+from sequence_planner.planning.advice.offer import (
+    Change,
+    Effort,
+    Offer,
+    OfferKind,
+    changes_between,
+    expected_seconds,
+)
+from sequence_planner.planning.advice.options import Act, ActKind
+from sequence_planner.planning.advice.proving import Prover
+from sequence_planner.planning.advice.situation import Situation
+from sequence_planner.planning.advice.stalling import changes_something
+from sequence_planner.planning.plan import Goal, Plan, PlanTick
+
+
+class Making:
+    """Makes offers for a station that is in the situation `here`; `violated` goals are reached only after a reset."""
+
+    def __init__(self, prover: Prover, here: Situation, violated: tuple[str, ...] = ()) -> None:
+        self._prover = prover
+        self._automaton = prover.automaton
+        self._here = here
+        self._violated = violated
+
+    def offer(
+        self,
+        kind: OfferKind,
+        end: Situation,
+        then: Plan | None,
+        acts: tuple[Act, ...] = (),
+        errand: Errand | None = None,
+        operation: str | None = None,
+        left_out: tuple[Goal, ...] = (),
+    ) -> Offer:
+        """The offer of `acts`, then of `errand`, which end in `end`, and of the plan from there."""
+        returning = [name for act in acts if act.kind is ActKind.RETURN for name, _ in act.values]
+        changed: State = {**self._here.state, **{name: value for act in acts for name, value in act.values}}
+        measured = changes_between(self._automaton, self._here.state, changed, Kind.MEASURED)
+        corrections = changes_between(self._automaton, self._here.state, changed, Kind.ESTIMATED)
+        plan = None if errand is None else Plan(errand.ticks, minimal_ticks=False, minimal_starts=False)
+        breaks = () if errand is None else errand.walk.breaks
+        unsupervised = errand is not None and errand.walk.unsupervised
+        ticks = (*(() if plan is None else plan.ticks), *(() if then is None else then.ticks))
+        given_up = [*_of(left_out), *(name for name in self._violated if name != operation)]
+        reached = [*_of(self._here.goals), *(name for name in self._violated if name == operation)]
+        effort = Effort(
+            changes=len(corrections),
+            physical=sum(act.kind is ActKind.DEVICE for act in acts),
+            returns=sum(act.kind in (ActKind.RETURN, ActKind.SERVICE) for act in acts),
+            starts=0 if plan is None else len(plan.starts),
+            seconds=expected_seconds(self._automaton, ticks),
+            left_out=len(given_up),
+            breaks=len(breaks),
+            unsupervised=unsupervised,
+            restates=self.restates(end, corrections) if errand is None else False,
+        )
+        return Offer(
+            kind=kind,
+            end=end.state,
+            effort=effort,
+            corrections=corrections,
+            physical=tuple(change for change in measured if change.name not in returning),
+            online=tuple(act.name for act in acts if act.kind is ActKind.RETURN),
+            in_service=tuple(act.name for act in acts if act.kind is ActKind.SERVICE),
+            assumed=tuple(change for change in measured if change.name in returning),
+            errand=plan,
+            goal=Offer.goal if errand is None else errand.goal,
+            operation=operation,
+            restart=plan is not None and self.restarts(plan.ticks),
+            unsupervised=unsupervised,
+            at_rest=self.at_rest(end),
+            breaks=breaks,
+            then=then,
+            goals=() if then is None else tuple(name for name in reached if name not in given_up),
+            left_out=tuple(given_up),
+        )
+
+    def restarts(self, ticks: Iterable[PlanTick]) -> bool:
+        """Whether restart abilities start."""
+        return any(self._automaton.abilities[name].restart for tick in ticks for name in tick.starts)
+
+    def restates(self, end: Situation, corrections: Iterable[Change]) -> bool:
+        """Whether the corrections say no more than what the goals ask for."""
+        return bool(self._here.goals) and not end.goals and any(True for _ in corrections)
+
+    def at_rest(self, end: Situation) -> bool:
+        """Whether it is a safe rest state in which no device has still to follow what it was told."""
+        rest, state = self._automaton.rest, end.state
+        if (rest is not None and not holds(rest, state)) or not self._prover.is_safe(state):
+            return False
+        for effect in self._automaton.effects:
+            counted_on = not effect.fault and effect.resource not in end.circumstances.offline
+            if counted_on and changes_something(effect, state):
+                return False
+        return True
+
+
+def _of(goals: Iterable[Goal]) -> list[str]:
+    return [goal.name for goal in goals]

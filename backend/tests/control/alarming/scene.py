@@ -1,0 +1,85 @@
+"""Alarms as they are made at a station, and what they tell the journal."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from pydantic import JsonValue
+
+from control.rig import Rig
+from sequence_planner.actor import SYSTEM
+from sequence_planner.control.alarm_commands import (
+    AcknowledgeAlarm,
+    AlarmCommand,
+    RestoreAlarm,
+    ShelveAlarm,
+    SuppressAlarm,
+    UnshelveAlarm,
+)
+from sequence_planner.control.alarming.alarms import Alarms
+from sequence_planner.control.commander import Commander
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.outside import Outside
+from sequence_planner.ros.memory import MemoryNetwork
+from sequence_planner.station import ReadyStation
+
+
+@dataclass
+class Told:
+    """What the journal was told."""
+
+    notes: list[tuple[str, Mapping[str, JsonValue]]] = field(default_factory=list)
+
+    def __call__(self, kind: str, content: Mapping[str, JsonValue]) -> None:
+        self.notes.append((kind, content))
+
+    @property
+    def events(self) -> list[tuple[JsonValue, JsonValue]]:
+        """Which alarm, and what has become of it."""
+        return [(content["alarm"], content["event"]) for kind, content in self.notes if kind == "alarm"]
+
+
+def commander(station: ReadyStation) -> Commander:
+    """One that sends to a network on which nobody listens."""
+
+    async def join() -> Commander:
+        transport = MemoryNetwork().join(station.registry, "sequence_planner", asyncio.get_running_loop())
+        return Commander(station.pipelines.outgoing, station.registry, transport)
+
+    return asyncio.run(join())
+
+
+def alarms_of(execution: Execution, station: ReadyStation, told: Told | None = None) -> Alarms:
+    """The alarms of a station of which no device has been heard yet."""
+    feeds = Feeds(station.pipelines, station.registry)
+    network = NetworkWatch(station.pipelines, station.registry)
+    return Alarms(execution, Outside(execution), feeds, network, commander(station), told or Told())
+
+
+def alarms(rig: Rig) -> Alarms:
+    """The alarms of the station of a rig."""
+    return alarms_of(rig.execution, rig.station)
+
+
+def acknowledge(alarm: str, since: float) -> AlarmCommand:
+    return AcknowledgeAlarm(actor=SYSTEM, alarm=alarm, since=since)
+
+
+def shelve(alarm: str, seconds: float) -> AlarmCommand:
+    return ShelveAlarm(actor=SYSTEM, alarm=alarm, seconds=seconds, reason="it is known")
+
+
+def unshelve(alarm: str) -> AlarmCommand:
+    return UnshelveAlarm(actor=SYSTEM, alarm=alarm)
+
+
+def suppress(alarm: str) -> AlarmCommand:
+    return SuppressAlarm(actor=SYSTEM, alarm=alarm, reason="the sensor is broken")
+
+
+def restore(alarm: str) -> AlarmCommand:
+    return RestoreAlarm(actor=SYSTEM, alarm=alarm)

@@ -1,0 +1,180 @@
+"""Why there are alarms: each is noticed in time, and says what comes of it."""
+
+from __future__ import annotations
+
+from control.alarming.scene import acknowledge, alarms
+from control.rig import Rig, never
+from sequence_planner.control.alarming.alarms import Alarms
+from sequence_planner.control.conduct import LastErrand, OutOfService
+from sequence_planner.control.heard import TickOutcome
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.view import AlarmState, Mode, Priority, QuestionView
+from sequence_planner.immutable import replace
+
+
+def outcome(
+    finished: tuple[str, ...] = (), started: tuple[str, ...] = (), conflicts: tuple[tuple[str, str, str], ...] = ()
+) -> TickOutcome:
+    nothing: frozenset[str] = frozenset()
+    return TickOutcome(finished, (), started, nothing, nothing, conflicts, nothing, changed=True)
+
+
+def there(shown: Alarms, now: Moment) -> set[str]:
+    """The alarms whose causes are there."""
+    return {key for key, alarm in shown.current(None, now).items() if alarm.ended is None}
+
+
+def test_a_conflict_is_shown_until_one_of_the_two_goes_on() -> None:
+    """It lasts one tick, and a tick is shorter than a look; what it left undone lasts."""
+    shown = alarms(Rig())
+    shown.note(outcome(conflicts=(("a", "b", "x"), ("a", "c", "x"))))
+    shown.note(outcome())
+    now = Moment(1000, 10)
+    assert {"conflict:a:b:x", "conflict:a:c:x"} <= shown.current(None, now).keys()
+    shown.note(outcome(started=("b",)))
+    assert there(shown, now) == {"conflict:a:c:x"}
+    shown.note(outcome(finished=("a",)))
+    assert there(shown, now) == set()
+
+
+def test_a_clock_that_is_set_makes_nothing_overdue() -> None:
+    rig = Rig(acknowledges=never)
+    rig.start_production()
+    shown = alarms(rig)
+    assert rig.run(10, until=lambda: rig.value("robot.attach_tool") is True)
+    attach = "overdue:robot.attach_in_planning_scene"
+    assert attach not in shown.current(None, Moment(rig.now + 86400, rig.now + 1))
+    assert attach in shown.current(None, Moment(rig.now - 86400, rig.now + 11))
+
+
+def test_an_alarm_keeps_the_time_at_which_it_came() -> None:
+    shown = alarms(Rig())
+    first = shown.current("the planner has ended", Moment(1000, 10))
+    later = shown.current("the planner has ended", Moment(1060, 70))
+    assert first["planner"].since == later["planner"].since == 1000
+    shown.carry_out(acknowledge("planner", 1000), Moment(1065, 75))
+    assert "planner" not in shown.current(None, Moment(1070, 80))
+    assert shown.current("the planner has ended", Moment(1080, 90))["planner"].since == 1080
+
+
+def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
+    rig = Rig()
+    rig.start_production()
+    shown = alarms(rig)
+    assert rig.run(60, until=lambda: "nutrunner.run_nut" in rig.started)
+    late = "overdue:nutrunner.run_nut"
+    assert late not in shown.current(None, Moment(rig.now + 4, rig.now + 4))
+    told = shown.current(None, Moment(rig.now + 6, rig.now + 6))[late]
+    assert told.text == "Run the nutrunner has not begun within 5 s"
+    assert told.consequence == "“Tighten bolt pair 3” waits until it does."
+
+    assert rig.run(5, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
+    told = shown.current(None, Moment(rig.now + 6, rig.now + 6))[late]
+    assert told.state is AlarmState.RETURNED
+    told = shown.current(None, Moment(rig.now + 40, rig.now + 40))[late]
+    assert told.state is AlarmState.UNACKNOWLEDGED
+    assert told.text.startswith("Run the nutrunner has not finished within ")
+
+
+def test_a_specification_that_is_broken_for_certain_is_an_alarm_whatever_else_is_unknown() -> None:
+    rig = Rig()
+    shown = alarms(rig)
+    assert rig.execution.blind
+    now = Moment(1000, 10)
+    assert "unsafe-state" not in shown.current(None, now)  # for all that is known it may be safe
+    rig.execution.state = {
+        **rig.execution.state,
+        "bolts[bolt_pair_1]": "placed",
+        "robot.target_pose": "bolt_pair_1",
+        "nutrunner.run_nut.executing": False,
+    }
+    assert "The tool must turn before it meets placed bolts" in shown.current(None, now)["unsafe-state"].text
+
+
+def test_what_cannot_be_recorded_is_one_alarm_whoever_notices() -> None:
+    rig = Rig()
+    rig.start_production()
+    rig.run(3)
+    shown = alarms(rig)
+    shown.unjournalled = shown.unrecorded = "database or disk is full"
+    told = shown.current(None, Moment(1000, 10))
+    assert "unrecorded" not in told
+    assert told["unjournalled"].parts == ["Commands cannot be recorded: database or disk is full"]
+    assert told["unjournalled"].consequence.startswith("Nothing is started. “")
+
+
+def test_before_production_nothing_waits() -> None:
+    shown = alarms(Rig())
+    shown.unjournalled = "database or disk is full"
+    told = shown.current(None, Moment(1000, 10))["unjournalled"]
+    assert told.consequence == "Nothing is started. Production is not started, so nothing waits for it."
+
+
+def test_outputs_that_nobody_has_decided_on_are_an_alarm() -> None:
+    shown = alarms(Rig())
+    shown.undecided = {"nutrunner.run_tool_forward", "robot.target_pose"}
+    told = shown.current(None, Moment(1000, 10))["undecided-outputs"]
+    assert told.text.endswith("nutrunner.run_tool_forward, robot.target_pose")
+    shown.undecided = ()
+    assert there(shown, Moment(1001, 11)) == set()
+
+
+def test_a_question_names_the_operations_that_it_decides() -> None:
+    rig = Rig()
+    rig.start_production()
+    rig.run(3)
+    shown = alarms(rig)
+    shown.questions = [
+        QuestionView(
+            variable="bolts[bolt_pair_1]", believed="placed", possible=["empty"], because=["a does not go with b"]
+        )
+    ]
+    told = shown.current(None, Moment(1000, 10))["contradiction"]
+    assert "bolts[bolt_pair_1] is believed to be placed" in told.text
+    assert told.consequence == "Plans may be wrong, and so may be whether “Tighten bolt pair 1” is reached."
+
+
+def test_a_forced_variable_is_told_as_long_as_it_lasts() -> None:
+    rig = Rig()
+    shown = alarms(rig)
+    now = Moment(1000, 10)
+    rig.execution.force("robot.pose", "home", Moment(1060, 70), "Eva", "its camera is dirty")
+    told = shown.current(None, now)["forced:robot.pose"]
+    assert told.text == "robot.pose is forced to home by Eva: its camera is dirty"
+    assert (told.priority, told.state) == (Priority.LOW, AlarmState.ACKNOWLEDGED)
+    rig.execution.release("robot.pose")
+    assert "forced:robot.pose" not in shown.current(None, now)
+
+
+def test_abilities_of_one_resource_that_are_given_up_are_one_alarm() -> None:
+    rig = Rig()
+    for name in ("nutrunner.run_nut", "robot.attach_in_planning_scene"):
+        service = {**rig.execution.conduct.service}
+        of = (ServiceKind.ABILITY, name)
+        service[of] = OutOfService(*of, Moment(1000, 10), None, "has not begun within 5 s, tried 2 times")
+        rig.execution.conduct = replace(rig.execution.conduct, service=service)
+    rig.execution.set_service(ServiceKind.ABILITY, "robot.detach_from_planning_scene", False, "Eva", "", rig_now(rig))
+    told = alarms(rig).current(None, Moment(1000, 10))
+    assert {key for key in told if key.startswith("given-up")} == {"given-up:nutrunner", "given-up:robot"}
+    assert told["given-up:nutrunner"].text == (
+        "Run the nutrunner has not begun within 5 s, tried 2 times: it is given up"
+    )
+    assert "put Run the nutrunner back in service" in told["given-up:nutrunner"].action
+
+
+def test_an_errand_that_the_station_has_stopped_is_an_alarm_until_it_works_again() -> None:
+    rig = Rig()
+    shown = alarms(rig)
+    now = rig_now(rig)
+    rig.execution.change_mode(Mode.RESTART, "Eva", now)
+    for by, expected in (("Eva", set[str]()), (None, {f"errand:{now.epoch}"})):
+        last = LastErrand("Bring the robot home", False, "the station departed from it", now, by)
+        rig.execution.conduct = replace(rig.execution.conduct, last_errand=last)
+        assert there(shown, now) == expected
+    rig.execution.change_mode(Mode.AUTOMATIC, "Eva", now)
+    assert there(shown, now) == set()
+
+
+def rig_now(rig: Rig) -> Moment:
+    return Moment(rig.now, rig.now)

@@ -1,0 +1,84 @@
+"""Devices that do nothing though nothing of them is overdue: they are noticed, and not counted on."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from core.building import Does, automaton
+from sequence_planner.automaton.structure import Timeouts
+from sequence_planner.control.alarming.of_plans import PlanAlarms
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.standing_still import StandingStill
+from sequence_planner.expressions.types import EnumerationType, Value
+from sequence_planner.station import prepare_station
+from sequence_planner.synthesis.supervision import synthesise
+
+MODEL = Path(__file__).parents[3] / "models" / "bolt_tightening"
+PLACES = EnumerationType(("home", "between", "work"))
+
+
+def made() -> tuple[Execution, StandingStill]:
+    """A cart that goes to where it was sent, within five seconds."""
+    cart = automaton(
+        {
+            "go": Does(
+                ("target := work",),
+                "at == home",
+                executing="at != target",
+                finish="at == work",
+                timeouts=Timeouts(finish=5),
+            )
+        },
+        measured={"at": (PLACES, "home")},
+        output={"target": (PLACES, "home")},
+        effects={"go.arrives": ("at == between", ("at := target",))},
+    )
+    execution = Execution(cart, synthesise(cart))
+    return execution, StandingStill(execution)
+
+
+def tick(execution: Execution, at: Value | None, seconds: float) -> None:
+    execution.tick({"at": at}, Moment(1000.0 + seconds, seconds))
+
+
+def test_a_device_that_was_pushed_away_and_does_not_come_back_is_noticed() -> None:
+    execution, still = made()
+    execution.start_production()
+    tick(execution, "home", 0.0)
+    tick(execution, "between", 1.0)
+    tick(execution, "between", 5.9)
+    assert (still.late(5.9), still.devices(5.9)) == (frozenset(), {})
+    assert still.late(6.1) == {"go.arrives"}
+    assert list(still.devices(6.1).values()) == [{"at"}]
+    tick(execution, "home", 6.2)
+    tick(execution, "between", 6.3)
+    assert still.late(11.0) == frozenset()
+    assert still.late(11.4) == {"go.arrives"}
+
+
+def test_it_is_an_alarm_that_says_what_the_device_says() -> None:
+    execution, _ = made()
+    station = prepare_station(MODEL)
+    alarms = PlanAlarms(execution, Feeds(station.pipelines, station.registry))
+    execution.start_production()
+    tick(execution, "between", 1.0)
+    assert not [cause for cause in alarms.causes(None, 5.0) if cause.key.startswith("still:")]
+    (still,) = [cause for cause in alarms.causes(None, 6.1) if cause.key.startswith("still:")]
+    assert "does not do what it should: it still says at == between" in still.text
+
+
+def test_what_is_not_heard_or_was_told_nothing_yet_is_not_waited_for() -> None:
+    execution, still = made()
+    tick(execution, "between", 0.0)
+    tick(execution, "between", 50.0)
+    assert still.late(50.0) == frozenset()
+    execution.start_production()
+    tick(execution, "between", 51.0)
+    assert still.late(55.9) == frozenset()
+    tick(execution, None, 55.9)
+    assert still.late(100.0) == frozenset()
+    tick(execution, "between", 100.0)
+    assert still.late(104.9) == frozenset()
+    assert still.late(105.1) == {"go.arrives"}

@@ -1,0 +1,177 @@
+"""Random lives of stations: all that can happen to an execution does, in any order, and is recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from core.choices import Choices
+from core.random_problems import RESOURCES, Problem, problem
+from sequence_planner.automaton.structure import Automaton, Kind, State, Timeouts
+from sequence_planner.automaton.tick import apply_effects
+from sequence_planner.control.conduct import Beginning
+from sequence_planner.control.errand import Errand, ErrandKind
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.view import Mode
+from sequence_planner.expressions.syntax import TRUE, Expression
+from sequence_planner.expressions.types import Value
+from sequence_planner.history.model_digest import model_digest
+from sequence_planner.history.recorder import RunRecorder
+from sequence_planner.immutable import replace as changed
+from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.planning.plan import Plan, PlanAnswer, PlanRequest, PlanTick, Verdict
+from sequence_planner.planning.planner import Planner, PlannerError
+from sequence_planner.planning.reasons.diagnosis import Diagnosis
+
+
+@dataclass
+class Life:
+    """An execution and the records of what has happened to it."""
+
+    execution: Execution
+    planner: Planner
+    records: list[RunRecord] = field(default_factory=list)
+    now: float = 1000.0
+    asked: PlanRequest | None = None
+
+    @property
+    def moment(self) -> Moment:
+        """Epoch and the other clock never agree."""
+        return Moment(1.7e9 + self.now, self.now)
+
+    def write(self, kind: str, time: float, content: str) -> int:
+        """As the journal does."""
+        self.records.append(RunRecord(len(self.records) + 1, time, kind, content, ""))
+        return len(self.records)
+
+
+def life(choices: Choices, snapshot_every: int = 5) -> Life:
+    """A station to which any number of things has happened."""
+    given = problem(choices, demanding=True)
+    station = _demanding(choices, given)
+    beginning = _beginning(choices, station) if choices.chance(2) else None
+    execution = Execution(station, given.supervisor, beginning)
+    lived = Life(execution, Planner(station, given.supervisor))
+    RunRecorder(execution, lived.write, model_digest(station), beginning, lambda: lived.moment.epoch, snapshot_every)
+    if not choices.chance(5):
+        execution.start_production()
+    acts = _acts(choices, lived)
+    for _ in range(choices.number(1, 30)):
+        lived.now += choices.pick((0.0, 0.1, 1.0, 7.5))
+        choices.pick(acts)()
+    return lived
+
+
+def _demanding(choices: Choices, given: Problem) -> Automaton:
+    """The station with time-outs and operations that are done once."""
+    station = given.automaton
+    abilities = {
+        name: changed(each, timeouts=Timeouts(react=1.0, finish=3.0, retries=choices.number(0, 1), replan=True))
+        if each.finish_guard is not None and choices.chance(2)
+        else each
+        for name, each in station.abilities.items()
+    }
+    operations = {name: changed(each, repeat=not choices.chance(3)) for name, each in station.operations.items()}
+    return changed(station, abilities=abilities, operations=operations)
+
+
+def _beginning(choices: Choices, station: Automaton) -> Beginning:
+    kept = (*station.names(Kind.ESTIMATED), *station.names(Kind.OUTPUT))
+    values = {name: choices.pick(station.variables[name].type.domain) for name in kept if not choices.chance(3)}
+    return Beginning(values, 1.5e9, (), frozenset(), Moment(1.7e9, 1000.0))
+
+
+def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
+    """What may happen, ticks and plans most often."""
+    execution = lived.execution
+    station = execution.automaton
+
+    def tick() -> None:
+        obstacles = ("the network",) if choices.chance(10) else ()
+        silent = frozenset(choices.different(RESOURCES, 1, 2)) if choices.chance(8) else frozenset[str]()
+        execution.tick(_measured(choices, station, execution.state), lived.moment, obstacles, silent)
+
+    def ask() -> None:
+        request = execution.better(5) if choices.chance(3) else execution.request(5)
+        lived.asked = request or lived.asked
+
+    def answer() -> None:
+        if lived.asked is None:
+            return
+        if choices.chance(6):
+            execution.unanswered("the planner has ended", choices.chance(2))
+        else:
+            execution.adopt(lived.asked, _answer(choices, lived, lived.asked))
+
+    def service() -> None:
+        of = choices.pick(tuple(ServiceKind))
+        parts = {ServiceKind.RESOURCE: RESOURCES, ServiceKind.ABILITY: tuple(station.abilities)}
+        names = parts.get(of, tuple(station.operations))
+        if names:
+            execution.set_service(of, choices.pick(names), choices.chance(2), "Eva", "why not", lived.moment)
+
+    def correct() -> None:
+        names = station.names(Kind.ESTIMATED)
+        if names:
+            name = choices.pick(names)
+            value = choices.pick(station.variables[name].type.domain)
+            execution.correct({name: value}, "Eva", "as seen", lived.moment)
+
+    def force() -> None:
+        name = choices.pick((*station.names(Kind.MEASURED), *station.names(Kind.OUTPUT)))
+        until = Moment(lived.moment.epoch + 3.0, lived.now + 3.0)
+        execution.force(name, choices.pick(station.variables[name].type.domain), until, "Eva", "to see")
+
+    def release() -> None:
+        if execution.conduct.forces:
+            execution.release(choices.pick(sorted(execution.conduct.forces)))
+
+    def errand() -> None:
+        goal = choices.pick([each.predicate for each in execution.pursued.goals.values()] or [_any_goal(station)])
+        starts = tuple(choices.different(tuple(station.abilities), 0, 2))
+        plan = Plan((PlanTick((), starts), PlanTick((), ())), False, False)
+        kind = choices.pick(tuple(ErrandKind))
+        operation = choices.pick((None, *station.operations))
+        taken = Errand(kind, "by hand", plan, goal, choices.chance(2), choices.chance(2), operation, "Eva", "so")
+        execution.take_errand(taken, lived.moment)
+
+    return [
+        *(tick, tick, tick, tick, ask, ask, answer, answer),
+        lambda: execution.change_mode(choices.pick(tuple(Mode)), "Eva", lived.moment),
+        lambda: execution.set_stepping(choices.chance(2)),
+        *(execution.take_step, service, correct, force, release, errand),
+        lambda: execution.call_off("Eva", lived.moment),
+        lambda: execution.confirm(frozenset(station.names(Kind.ESTIMATED)[:1]), "Eva", lived.moment),
+        lambda: execution.stop_errand("Eva", lived.moment),
+        lambda: execution.explained(Diagnosis(None, ())),
+    ]
+
+
+def _any_goal(station: Automaton) -> Expression:
+    return next((each.goal for each in station.operations.values()), TRUE)
+
+
+def _measured(choices: Choices, station: Automaton, state: State) -> dict[str, Value | None]:
+    """Mostly what the devices would say, and now and then anything or nothing."""
+    names = station.names(Kind.MEASURED)
+    effects = [each for each in station.effects if not choices.chance(4) and apply_effects(state, [each])]
+    sensed = apply_effects(state, effects) or state
+    measured = {name: sensed[name] for name in names}
+    for name in names:
+        if measured[name] is None or choices.chance(12):
+            measured[name] = None if choices.chance(4) else choices.pick(station.variables[name].type.domain)
+    return measured
+
+
+def _answer(choices: Choices, lived: Life, request: PlanRequest) -> PlanAnswer:
+    """That of a planner, or one that says that there is none."""
+    goals = tuple(goal.name for goal in request.goals)
+    if not choices.chance(4):
+        try:
+            return lived.planner.answer(changed(request, deadline=1.0))
+        except PlannerError:
+            pass
+    verdict = choices.pick((Verdict.NONE_AT_ALL, Verdict.NONE_UP_TO, Verdict.LATE))
+    return PlanAnswer(verdict, None, (), goals, 3, 0.25)

@@ -1,0 +1,275 @@
+"""The journal of a station that has worked: replayed, restored, looked back on, branched from."""
+
+from __future__ import annotations
+
+import asyncio
+import dataclasses
+import json
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from sqlalchemy import text
+
+from control.rig import TRUCK_ENGINE, ready
+from history.journalled import NOW, life, worked
+from sequence_planner.automaton.structure import Kind, VariableDeclaration
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.moment import Moment
+from sequence_planner.expressions.types import EnumerationType
+from sequence_planner.history.branch import branch
+from sequence_planner.history.codec import BEGUN, SNAPSHOT
+from sequence_planner.history.error import HistoryError
+from sequence_planner.history.looking_back import looking_back
+from sequence_planner.history.model_digest import model_digest
+from sequence_planner.history.moment_view import moment_view
+from sequence_planner.history.player import Player
+from sequence_planner.history.replay import Replayed, replay
+from sequence_planner.history.restoring import beginning
+from sequence_planner.immutable import replace
+from sequence_planner.journal import run_journal
+from sequence_planner.storage.database import Database
+from sequence_planner.storage.error import StorageError
+
+Worked = tuple[Database, Execution]
+STATION, SUPERVISOR, _ = ready(TRUCK_ENGINE)
+AUTOMATON = STATION.automaton
+TESTS = Path(__file__).parents[1]
+
+
+@pytest.fixture(scope="module")
+def past() -> Iterator[Worked]:
+    """Thirty seconds of work."""
+    with worked(30.0) as made:
+        yield made
+
+
+def replayed(database: Database, from_: int = 1, to: int | None = None) -> list[Replayed]:
+    with database.reading() as connection:
+        return list(replay(connection, AUTOMATON, SUPERVISOR, from_, to))
+
+
+def test_the_work_is_replayed_bit_for_bit(past: Worked) -> None:
+    database, execution = past
+    found = replayed(database)
+    assert [each.difference for each in found if each.difference] == []
+    kinds = [each.record.kind for each in found]
+    assert kinds[0] == BEGUN
+    assert kinds.count(SNAPSHOT) >= 2
+    assert found[-1].execution.state == execution.state
+    assert found[-1].execution.plan.order == execution.plan.order
+    assert any(json.loads(each.record.content).get("started") for each in found), "it has worked"
+
+
+def test_another_process_replays_it_too(past: Worked) -> None:
+    """Sets of texts have another order in each process."""
+    database, _ = past
+    code = (
+        "import sys\n"
+        "from control.rig import TRUCK_ENGINE, ready\n"
+        "from sequence_planner.history.replay import replay\n"
+        "from sequence_planner.storage.database import Database\n"
+        "station, supervisor, _ = ready(TRUCK_ENGINE)\n"
+        "database = Database.open(sys.argv[1], create=False)\n"
+        "with database.reading() as connection:\n"
+        "    found = list(replay(connection, station.automaton, supervisor))\n"
+        "assert not found[-1].difference, found[-1].difference\n"
+        "print(len(found))\n"
+    )
+    for seed in ("1", "2"):
+        environment = {**os.environ, "PYTHONHASHSEED": seed, "PYTHONPATH": str(TESTS)}
+        arguments = [sys.executable, "-c", code, f"sqlite:///{database.place}"]
+        done = subprocess.run(arguments, env=environment, capture_output=True, text=True, check=False, timeout=120)
+        assert done.returncode == 0, done.stderr
+        assert int(done.stdout) == len(replayed(database))
+
+
+def test_a_part_of_it_is_replayed_from_the_snapshot_before(past: Worked) -> None:
+    database, _ = past
+    numbers = [each.record.number for each in replayed(database, 120, 130)]
+    assert numbers[-1] == 130
+    assert 120 - 52 < numbers[0] <= 120
+    assert numbers == list(range(numbers[0], 131))
+
+
+def test_what_does_not_come_to_what_was_written_is_named(past: Worked) -> None:
+    database, _ = past
+    with database.reading() as connection:
+        records = run_journal.after(connection, 0, 1000)
+    player = Player(AUTOMATON, SUPERVISOR)
+    for record in records:
+        if '"started"' in record.content:
+            content = json.loads(record.content)
+            name = next(iter(content["changes"]))
+            content["changes"][name] = "somewhere else"
+            difference = player.play(dataclasses.replace(record, content=json.dumps(content | {"digest": "0" * 16})))
+            assert difference is not None
+            assert f"record {record.number} (ticked)" in difference
+            assert name in difference
+            return
+        assert player.play(record) is None
+    pytest.fail("nothing was started")
+
+
+def test_another_model_is_refused_in_words(past: Worked) -> None:
+    database, _ = past
+    other = replace(AUTOMATON, title="another")
+    with database.reading() as connection, pytest.raises(HistoryError, match="another model of the station") as refused:
+        list(replay(connection, other, SUPERVISOR))
+    assert refused.value.slug == "model-changed"
+
+
+def test_the_digest_of_a_model_is_that_of_what_it_says() -> None:
+    assert model_digest(AUTOMATON) == model_digest(replace(AUTOMATON, places={}))
+    reversed_ = dict(reversed(list(AUTOMATON.abilities.items())))
+    assert model_digest(AUTOMATON) != model_digest(replace(AUTOMATON, abilities=reversed_)), "order counts"
+
+
+def test_every_moment_can_be_looked_at(past: Worked) -> None:
+    database, _ = past
+    found = replayed(database)
+    with database.reading() as connection:
+        for number in (1, 60, 101, len(found)):
+            moment = looking_back(connection, AUTOMATON, SUPERVISOR, number)
+            shown = moment_view(moment)
+            assert shown.record.number == number
+            content = json.loads(moment.record.content)
+            for name, value in content.get("changes", {}).items():
+                assert shown.past.values[name] == value
+        assert moment.now.epoch <= NOW.epoch + 31
+        with pytest.raises(HistoryError, match="no record"):
+            looking_back(connection, AUTOMATON, SUPERVISOR, len(found) + 1)
+
+
+def test_what_was_believed_comes_back(past: Worked) -> None:
+    database, execution = past
+    with database.reading() as connection:
+        found = beginning(connection, AUTOMATON, Moment(1.9e9, 7.0))
+        last = run_journal.before(connection, None, 1)[0]
+    assert found is not None
+    assert found.left_out == ()
+    kept = (*AUTOMATON.names(Kind.ESTIMATED), *AUTOMATON.names(Kind.OUTPUT))
+    assert found.beginning.values == {name: execution.state[name] for name in kept}
+    assert found.beginning.unconfirmed_since == last.time
+
+
+def test_what_no_longer_fits_the_model_is_left_out_and_said(past: Worked) -> None:
+    database, _ = past
+    name = AUTOMATON.names(Kind.ESTIMATED)[0]
+    gone = AUTOMATON.names(Kind.OUTPUT)[0]
+    variables = {key: each for key, each in AUTOMATON.variables.items() if key != gone}
+    variables[name] = VariableDeclaration(name, EnumerationType(("new",)), Kind.ESTIMATED, "new", None)
+    with database.reading() as connection:
+        found = beginning(connection, replace(AUTOMATON, variables=variables), NOW)
+    assert found is not None
+    assert not found.beginning.values.keys() & {name, gone}
+    assert len(found.left_out) == 2
+    assert any(name in each and "{new}" in each for each in found.left_out)
+    assert any(gone in each for each in found.left_out)
+
+
+def test_a_second_life_begins_with_what_the_first_has_left() -> None:
+    with worked(10.0) as (database, first):
+        with database.reading() as connection:
+            found = beginning(connection, AUTOMATON, NOW)
+        assert found is not None
+        asyncio.run(life(database, TRUCK_ENGINE, 5.0, known=found.beginning))
+        lives = replayed(database)
+        assert not lives[-1].difference
+        begun = [each.record.number for each in lives if each.record.kind == BEGUN]
+        assert len(begun) == 2
+        with database.reading() as connection:
+            second = looking_back(connection, AUTOMATON, SUPERVISOR, begun[1]).execution
+        for name in AUTOMATON.names(Kind.ESTIMATED):
+            assert second.state[name] == first.state[name]
+
+
+def without_protection(database: Database) -> None:
+    """Whoever owns the database can take out what keeps records from being changed."""
+    with database.writing() as connection:
+        names = connection.execute(text("SELECT name FROM sqlite_master WHERE type = 'trigger'")).scalars().all()
+        for name in names:
+            connection.execute(text(f"DROP TRIGGER {name}"))
+
+
+def test_what_was_changed_in_the_journal_is_not_believed_in_silence() -> None:
+    with worked(3.0) as (database, _):
+        without_protection(database)
+        with database.writing() as connection:
+            last = run_journal.before(connection, None, 1)[0].number
+            change = {"number": last, "content": '{"changes":{"bolts[bolt_pair_1]":"tightened"}}'}
+            connection.execute(text("UPDATE run SET content = :content WHERE number = :number"), change)
+        with database.reading() as connection:
+            found = beginning(connection, AUTOMATON, NOW)
+        assert found is not None
+        assert any(f"record {last} " in each for each in found.left_out)
+        assert found.beginning.unconfirmed_since is not None
+
+
+def test_a_snapshot_that_was_changed_is_noticed_too() -> None:
+    with worked(3.0) as (database, _):
+        without_protection(database)
+        with database.writing() as connection:
+            found = run_journal.before(connection, None, 1, (BEGUN, SNAPSHOT))[0]
+            change = {"number": found.number, "content": found.content.replace('"empty"', '"tightened"')}
+            connection.execute(text("UPDATE run SET content = :content WHERE number = :number"), change)
+        with database.reading() as connection:
+            known = beginning(connection, AUTOMATON, NOW)
+        assert known is not None
+        assert any(f"record {found.number} " in each for each in known.left_out)
+
+
+@pytest.mark.parametrize("content", ["{", "[]", '{"values": []}', '{"unconfirmed": [], "values": {}}'])
+def test_a_journal_that_cannot_be_read_says_so_and_what_to_do(content: str) -> None:
+    with worked(3.0) as (database, _):
+        without_protection(database)
+        with database.writing() as connection:
+            whole = "UPDATE run SET content = :content WHERE kind IN ('begun', 'snapshot')"
+            connection.execute(text(whole), {"content": content})
+        with database.reading() as connection, pytest.raises(StorageError, match=r"journal --verify"):
+            beginning(connection, AUTOMATON, NOW)
+
+
+def test_nothing_comes_back_where_nothing_was() -> None:
+    from control.journalling import journal  # noqa: PLC0415
+
+    with journal() as database, database.reading() as connection:
+        assert beginning(connection, AUTOMATON, NOW) is None
+        with pytest.raises(HistoryError, match="nothing has happened yet"):
+            list(replay(connection, AUTOMATON, SUPERVISOR))
+
+
+def test_a_branch_goes_on_from_the_past_without_touching_it(past: Worked) -> None:
+    database, _ = past
+    with database.reading() as connection:
+        before = run_journal.end(connection)
+        found = branch(connection, STATION, SUPERVISOR, 60, 20.0, {}, 60.0)
+        assert run_journal.end(connection) == before
+    assert found.seconds == 20.0
+    started = [name for each in found.records for name in json.loads(each.content).get("started", ())]
+    assert started, "production goes on"
+    assert found.records[0].kind == BEGUN
+
+
+def test_a_branch_may_begin_with_a_correction(past: Worked) -> None:
+    database, _ = past
+    name = AUTOMATON.names(Kind.ESTIMATED)[0]
+    with database.reading() as connection:
+        now = looking_back(connection, AUTOMATON, SUPERVISOR, 60).execution.state[name]
+        other = next(value for value in AUTOMATON.variables[name].type.domain if value != now)
+        found = branch(connection, STATION, SUPERVISOR, 60, 1.0, {name: other}, 60.0)
+        assert json.loads(found.records[1].content)["changes"] == {name: other}
+        with pytest.raises(HistoryError, match="no estimated variable"):
+            branch(connection, STATION, SUPERVISOR, 60, 1.0, {AUTOMATON.names(Kind.OUTPUT)[0]: True}, 60.0)
+        with pytest.raises(HistoryError, match="ranges over"):
+            branch(connection, STATION, SUPERVISOR, 60, 1.0, {name: "nonsense"}, 60.0)
+
+
+def test_a_branch_ends_when_its_time_is_over(past: Worked) -> None:
+    database, _ = past
+    with database.reading() as connection:
+        found = branch(connection, STATION, SUPERVISOR, 60, 600.0, {}, 0.5)
+    assert found.seconds < 600.0

@@ -1,0 +1,1 @@
+"""The restart advisor against exhaustive search, and what it says of stations that have stopped."""

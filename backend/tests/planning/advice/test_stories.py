@@ -1,0 +1,248 @@
+"""What the advisor says of a station that has stopped in ways that people know, in this process and in its own."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from queue import SimpleQueue
+
+import pytest
+
+from core.building import predicate_of
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, Kind, State
+from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import replace
+from sequence_planner.planning.advice.advisor import Advisor
+from sequence_planner.planning.advice.offer import Advice, Change, Offer, OfferKind
+from sequence_planner.planning.advice.questions import Answer, Request
+from sequence_planner.planning.advice.request import AdviceRequest, ErrandRequest
+from sequence_planner.planning.advice.stalling import stalled_effects, stalling, stalls
+from sequence_planner.planning.advice.worker import work
+from sequence_planner.planning.plan import Circumstances, PlanAnswer, PlanRequest, goals_of
+from sequence_planner.planning.racing.companion import Answered, Companion, Question, Word
+from sequence_planner.planning.reasons.diagnoser import Model
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
+from sequence_planner.station import prepare_station
+from sequence_planner.synthesis.fewer import FewerSpecifications
+from sequence_planner.synthesis.supervision import synthesise
+
+from .carrying_out import Stopped, carried_out
+
+MODEL = Path(__file__).parents[4] / "models" / "bolt_tightening"
+TIGHTEN = "tighten_bolt_pair(bolt_pair_1)"
+UNDER_WAY: dict[str, Value | None] = {
+    "robot.pose": "unknown",
+    "robot.previous_pose": "above_engine",
+    "robot.target_pose": "bolt_pair_1",
+    "nutrunner.run_tool_forward": True,
+    "nutrunner.set_tool_idle": False,
+    "nutrunner.tool_is_running_forward": True,
+    "nutrunner.tool_is_idle": False,
+}
+NO_TOOL = Circumstances(barred=frozenset({"nutrunner.run_nut"}))
+
+
+@pytest.fixture(scope="module")
+def station() -> Automaton:
+    return prepare_station(MODEL).automaton
+
+
+@pytest.fixture(scope="module")
+def supervisor(station: Automaton) -> Supervisor:
+    return synthesise(station)
+
+
+@pytest.fixture(scope="module")
+def advisor(station: Automaton, supervisor: Supervisor) -> Advisor:
+    return Advisor(station, supervisor)
+
+
+def state_of(station: Automaton, changes: dict[str, Value | None]) -> State:
+    """The initial state, the tool attached and the first bolts placed, with changes."""
+    begun: dict[str, Value | None] = {
+        "robot.attach_tool": True,
+        "robot.tool_is_attached": True,
+        "bolts[bolt_pair_1]": "placed",
+    }
+    return synchronise(station, {**initial_state(station), **begun, **changes})
+
+
+def tightening(station: Automaton, changes: dict[str, Value | None]) -> AdviceRequest:
+    """How to get back to tightening the first bolts."""
+    return AdviceRequest(state_of(station, changes), goals_of(station, [TIGHTEN]), deadline=60)
+
+
+def advised(station: Automaton, advisor: Advisor, request: AdviceRequest) -> dict[OfferKind, list[Offer]]:
+    """Offers by kind, each of which can be carried out."""
+    advice = advisor.advise(request)
+    assert advice.complete
+    found: dict[OfferKind, list[Offer]] = {}
+    real = stalling(station, stalls(station, request.state, request.stalled))
+    for offer in advice.offers:
+        carried_out(Stopped(real, synthesise(station), request.state, request.goals, request.circumstances), offer)
+        found.setdefault(offer.kind, []).append(offer)
+    return found
+
+
+def starts(offer: Offer) -> list[str]:
+    assert offer.errand is not None
+    return [name for _, name in offer.errand.starts]
+
+
+def test_a_robot_under_way_is_waited_for(station: Automaton, advisor: Advisor) -> None:
+    offers = advised(station, advisor, tightening(station, UNDER_WAY))
+    assert [offer.then is not None and offer.then.starts for offer in offers[OfferKind.REPLAN]] == [()]
+    assert OfferKind.PHYSICAL not in offers
+    assert OfferKind.CORRECTION not in offers
+
+
+def test_one_that_stands_still_is_sent_back_or_moved_by_hand(station: Automaton, advisor: Advisor) -> None:
+    request = tightening(station, UNDER_WAY)
+    request = replace(request, stalled=stalled_effects(station, request.state, ["robot"]))
+    offers = advised(station, advisor, request)
+    assert OfferKind.REPLAN not in offers
+    back = offers[OfferKind.RESTART][0]
+    assert starts(back) == ["robot.move_to_previous"]
+    assert print_expression(back.goal) == "robot.target_pose == above_engine and not robot.move_to_previous.executing"
+    assert (back.restart, back.unsupervised, back.left_out) == (True, False, ())
+    by_hand = offers[OfferKind.PHYSICAL][0]
+    assert Change("robot.pose", "unknown", "bolt_pair_1") in by_hand.physical
+    assert Change("robot.previous_pose", "above_engine", "bolt_pair_1") in by_hand.physical
+    assert all({c.name for c in o.physical} & {"robot.pose"} for o in offers[OfferKind.PHYSICAL])
+    said = [offer for offer in offers[OfferKind.CORRECTION] if offer.effort.restates]
+    assert [offer.corrections for offer in said] == [(Change("bolts[bolt_pair_1]", "placed", "tightened"),)]
+
+
+def test_a_tool_that_was_helped_is_counted_on_for_the_other_bolts_too(station: Automaton, advisor: Advisor) -> None:
+    pairs = [name for name in station.names(Kind.ESTIMATED) if name.startswith("bolts[")]
+    told: dict[str, Value | None] = {"nutrunner.run_tool_forward": True, "nutrunner.set_tool_idle": False}
+    request = replace(
+        tightening(station, {**told, **dict.fromkeys(pairs, "placed")}),
+        goals=goals_of(
+            station, [f"tighten_{name.replace('bolts[', 'bolt_pair(').replace(']', ')')}" for name in pairs]
+        ),
+        stalled=frozenset({"nutrunner.run_nut.tool_starts"}),
+        deadline=60,
+    )
+    offers = [offer for offer in advisor.advise(request).offers if offer.kind is OfferKind.PHYSICAL]
+    assert not offers[0].left_out
+    assert Change("nutrunner.tool_is_running_forward", False, True) in offers[0].physical
+
+
+def test_a_robot_that_is_away_is_brought_back(station: Automaton, advisor: Advisor) -> None:
+    own = [n for n in station.names(Kind.MEASURED) if station.variables[n].resource == "robot"]
+    request = replace(
+        tightening(station, {**UNDER_WAY, **dict.fromkeys(own)}),
+        circumstances=Circumstances(offline=frozenset({"robot"})),
+        last={name: value for name in own if (value := state_of(station, UNDER_WAY)[name]) is not None},
+    )
+    (offer,) = advised(station, advisor, request)[OfferKind.PHYSICAL]
+    assert (offer.online, offer.physical) == (("robot",), ())
+    assert Change("robot.pose", None, "unknown") in offer.assumed
+
+
+def test_outside_the_safe_states_written_guards_lead_back(station: Automaton, advisor: Advisor) -> None:
+    there: dict[str, Value | None] = dict.fromkeys(
+        ("robot.pose", "robot.previous_pose", "robot.target_pose"), "bolt_pair_1"
+    )
+    offers = advised(station, advisor, tightening(station, there))
+    assert OfferKind.REPLAN not in offers
+    way = offers[OfferKind.WAY_BACK][0]
+    assert (starts(way), way.unsupervised) == (["nutrunner.run_nut"], True)
+    assert offers[OfferKind.CORRECTION][0].corrections == (Change("bolts[bolt_pair_1]", "placed", "empty"),)
+
+
+def test_what_was_given_up_is_put_back_and_corrections_contradict_nothing(station: Automaton, advisor: Advisor) -> None:
+    request = replace(tightening(station, {}), circumstances=NO_TOOL)
+    offers = advised(station, advisor, request)
+    assert [offer.in_service for offer in offers[OfferKind.PHYSICAL]] == [("nutrunner.run_nut",)]
+    assert len(offers[OfferKind.CORRECTION]) == 1
+    never = frozenset({("bolts[bolt_pair_1]", "tightened", "robot.pose", "home")})
+    fixed = frozenset({"bolts[bolt_pair_1]"})
+    for less in (replace(request, impossible=never), replace(request, fixed=fixed)):
+        assert OfferKind.CORRECTION not in advised(station, advisor, less)
+
+
+def test_an_operation_whose_formula_was_violated_is_reached_only_after_its_reset(
+    station: Automaton, advisor: Advisor
+) -> None:
+    request = replace(tightening(station, {}), goals=(), violated=goals_of(station, [TIGHTEN]))
+    offers = advisor.advise(request).offers
+    (reset,) = [offer for offer in offers if offer.kind is OfferKind.RESET]
+    assert (reset.operation, reset.goals, reset.left_out) == (TIGHTEN, (TIGHTEN,), ())
+    for offer in offers:
+        if offer is not reset:
+            assert TIGHTEN in offer.left_out
+
+
+def test_errands_that_are_asked_for(station: Automaton, advisor: Advisor) -> None:
+    goals = goals_of(station, [TIGHTEN])
+    assert station.rest is not None
+    to_rest = ErrandRequest(
+        state_of(station, UNDER_WAY), goals, station.rest, circumstances=Circumstances(restart=True), deadline=60
+    )
+    (offer,) = advisor.errand(to_rest).offers
+    assert (offer.kind, offer.at_rest, offer.left_out) == (OfferKind.GOAL, True, ())
+    assert offer.then is not None
+    again = ErrandRequest(
+        state_of(station, {"bolts[bolt_pair_1]": "empty"}), goals, station.operations[TIGHTEN].precondition, TIGHTEN
+    )
+    (offer,) = advisor.errand(replace(again, deadline=60)).offers
+    assert (offer.kind, offer.operation, starts(offer)) == (
+        OfferKind.RESET,
+        TIGHTEN,
+        ["operator.place_bolt_pair(bolt_pair_1)"],
+    )
+    never = replace(to_rest, target=predicate_of(station, "robot.pose == home and robot.pose == above_engine"))
+    assert advisor.errand(never).offers == ()
+
+
+class Asked:
+    """The advisor's process."""
+
+    def __init__(self, model: Model) -> None:
+        self._words: SimpleQueue[Word] = SimpleQueue()
+        self.companion: Companion[Model, Request] = Companion(work, model, self._words.put, "advice", daemon=False)
+        self._number = 0
+
+    def answer(self, request: Request) -> Answer | str:
+        self._number += 1
+        self.companion.ask(Question(self._number, request.deadline, request))
+        while True:
+            match self._words.get(timeout=120):
+                case Answered(number, content) if number == self._number:
+                    answer: Answer | str = content
+                    return answer
+
+
+@pytest.fixture
+def asked(station: Automaton, supervisor: Supervisor) -> Iterator[Asked]:
+    process = Asked(Model(station, supervisor, FewerSpecifications(station, supervisor)))
+    yield process
+    process.companion.close()
+
+
+def test_the_process_answers_all_that_it_can_be_asked(station: Automaton, asked: Asked) -> None:
+    state, goals = state_of(station, {}), goals_of(station, [TIGHTEN])
+    advice = asked.answer(tightening(station, {}))
+    assert isinstance(advice, Advice)
+    assert advice.offers[0].kind is OfferKind.REPLAN
+    plan = asked.answer(PlanRequest(state, goals))
+    assert isinstance(plan, PlanAnswer)
+    assert plan.plan is not None
+    why = asked.answer(DiagnosisRequest(state, goals, NO_TOOL))
+    assert isinstance(why, Diagnosis)
+    assert why.reason is not None
+    nothing = replace(
+        tightening(station, {}),
+        circumstances=Circumstances(offline=frozenset(station.resources)),
+        fixed=frozenset(station.variables),
+        goals=goals_of(station, station.operations),
+        deadline=20,
+    )
+    advice = asked.answer(nothing)
+    assert isinstance(advice, Advice)
+    assert all(offer.left_out or offer.online for offer in advice.offers)
