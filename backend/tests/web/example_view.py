@@ -5,9 +5,12 @@ from __future__ import annotations
 from sequence_planner.control.override_view import OverrideFieldView, OverrideView
 from sequence_planner.control.view import (
     AbilityView,
+    AlarmState,
     AlarmView,
+    BeliefView,
     Mode,
     OperationView,
+    PackML,
     PlanStatus,
     PlanStepView,
     PlanView,
@@ -64,8 +67,13 @@ def example_view(**changes: object) -> StationView:
         ),
         tick=1,
         time=1000.0,
+        revision=1,
         mode=Mode.AUTOMATIC,
+        packml=PackML.EXECUTE,
+        stepping=False,
         production=Production.STARTED,
+        unconfirmed=False,
+        undecided={},
         resources={
             "robot": ResourceView(title="Robot", online=True, awaited_topics=[]),
             "operator": ResourceView(title="Operator", online=True, awaited_topics=[]),
@@ -78,6 +86,7 @@ def example_view(**changes: object) -> StationView:
                 domain=["home", "above_engine", "unknown"],
                 since=999.0,
                 awaits=None,
+                belief=None,
             ),
             "bolts[bolt_pair_1]": VariableView(
                 resource=None,
@@ -86,6 +95,7 @@ def example_view(**changes: object) -> StationView:
                 domain=["empty", "placed", "tightened"],
                 since=None,
                 awaits=None,
+                belief=BeliefView(writer="the beginning", at=900.0, evidence=[], unconfirmed_since=None),
             ),
         },
         abilities={
@@ -101,6 +111,7 @@ def example_view(**changes: object) -> StationView:
                 goal="bolts[bolt_pair_1] = tightened",
                 precondition="true",
                 left_out=False,
+                repeat=True,
             )
         },
         plan=PlanView(
@@ -119,6 +130,12 @@ def example_view(**changes: object) -> StationView:
             milliseconds=1.5,
             why=None,
         ),
+        errand=None,
+        last_errand=None,
+        forces={},
+        out_of_service=[],
+        questions=[],
+        last_correction=None,
         tasks={
             "7": TaskView(
                 revision=3,
@@ -153,7 +170,22 @@ def example_view(**changes: object) -> StationView:
             )
         },
         control=None,
-        alarms={"slow": AlarmView(priority=Priority.LOW, text="The robot is slow", action="Look at it", since=998.0)},
+        alarms={
+            "slow": AlarmView(
+                priority=Priority.LOW,
+                state=AlarmState.UNACKNOWLEDGED,
+                text="The robot is slow",
+                consequence="The work takes longer",
+                action="Look at it",
+                since=998.0,
+                ended=None,
+                by=None,
+                until=None,
+                why=None,
+                count=1,
+                parts=[],
+            )
+        },
         way_back=None,
         analysis=None,
     )

@@ -15,11 +15,8 @@ from sequence_planner.control.commands import (
     AcknowledgeTask,
     Command,
     ReleaseControl,
-    SetMode,
-    StartProduction,
     TakeControl,
 )
-from sequence_planner.control.view import Mode
 from sequence_planner.identity.roles import Role
 
 from .example_view import example_view
@@ -39,15 +36,11 @@ def problem(answer: httpx.Response, status: int, slug: str) -> dict[str, Any]:
 
 
 def test_each_action_is_a_command_with_its_actor(client: httpx.Client, controller: Controller) -> None:
-    assert client.put("/api/v1/mode", json={"mode": "paused", "reason": "the tool sticks"}).status_code == 204
-    assert client.post("/api/v1/production/start", json={}).status_code == 204
     assert client.post("/api/v1/tasks/7/acknowledgement", json={"revision": 3}).status_code == 204
     assert client.put("/api/v1/control", json={"over": None, "reason": "my shift"}).status_code == 204
     assert client.delete("/api/v1/control").status_code == 204
     actor = controller.commands[0].actor
     assert controller.commands == [
-        SetMode(actor=actor, mode=Mode.PAUSED, reason="the tool sticks"),
-        StartProduction(actor=actor),
         AcknowledgeTask(actor=actor, task="7", revision=3),
         TakeControl(actor=actor, over=None, reason="my shift"),
         ReleaseControl(actor=actor),
@@ -79,6 +72,7 @@ def test_a_fault_of_the_controller_is_a_problem_and_it_goes_on(client: httpx.Cli
     [
         ({}, "body.mode"),
         ({"mode": "fast"}, "body.mode"),
+        ({"mode": "restart"}, "body.mode"),
         ({"mode": None}, "body.mode"),
         ({"mode": "paused", "force": True}, "body.force"),
         ({"mode": "paused", "\ud800": 1}, "body"),
@@ -104,7 +98,7 @@ def test_a_revision_is_a_whole_number(client: httpx.Client, revision: object) ->
 
 def test_what_was_expected_is_named(client: httpx.Client) -> None:
     found = problem(client.put("/api/v1/mode", json={"mode": "fast"}), 422, "invalid-request")
-    assert "'automatic' or 'paused'" in found["errors"][0]["expected"]
+    assert "'automatic', 'paused' or 'hold'" in found["errors"][0]["expected"]
 
 
 @pytest.mark.parametrize("body", [b"", b"{", b"nonsense", b'{"mode": "paused"', b"[" * 20_000, b'{"mode": "\xff"}'])

@@ -129,6 +129,22 @@ def test_a_peer_gets_at_most_twenty_views_a_second_and_always_the_last(path: Pat
     asyncio.run(scenario())
 
 
+def test_what_a_command_has_done_is_shown_before_it_is_answered(path: Path) -> None:
+    async def scenario() -> None:
+        async def handle(command: Command) -> None:
+            link.publish(example_view(tick=command_tick))
+
+        async with ControllerLink(path, handle) as link, peer_of(path) as peer:
+            for command_tick in range(10, 15):  # sooner after each other than views are shown
+                peer.writer.write(json.dumps({"kind": "command", "id": 1, "command": COMMAND}).encode() + b"\n")
+                seen: list[int] = []
+                while (message := json.loads(await peer.reader.readline()))["kind"] != "reply":
+                    seen.append(message["view"]["tick"])
+                assert seen[-1:] == [command_tick]
+
+    asyncio.run(scenario())
+
+
 def test_a_peer_that_does_not_read_blocks_nobody(path: Path) -> None:
     large = example_view().plan.model_copy(update={"reason": "x" * 500_000})
 

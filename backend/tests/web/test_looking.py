@@ -15,17 +15,19 @@ from websockets.sync.client import ClientConnection
 
 from control.bench import COMMAND, STATE, cell
 from control.test_network_watch import REPORTS
+from sequence_planner.control.asks import AboutFlows, AboutPipelines, Ask
 from sequence_planner.control.commands import ClearOverride, CommandRefused, SetOverride
 from sequence_planner.control.link import ControllerLink
-from sequence_planner.control.link_messages import About
 from sequence_planner.control.mismatches import uses
 from sequence_planner.control.network_graph import network_view
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.pipeline_graph import pipelines_view
-from sequence_planner.control.pipeline_view import EdgeFlowView, FlowsView, PipelineFlowView, PipelinesView
+from sequence_planner.control.pipeline_view import EdgeFlowView, FlowsView, PipelineFlowView
+from sequence_planner.control.view_part import View
 from sequence_planner.ros.transport import Endpoint
 from sequence_planner.web.settings import Settings
 
+from .example_answers import example_answer
 from .running import Controller, Loop, Server, listen, until
 from .test_acting import problem
 from .test_stream import hear, hear_kind, slow_client
@@ -42,11 +44,13 @@ class Telling(Controller):
     asked = 0
     preparing = False
 
-    def answer(self, about: About) -> PipelinesView | FlowsView:
+    async def answer(self, ask: Ask) -> View:
         if self.preparing:
             raise CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
-        if about == "pipelines":
+        if isinstance(ask, AboutPipelines):
             return pipelines_view(cell()[0].pipelines)
+        if not isinstance(ask, AboutFlows):
+            return example_answer(ask)
         self.asked += 1
         edge = EdgeFlowView(to="arm.pose", records=self.asked, held=0, rate=2.0, last=None, troubles=[], at=None)
         return FlowsView(

@@ -12,7 +12,7 @@ import sys
 
 import typer
 
-from sequence_planner.cli import running, serving
+from sequence_planner.cli import journal_replay, running, serving
 from sequence_planner.cli.attach import attach
 from sequence_planner.cli.check import check
 from sequence_planner.cli.edit import edit
@@ -41,13 +41,15 @@ for command in (
     running.messages,
     topics,
     attach,
-    journal,
 ):
     app.command()(command)
 app.command("emulate")(running.emulate_command)
 app.command("by-hand")(running.by_hand)
 app.command("fault")(running.fault)
 app.add_typer(people, name="people")
+journal.command()(journal_replay.replay)
+journal.command()(journal_replay.show)
+app.add_typer(journal, name="journal")
 app.command(hidden=True)(running.controller)
 app.command(hidden=True)(serving.server)
 

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import asyncio
-import os
-import pwd
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 
-from sequence_planner.actor import SYSTEM, Actor
+from sequence_planner.actor import Actor
+from sequence_planner.cli.acting import at_the_command_line
 from sequence_planner.identity.first_start import new_link_token
 from sequence_planner.identity.names import clean_name
 from sequence_planner.identity.passwords import Passwords, check_password
@@ -61,18 +60,10 @@ def people_at_hand(url: str) -> Iterator[PeopleAtHand]:
     """Open a database, which is made if there is none."""
     with closing(Database.open(url)) as database:
         database.upgrade()
-        yield PeopleAtHand(database, SYSTEM.model_copy(update={"address": f"the command line of {_user()}"}))
+        yield PeopleAtHand(database, at_the_command_line())
 
 
 def _hash(password: str, name: str) -> str:
     check_password(password, name)
     with closing(Passwords()) as passwords:
         return asyncio.run(passwords.hash(password))
-
-
-def _user() -> str:
-    """Who runs the program, as the machine knows; what the environment says anybody may write there."""
-    try:
-        return pwd.getpwuid(os.getuid()).pw_name
-    except KeyError:  # as in a container
-        return f"user {os.getuid()}"

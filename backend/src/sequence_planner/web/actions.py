@@ -1,4 +1,4 @@
-"""What a person may do: change the mode, start production, acknowledge a task, set an override.
+"""What a person may do for the work at hand: acknowledge a task, set an override.
 
 Each endpoint makes one command with its actor and waits for the controller's word. 204 means that it was done; a
 refusal is a problem whose `type` ends in the controller's own slug. A body may say why, which is recorded.
@@ -11,9 +11,8 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request
 from pydantic import Field, StrictInt
 
-from sequence_planner.control.commands import AcknowledgeTask, ClearOverride, SetMode, SetOverride, StartProduction
+from sequence_planner.control.commands import AcknowledgeTask, ClearOverride, SetOverride
 from sequence_planner.control.override_view import FieldValue
-from sequence_planner.control.view import Mode
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.watches import Watch
 from sequence_planner.web.access import allowed
@@ -29,19 +28,6 @@ bodiless = APIRouter(tags=["actions"], responses=refused(409, 504))
 Name = Annotated[str, Path(max_length=200)]
 
 
-class ModeBody(Body):
-    """The mode that is wanted."""
-
-    mode: Mode
-    reason: Reason = None
-
-
-class StartBody(Body):
-    """To start production is all that there is to say, but perhaps why."""
-
-    reason: Reason = None
-
-
 class AcknowledgementBody(Body):
     """The revision of the task that the person saw, so that no other is acknowledged by mistake."""
 
@@ -53,18 +39,6 @@ class OverrideBody(Body):
 
     fields: Annotated[dict[str, FieldValue], Field(min_length=1, max_length=100)]
     reason: Reason = None
-
-
-@router.put("/mode", status_code=204, dependencies=[OPERATOR])
-async def set_mode(body: ModeBody, client: Controller, actor: Actor) -> None:
-    """Change the mode of execution; to go on takes control, to pause does not."""
-    await client.send(SetMode(actor=actor, mode=body.mode, reason=body.reason))
-
-
-@router.post("/production/start", status_code=204, dependencies=[OPERATOR])
-async def start_production(body: StartBody, client: Controller, actor: Actor) -> None:
-    """Allow outputs to be published; nothing else implies it. It takes control."""
-    await client.send(StartProduction(actor=actor, reason=body.reason))
 
 
 @router.post("/tasks/{task}/acknowledgement", status_code=204, dependencies=[allowed(Role.OPERATOR, watch=True)])

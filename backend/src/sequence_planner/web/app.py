@@ -15,13 +15,19 @@ from typing import Any
 from fastapi import APIRouter, FastAPI
 from starlette.concurrency import run_in_threadpool
 
+from sequence_planner.history.process import HistoryProcess
 from sequence_planner.web import (
     actions,
+    alarms,
     attachments,
     audit,
     control_routes,
+    corrections,
+    errands,
     health,
+    history,
     keys,
+    modes,
     openapi_document,
     people,
     pipelines,
@@ -32,6 +38,7 @@ from sequence_planner.web import (
     stream,
     watch_stream,
     watches,
+    why_not,
 )
 from sequence_planner.web.access import check_declared
 from sequence_planner.web.binding import check_endpoint
@@ -54,9 +61,16 @@ PREFIX = "/api/v1"
 PARTS = (
     session.router,
     station.router,
+    modes.router,
+    modes.bodiless,
     actions.router,
     actions.bodiless,
+    alarms.router,
     control_routes.router,
+    corrections.router,
+    errands.advice_router,
+    errands.router,
+    why_not.router,
     attachments.router,
     ros.router,
     pipelines.router,
@@ -68,6 +82,7 @@ PARTS = (
     watches.router,
     watch_stream.router,
     audit.router,
+    history.router,
     openapi_document.router,
 )
 
@@ -97,6 +112,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         office = await run_in_threadpool(IdentityOffice.open, settings.database, demonstration=settings.demonstration)
         app.state.identity = office
+        model = settings.model
+        app.state.history = looking_back = None if model is None else HistoryProcess(model, settings.database)
         parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller))
         running = [asyncio.create_task(each.run()) for each in parts]
         try:
@@ -105,6 +122,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
             for task in running:
                 task.cancel()
             await asyncio.gather(*running, return_exceptions=True)
+            if looking_back is not None:
+                looking_back.close()
             await run_in_threadpool(office.close)
 
     app = StationServer(

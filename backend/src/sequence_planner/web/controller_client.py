@@ -13,35 +13,38 @@ import itertools
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import TypeVar
 
 import structlog
 from pydantic import ValidationError
 
+from sequence_planner.control.asks import AskBase
 from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.lines import read_lines
 from sequence_planner.control.link_messages import (
     FROM_CONTROLLER,
     LONGEST_VIEW,
+    AnswerMessage,
     AskMessage,
     CommandMessage,
-    FlowsAnswer,
     LinkMessage,
     NetworkMessage,
-    PipelinesAnswer,
     Reply,
     ViewMessage,
     encode,
 )
 from sequence_planner.control.network_view import NetworkView
-from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.view import StationView
+from sequence_planner.control.view_part import View
 
-Answer = Reply | PipelinesAnswer | FlowsAnswer
+Heard = Reply | AnswerMessage
+Told = TypeVar("Told", bound=View)
 
 LOG = structlog.get_logger(__name__)
 SILENCE = 2.0  # seconds without a view after which the controller counts as lost
 FIRST_WAIT, LONGEST_WAIT = 0.05, 1.0  # seconds between attempts to connect
 REPLY_DEADLINE = 5.0  # seconds
+ON_THE_WAY = 0.5  # seconds that an answer may need back to us, beyond the patience of who asks
 
 
 class ControllerClient:
@@ -64,7 +67,7 @@ class ControllerClient:
         self._network_listeners: list[Callable[[NetworkView], None]] = []
         self._writer: asyncio.StreamWriter | None = None
         self._numbers = itertools.count(1)
-        self._awaited: dict[int, asyncio.Future[Answer]] = {}
+        self._awaited: dict[int, asyncio.Future[Heard]] = {}
 
     @property
     def connected(self) -> bool:
@@ -108,35 +111,41 @@ class ControllerClient:
         sent, `controller-no-answer` (504) when it is not known what became of it.
         """
         expires = time.monotonic() + self._reply_deadline
-        await self._exchange(lambda number: CommandMessage(id=number, command=command, expires=expires))
+        unknown = "It is not known whether the command was carried out: look at the station before trying again."
+        await self._exchange(
+            lambda number: CommandMessage(id=number, command=command, expires=expires), self._reply_deadline, unknown
+        )
 
-    async def pipelines(self) -> PipelinesView:
-        """Ask for the graph of the pipelines. Raises `CommandRefused` as `send` does."""
-        answer = await self._exchange(lambda number: AskMessage(id=number, about="pipelines"))
-        assert isinstance(answer, PipelinesAnswer)
-        return answer.view
+    async def ask(self, ask: AskBase[Told]) -> Told:
+        """What answers `ask`. Raises `CommandRefused` as `send` does; asking has changed nothing then."""
+        patience = self._reply_deadline if ask.patience is None else ask.patience
+        expires = time.monotonic() + patience
+        answer = await self._exchange(
+            lambda number: AskMessage.model_validate({"id": number, "ask": ask, "expires": expires}),
+            patience + ON_THE_WAY,
+            "Nothing was changed by asking; try again.",
+        )
+        assert isinstance(answer, AnswerMessage)
+        return ask.answer_type().model_validate(answer.answer)
 
-    async def flows(self) -> FlowsView:
-        """Ask what has passed the pipelines. Raises `CommandRefused` as `send` does."""
-        answer = await self._exchange(lambda number: AskMessage(id=number, about="flows"))
-        assert isinstance(answer, FlowsAnswer)
-        return answer.view
+    async def _exchange(self, message: Callable[[int], LinkMessage], deadline: float, silence: str) -> Heard:
+        """Send a message and wait for what comes back under its number. Raises `CommandRefused`.
 
-    async def _exchange(self, message: Callable[[int], LinkMessage]) -> Answer:
-        """Send a message and wait for what comes back under its number. Raises `CommandRefused`."""
+        `silence` says what to make of it when nothing comes back within `deadline` seconds.
+        """
         writer = self._writer
         if writer is None:
             raise CommandRefused(
                 "controller-unavailable",
                 "The controller is not there",
-                "The command was not sent. Start the controller, then try again.",
+                "Nothing was sent. Start the controller, then try again.",
                 503,
             )
         number = next(self._numbers)
-        awaited: asyncio.Future[Answer] = asyncio.get_running_loop().create_future()
+        awaited: asyncio.Future[Heard] = asyncio.get_running_loop().create_future()
         self._awaited[number] = awaited
         try:
-            async with asyncio.timeout(self._reply_deadline):
+            async with asyncio.timeout(deadline):
                 writer.write(encode(message(number)))
                 await writer.drain()
                 answer = await awaited
@@ -144,7 +153,7 @@ class ControllerClient:
             raise CommandRefused(
                 "controller-no-answer",
                 "The controller did not answer",
-                "It is not known whether the command was carried out: look at the station before trying again.",
+                silence,
                 504,
             ) from error
         finally:
@@ -171,7 +180,7 @@ class ControllerClient:
             else:
                 self._answered(message)
 
-    def _answered(self, answer: Answer) -> None:
+    def _answered(self, answer: Heard) -> None:
         awaited = None if answer.id is None else self._awaited.get(answer.id)
         if awaited is not None and not awaited.done():
             awaited.set_result(answer)

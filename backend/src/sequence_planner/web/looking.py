@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 
+from sequence_planner.control.asks import AboutFlows
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.pipeline_view import FlowsView
@@ -71,7 +72,7 @@ class FlowsShow:
 
     async def _asked(self) -> FlowsView | None:
         try:
-            return await self._controller.flows()
+            return await self._controller.ask(AboutFlows())
         except CommandRefused:
             return None
 

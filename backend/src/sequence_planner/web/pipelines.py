@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from fastapi import APIRouter, WebSocket
 
+from sequence_planner.control.asks import AboutFlows, AboutPipelines
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
@@ -23,13 +24,13 @@ router = APIRouter(
 @router.get("")
 async def pipelines(client: Controller) -> PipelinesView:
     """The typed graph: topics and flows with their stages, the fields on each edge, and what they become."""
-    return await client.pipelines()
+    return await client.ask(AboutPipelines())
 
 
 @router.get("/edges")
 async def edges(client: Controller) -> FlowsView:
     """What has passed each edge: counts, rates, drops and the last record. Rates come with the second look."""
-    return await client.flows()
+    return await client.ask(AboutFlows())
 
 
 @router.websocket("/stream")

@@ -14,14 +14,23 @@ from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
+    ControlView,
+    ErrandView,
+    ForceView,
+    LastCorrectionView,
+    LastErrandView,
     Mode,
     OperationView,
+    PackML,
     PlanView,
     Production,
+    QuestionView,
     ResourceView,
+    ServiceView,
     StationIdentity,
     TaskView,
     TopicView,
+    UndecidedOutputView,
     VariableView,
 )
 from sequence_planner.identity.roles import Role, Scope
@@ -39,11 +48,23 @@ class Answer(BaseModel):
 
 
 class StationAnswer(Answer):
-    """What is running, and how."""
+    """What is running, and how; and all that people have asked of it, or that it asks of them."""
 
     station: StationIdentity
+    revision: int  # of the state: counts up with every change, and what was previewed holds for one
     mode: Mode
+    packml: PackML
+    stepping: bool
     production: Production
+    unconfirmed: bool
+    undecided: dict[str, UndecidedOutputView]
+    control: ControlView | None
+    errand: ErrandView | None
+    last_errand: LastErrandView | None
+    forces: dict[str, ForceView]
+    out_of_service: list[ServiceView]
+    questions: list[QuestionView]
+    last_correction: LastCorrectionView | None
 
 
 class StateAnswer(Answer):
@@ -108,10 +129,8 @@ class AlarmsAnswer(Answer):
 
 @router.get("/station")
 async def station(view: LiveView) -> StationAnswer:
-    """What is running, its mode, and whether production has been started."""
-    return StationAnswer(
-        tick=view.tick, time=view.time, station=view.station, mode=view.mode, production=view.production
-    )
+    """What is running, its mode, whether production has been started, and what people have asked of it."""
+    return StationAnswer(**{name: getattr(view, name) for name in StationAnswer.model_fields})
 
 
 @router.get("/state")

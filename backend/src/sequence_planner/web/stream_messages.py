@@ -19,15 +19,23 @@ from sequence_planner.control.view import (
     AbilityView,
     AlarmView,
     ControlView,
+    ErrandView,
+    ForceView,
+    LastCorrectionView,
+    LastErrandView,
     Mode,
     OperationView,
+    PackML,
     PlanView,
     Production,
+    QuestionView,
     ResourceView,
+    ServiceView,
     StationIdentity,
     StationView,
     TaskView,
     TopicView,
+    UndecidedOutputView,
     VariableView,
     WayBackView,
 )
@@ -39,14 +47,25 @@ class StationChange(TypedDict, total=False):
     station: StationIdentity
     tick: int
     time: float
+    revision: int
     mode: Mode
+    packml: PackML
+    stepping: bool
     production: Production
+    unconfirmed: bool
+    undecided: dict[str, UndecidedOutputView]  # whole: it is no map of which entries are sent
     control: ControlView | None
     resources: dict[str, ResourceView]
     variables: dict[str, VariableView]
     abilities: dict[str, AbilityView]
     operations: dict[str, OperationView]
     plan: PlanView
+    errand: ErrandView | None
+    last_errand: LastErrandView | None
+    forces: dict[str, ForceView]  # whole, too
+    out_of_service: list[ServiceView]
+    questions: list[QuestionView]
+    last_correction: LastCorrectionView | None
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
     overrides: dict[str, OverrideView]

@@ -1,0 +1,110 @@
+"""What a controller could answer when it is asked about the small station of `example_view`."""
+
+from __future__ import annotations
+
+from sequence_planner.control.asks import Ask, AskAdvice, AskCorrection, AskGoal, AskReset, AskWhyNot
+from sequence_planner.control.commands import CommandRefused
+from sequence_planner.control.correction_view import CorrectedView, CorrectionPreview
+from sequence_planner.control.offer_view import (
+    AdviceView,
+    ChangeView,
+    EffortView,
+    OfferView,
+    PlanPreviewView,
+    PreviewStepView,
+)
+from sequence_planner.control.view import BeliefView
+from sequence_planner.control.view_part import View
+from sequence_planner.control.why_not_view import ChangerView, ConditionView, InvolvedView, WhyNotView
+
+STEP = PreviewStepView(tick=1, ability="robot.move", title="Move", resource="robot", human=False, restart=True)
+PLAN = PlanPreviewView(ticks=2, steps=[STEP], minimal_ticks=True, minimal_starts=False)
+OFFER = OfferView(
+    id="81a0a8-1",
+    revision=7,
+    kind="combined",
+    title="Correct bolts[bolt_pair_1] to placed, then start Move",
+    physical=[],
+    online=[],
+    in_service=[],
+    assumed=[],
+    corrections=[ChangeView(name="bolts[bolt_pair_1]", now="empty", then="placed")],
+    errand=PLAN,
+    ends="robot.pose == home",
+    operation=None,
+    needs_restart=True,
+    unsupervised=False,
+    at_rest=True,
+    breaks=[],
+    then=PLAN,
+    goals=["tighten"],
+    left_out=[],
+    effort=EffortView(cost=36.5, corrections=1, physical=0, returns=0, starts=1, seconds=4.5),
+    obstacle=None,
+)
+ADVICE = AdviceView(revision=7, offers=[OFFER], reasons=None, complete=True, seconds=0.4)
+POSE = InvolvedView(
+    name="robot.pose",
+    kind="measured",
+    resource="robot",
+    value=None,
+    wanted=["home"],
+    since=999.5,
+    topic="/robot/state",
+    unconfirmed_since=None,
+    changers=[ChangerView(how="message", name="/robot/state", title="a message on /robot/state", running=False)],
+)
+CONDITION = ConditionView(kind="written", text="a message on /robot/state", involved=[POSE])
+
+
+CORRECTION = CorrectionPreview(
+    revision=7,
+    changes=[
+        CorrectedView(
+            name="bolts[left]",
+            now="empty",
+            then="placed",
+            belief=BeliefView(writer="the journal", at=900.0, evidence=[], unconfirmed_since=900.0),
+            related=["robot.pose == home", "operator.acknowledged is unknown"],
+        )
+    ],
+    safe=True,
+    safe_now=True,
+    violates=[],
+    startable=["robot.move"],
+    no_longer_startable=[],
+    activated=["tighten"],
+    completed=[],
+    contradictions_gone=[],
+    contradictions_new=[],
+    plan=PLAN,
+    goals=["tighten"],
+    left_out=[],
+    reason="",
+    obstacle="Enter restart mode first.",
+)
+
+
+def example_answer(ask: Ask) -> View:
+    """An answer of the kind that is asked for. Raises `CommandRefused` for what the station does not have."""
+    match ask:
+        case AskAdvice():
+            return ADVICE
+        case AskCorrection():
+            return CORRECTION
+        case AskGoal() | AskReset():
+            return OFFER
+        case AskWhyNot(of=of, name=name):
+            if of != "goal" and name not in ("robot.move", "tighten"):
+                raise CommandRefused(f"unknown-{of}", f"There is no such {of}", "Look at what it has.", 404)
+            return WhyNotView(
+                of=of,
+                name=name,
+                title="Move",
+                revision=7,
+                summary="It waits for a message on /robot/state.",
+                conditions=[CONDITION],
+                plan=PLAN if of == "goal" else None,
+                reasons=None,
+            )
+    raise AssertionError(f"nobody has thought of an answer to {ask.kind}")
