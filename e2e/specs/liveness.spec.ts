@@ -70,9 +70,26 @@ test.describe('when a part of the station dies', () => {
 		await expect(done(watch)).toHaveCount(0);
 		await expect(operate.locator('[data-step]')).toHaveCount(0);
 
+		// What was asked for before would be asked for again: a person decides whether it shall be.
 		await takeControl(operate);
 		await operate.getByRole('button', { name: 'Start production' }).click();
-		await restsOnPerson(operate, watch);
+		await expect(operate.getByRole('alert').filter({ hasText: 'requested_pair' })).toBeVisible();
+		await operate.getByRole('button', { name: 'Decide' }).click();
+		const dialog = operate.getByRole('dialog');
+		await dialog.getByRole('radio', { name: /^bolt pair/ }).check();
+		await dialog.getByLabel('Reason').fill('The person is still at it');
+		await picture(operate, 'operate-undecided');
+		expect(await findings(operate)).toEqual([]);
+		await dialog.getByRole('button', { name: 'Decide' }).click();
+		await expect(operate.getByTestId('undecided')).toBeHidden();
+		// Its alarm is over, and stays until somebody has seen it.
+		const alarm = operate.locator('[data-alarm]').filter({ hasText: 'requested_pair' });
+		await expect(alarm).toHaveAttribute('data-state', 'returned');
+		await alarm.getByRole('button', { name: 'Acknowledge' }).click();
+		await expect(alarm).toHaveCount(0);
+		await operate.getByRole('button', { name: 'Start production' }).click();
+		// It was started before, so it is no step of a plan of the new controller's.
+		await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
 		await acknowledge(watch);
 		await expect.poll(() => tightenings(operate), { timeout: 60_000 }).toBe(1);
 	});

@@ -24,6 +24,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/advice": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Advice
+         * @description Proven ways on from the present state, the least effort first, each with its plan.
+         *
+         *     409 `errand-under-way` while a plan is being carried out. With an offer in `obstacle` stands what to do first.
+         */
+        get: operations["advice_api_v1_advice_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/alarms": {
         parameters: {
             query?: never;
@@ -38,6 +60,106 @@ export interface paths {
         get: operations["alarms_api_v1_alarms_get"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alarms/acknowledge": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Acknowledge
+         * @description Say that one has seen an alarm; 409 `alarm-came-again` where it came anew after the one that was seen.
+         */
+        post: operations["acknowledge_api_v1_alarms_acknowledge_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alarms/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore
+         * @description Put an alarm back in service.
+         */
+        post: operations["restore_api_v1_alarms_restore_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alarms/shelve": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Shelve
+         * @description Not be told of an alarm for some time, eight hours at most; 409 `alarm-too-urgent` for one of high priority.
+         */
+        post: operations["shelve_api_v1_alarms_shelve_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alarms/suppress": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Suppress
+         * @description Take an alarm out of service until it is restored; 409 `alarm-too-urgent` for one of high priority.
+         */
+        post: operations["suppress_api_v1_alarms_suppress_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/alarms/unshelve": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Unshelve
+         * @description Be told of a shelved alarm again.
+         */
+        post: operations["unshelve_api_v1_alarms_unshelve_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -108,6 +230,174 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/corrections": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Correct
+         * @description Give estimates other values, all at once: in restart mode, or before production is started. It takes control.
+         *
+         *     409 `state-moved` when the state is not at this revision any more; nothing has changed then.
+         */
+        post: operations["correct_api_v1_corrections_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/corrections/confirm": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Confirm
+         * @description Say that these estimates are as the station believes; 409 `state-moved` when one is another by now.
+         */
+        post: operations["confirm_api_v1_corrections_confirm_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/corrections/preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Preview
+         * @description What a correction would bring about: what it would violate, which abilities could start, the plan that follows.
+         *
+         *     Nothing is changed by asking, and it may be asked in every mode.
+         */
+        post: operations["preview_api_v1_corrections_preview_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/corrections/undo": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Undo
+         * @description Take the last correction back, as long as its variables have the values that it gave them. It takes control.
+         */
+        post: operations["undo_api_v1_corrections_undo_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/errands": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Take
+         * @description Make the corrections of an offer and have its plan carried out, and nothing else. It takes control.
+         *
+         *     409 `offer-gone` and `state-moved` ask to look again; `not-confirmed`: starts and corrections are not the offer's.
+         */
+        post: operations["take_api_v1_errands_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/errands/goal-preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Preview Goal
+         * @description A plan to whatever shall hold, to be looked at and perhaps taken.
+         *
+         *     422 `bad-predicate` names the place; 409 `goal-holds` and `no-plan` say why there is nothing to take.
+         */
+        post: operations["preview_goal_api_v1_errands_goal_preview_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/errands/reset-preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Preview Reset
+         * @description A plan to the precondition of an operation, from which it begins anew; 409 `no-plan` where there is none.
+         */
+        post: operations["preview_reset_api_v1_errands_reset_preview_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/errands/stop": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Stop
+         * @description Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it.
+         */
+        post: operations["stop_api_v1_errands_stop_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/first-administrator": {
         parameters: {
             query?: never;
@@ -124,6 +414,133 @@ export interface paths {
          *     403 `link-unusable` when it does not.
          */
         post: operations["first_administrator_api_v1_first_administrator_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/forces/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Force
+         * @description Let a measured variable or an output have a value for a time, whatever its device or an ability says.
+         *
+         *     It takes control. 422 `not-in-domain` says which values there are, and 409 `force-unsafe` that the value would lead
+         *     out of the safe states; nothing has changed then.
+         */
+        put: operations["force_api_v1_forces__name__put"];
+        post?: never;
+        /**
+         * Release Force
+         * @description Let a variable be as it comes again, if it is forced. It takes control.
+         */
+        delete: operations["release_force_api_v1_forces__name__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/history": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read
+         * @description What has happened, only of some kinds, such as `mode-changed,forced`, where these are named.
+         */
+        get: operations["read_api_v1_history_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/history/checkpoint": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Checkpoint
+         * @description The newest signed checkpoint: kept elsewhere, it shows whether the journal was made anew since.
+         */
+        get: operations["checkpoint_api_v1_history_checkpoint_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/history/export": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Export
+         * @description All records with higher numbers than `after`, one JSON document a line, as `journal export` writes them.
+         */
+        get: operations["export_api_v1_history_export_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/history/{number}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Look Back
+         * @description A record, and how the station was right after it.
+         */
+        get: operations["look_back_api_v1_history__number__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/history/{number}/branch": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Take Branch
+         * @description How the station would have gone on from there, with emulated devices. Nothing of it reaches the station.
+         */
+        post: operations["take_branch_api_v1_history__number__branch_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -184,7 +601,7 @@ export interface paths {
         get?: never;
         /**
          * Set Mode
-         * @description Change the mode of execution; to go on takes control, to pause does not.
+         * @description Change the mode of execution. To go on takes control; to pause and to hold is for anybody, and never refused.
          */
         put: operations["set_mode_api_v1_mode_put"];
         post?: never;
@@ -207,6 +624,26 @@ export interface paths {
          */
         get: operations["operations_api_v1_operations_get"];
         put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/outputs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Decide
+         * @description Decide on outputs that came back from the journal and would move devices; before production. It takes control.
+         */
+        put: operations["decide_api_v1_outputs_put"];
         post?: never;
         delete?: never;
         options?: never;
@@ -447,6 +884,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/restart/enter": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Enter Restart
+         * @description Enter restart mode: operations wait, what runs may finish, and nothing is started by it. It takes control.
+         */
+        post: operations["enter_restart_api_v1_restart_enter_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/restart/leave": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Leave Restart
+         * @description Leave restart mode for the paused one; to go on is another request. It takes control.
+         */
+        post: operations["leave_restart_api_v1_restart_leave_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/ros/attachments": {
         parameters: {
             query?: never;
@@ -484,6 +961,26 @@ export interface paths {
          */
         get: operations["graph_api_v1_ros_graph_get"];
         put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/service/{of}/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Set Service
+         * @description Take a resource, an ability or an operation out of service, or put it back. It takes control.
+         */
+        put: operations["set_service_api_v1_service__of___name__put"];
         post?: never;
         delete?: never;
         options?: never;
@@ -588,11 +1085,51 @@ export interface paths {
         };
         /**
          * Station
-         * @description What is running, its mode, and whether production has been started.
+         * @description What is running, its mode, whether production has been started, and what people have asked of it.
          */
         get: operations["station_api_v1_station_get"];
         put?: never;
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/stepping": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Set Stepping
+         * @description For commissioning: have every single start wait for a person's step, or none. It takes control.
+         */
+        put: operations["set_stepping_api_v1_stepping_put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/stepping/step": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Take Step
+         * @description Allow one start, as soon as there is one. It takes control.
+         */
+        post: operations["take_step_api_v1_stepping_step_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -801,6 +1338,46 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/why-not/goal": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Why Not Goal
+         * @description What keeps a predicate from being true, and whether the station could reach it; 422 `bad-predicate`.
+         */
+        post: operations["why_not_goal_api_v1_why_not_goal_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/why-not/{of}/{name}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Why Not
+         * @description What keeps an ability from starting, or an operation from being active or completed, and who could change it.
+         */
+        get: operations["why_not_api_v1_why_not__of___name__get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/healthz": {
         parameters: {
             query?: never;
@@ -862,6 +1439,18 @@ export interface components {
             title: string;
         };
         /**
+         * AcknowledgeBody
+         * @description The alarm as it was seen, `since` when: none that came later is acknowledged by mistake.
+         */
+        AcknowledgeBody: {
+            /** Alarm */
+            alarm: string;
+            /** Reason */
+            reason?: string | null;
+            /** Since */
+            since: number;
+        };
+        /**
          * AcknowledgementBody
          * @description The revision of the task that the person saw, so that no other is acknowledged by mistake.
          */
@@ -894,17 +1483,69 @@ export interface components {
          */
         ActorKind: "person" | "demonstration" | "watch" | "key" | "system";
         /**
+         * AdviceView
+         * @description Ways on from the state of `revision`, the least effort first; without any, `reasons` says why as far as known.
+         *
+         *     Unless `complete` the time was over before all that can be offered was looked for.
+         */
+        AdviceView: {
+            /** Complete */
+            complete: boolean;
+            /** Offers */
+            offers: components["schemas"]["OfferView"][];
+            reasons: components["schemas"]["DiagnosisView"] | null;
+            /** Revision */
+            revision: number;
+            /** Seconds */
+            seconds: number;
+        };
+        /**
+         * AlarmBody
+         * @description The key of an alarm.
+         */
+        AlarmBody: {
+            /** Alarm */
+            alarm: string;
+            /** Reason */
+            reason?: string | null;
+        };
+        /**
+         * AlarmState
+         * @description Where an alarm stands in its life (ISA-18.2, figure 4.2).
+         * @enum {string}
+         */
+        AlarmState: "unacknowledged" | "acknowledged" | "returned" | "shelved" | "out-of-service";
+        /**
          * AlarmView
-         * @description Something that wants a person's attention, for as long as it lasts.
+         * @description Something that wants a person's attention. `ended` is when its cause has gone, null while it lasts.
+         *
+         *     One that was acknowledged goes with its cause. `by` is who acknowledged or shelved it or took it out of service,
+         *     `until` when it is shelved no more, `why` the reason that was given. `count` is how often it came since it was
+         *     last acknowledged; `part_of` lists what else the same cause has brought about.
          */
         AlarmView: {
             /** Action */
             action: string;
+            /** By */
+            by: string | null;
+            /** Consequence */
+            consequence: string;
+            /** Count */
+            count: number;
+            /** Ended */
+            ended: number | null;
+            /** Parts */
+            parts: string[];
             priority: components["schemas"]["Priority"];
             /** Since */
             since: number;
+            state: components["schemas"]["AlarmState"];
             /** Text */
             text: string;
+            /** Until */
+            until: number | null;
+            /** Why */
+            why: string | null;
         };
         /**
          * AlarmsAnswer
@@ -1009,6 +1650,50 @@ export interface components {
             records: components["schemas"]["Record"][];
         };
         /**
+         * BeliefView
+         * @description Why an estimated variable is believed to have its value.
+         *
+         *     `writer` is an ability, a person, or what it was at the beginning; `evidence` is what was measured as it wrote. As
+         *     long as `unconfirmed_since` is set, nobody has seen whether the value is still true.
+         */
+        BeliefView: {
+            /** At */
+            at: number;
+            /** Evidence */
+            evidence: string[];
+            /** Unconfirmed Since */
+            unconfirmed_since: number | null;
+            /** Writer */
+            writer: string;
+        };
+        /**
+         * BranchBody
+         * @description For how long to go on, and estimates that are other than they were.
+         */
+        BranchBody: {
+            /** Corrections */
+            corrections?: {
+                [key: string]: boolean | number | string;
+            };
+            /** Seconds */
+            seconds: number;
+        };
+        /**
+         * BranchView
+         * @description How the station would have gone on: the records that it would have written, and how it would have been then.
+         *
+         *     `seconds` is the time that was simulated. With `cut` these are the first records only.
+         */
+        BranchView: {
+            /** Cut */
+            cut: boolean;
+            end: components["schemas"]["PastView"];
+            /** Records */
+            records: components["schemas"]["RunRecordView"][];
+            /** Seconds */
+            seconds: number;
+        };
+        /**
          * CallView
          * @description A service or an action: who answers it and who asks, by node; null stands for one that does not tell its name.
          */
@@ -1021,10 +1706,66 @@ export interface components {
             types: string[];
         };
         /**
+         * ChangeView
+         * @description A variable that gets another value; `now` is null where it is unknown.
+         */
+        ChangeView: {
+            /** Name */
+            name: string;
+            /** Now */
+            now: boolean | number | string | null;
+            /** Then */
+            then: boolean | number | string;
+        };
+        /**
+         * ChangerView
+         * @description Who could change a variable: an ability, which may be running, or a person.
+         *
+         *     `how` is `start`, `finish` or `effect` of an ability; `correction` of an estimate, `device` where something has to
+         *     be done at the resource `name`, `message` where its topic `name` has to speak, and `force` of an output.
+         */
+        ChangerView: {
+            /** How */
+            how: string;
+            /** Name */
+            name: string;
+            /** Running */
+            running: boolean;
+            /** Title */
+            title: string;
+        };
+        /**
+         * Checkpoint
+         * @description A signed statement: `content` is its text, as it was signed with Ed25519; key and signature are in hex.
+         */
+        Checkpoint: {
+            /** Content */
+            content: string;
+            /** Public Key */
+            public_key: string;
+            /** Signature */
+            signature: string;
+        };
+        /**
          * ClientMessage
          * @description Any message from a client.
          */
         ClientMessage: components["schemas"]["Resync"];
+        /**
+         * ConditionView
+         * @description Something that has to be otherwise. `involved` alone keep it from being true, and none of them could be spared.
+         *
+         *     `kind` is station (how the station executes), service (what does not take part), written (in the model),
+         *     unpublished (a command has to leave first), supervisor (what synthesis has added) or plan (nothing wants it yet).
+         */
+        ConditionView: {
+            /** Involved */
+            involved: components["schemas"]["InvolvedView"][];
+            /** Kind */
+            kind: string;
+            /** Text */
+            text: string;
+        };
         /**
          * ConfirmationBody
          * @description Nothing: to confirm is all that there is to say.
@@ -1068,6 +1809,89 @@ export interface components {
          * @enum {string}
          */
         ControllerState: "heard" | "lost";
+        /**
+         * CorrectedView
+         * @description An estimate and the value that it is to have. `related` is what is measured that bears on it, as it is now.
+         */
+        CorrectedView: {
+            belief: components["schemas"]["BeliefView"];
+            /** Name */
+            name: string;
+            /** Now */
+            now: boolean | number | string;
+            /** Related */
+            related: string[];
+            /** Then */
+            then: boolean | number | string;
+        };
+        /**
+         * CorrectionBody
+         * @description The values, the revision of the state that the person saw, and why.
+         */
+        CorrectionBody: {
+            /** Reason */
+            reason: string;
+            /** Revision */
+            revision: number;
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+        };
+        /**
+         * CorrectionPreview
+         * @description What a correction made at `revision` would bring about; it is refused on any other.
+         *
+         *     `safe` says whether the state is a safe one afterwards, `safe_now` whether it is so without it, and `violates` which
+         *     specifications the corrected state violates. Abilities would become `startable`, or be so no longer; operations
+         *     would be `activated` or `completed`. `plan` is what the station then does for the operations `goals`, in automatic
+         *     mode; `reason` says why there is none. `obstacle` says why it cannot be made as things are, null where it can.
+         */
+        CorrectionPreview: {
+            /** Activated */
+            activated: string[];
+            /** Changes */
+            changes: components["schemas"]["CorrectedView"][];
+            /** Completed */
+            completed: string[];
+            /** Contradictions Gone */
+            contradictions_gone: string[];
+            /** Contradictions New */
+            contradictions_new: string[];
+            /** Goals */
+            goals: string[];
+            /** Left Out */
+            left_out: string[];
+            /** No Longer Startable */
+            no_longer_startable: string[];
+            /** Obstacle */
+            obstacle: string | null;
+            plan: components["schemas"]["PlanPreviewView"] | null;
+            /** Reason */
+            reason: string;
+            /** Revision */
+            revision: number;
+            /** Safe */
+            safe: boolean;
+            /** Safe Now */
+            safe_now: boolean;
+            /** Startable */
+            startable: string[];
+            /** Violates */
+            violates: components["schemas"]["SpecificationView"][];
+        };
+        /**
+         * DecisionBody
+         * @description Variables with their values, and why.
+         */
+        DecisionBody: {
+            /** Reason */
+            reason: string;
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+        };
         /**
          * Delta
          * @description What changed since the message before; at least one each second, with at least a fresh `time`.
@@ -1142,6 +1966,24 @@ export interface components {
             troubles: string[];
         };
         /**
+         * EffortView
+         * @description What it takes; offers with the lowest `cost`, which are seconds of trouble, come first.
+         */
+        EffortView: {
+            /** Corrections */
+            corrections: number;
+            /** Cost */
+            cost: number;
+            /** Physical */
+            physical: number;
+            /** Returns */
+            returns: number;
+            /** Seconds */
+            seconds: number;
+            /** Starts */
+            starts: number;
+        };
+        /**
          * EndView
          * @description What a field becomes at the end: a variable of the station, or a field of the outgoing message.
          */
@@ -1199,6 +2041,40 @@ export interface components {
              * @default
              */
             subject: string;
+        };
+        /**
+         * ErrandBody
+         * @description The offer, and all that it contains as the person has seen it: the starts in order, and the corrections.
+         */
+        ErrandBody: {
+            /** Corrections */
+            corrections?: {
+                [key: string]: boolean | number | string;
+            };
+            /** Offer */
+            offer: string;
+            /** Reason */
+            reason: string;
+            /** Starts */
+            starts: string[];
+        };
+        /**
+         * ErrandView
+         * @description What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for.
+         */
+        ErrandView: {
+            /** By */
+            by: string;
+            /** Ends */
+            ends: string;
+            /** Kind */
+            kind: string;
+            /** Since */
+            since: number;
+            /** Title */
+            title: string;
+            /** Why */
+            why: string;
         };
         /**
          * FieldError
@@ -1271,6 +2147,42 @@ export interface components {
             time: number;
         };
         /**
+         * ForceBody
+         * @description The value that the variable is to have, for how many seconds, and why.
+         */
+        ForceBody: {
+            /** Reason */
+            reason: string;
+            /** Seconds */
+            seconds: number;
+            /** Value */
+            value: boolean | number | string;
+        };
+        /**
+         * ForceView
+         * @description A forced variable: what it is taken to be, what it would be, until when, by whom and why.
+         */
+        ForceView: {
+            /** By */
+            by: string;
+            /** Real */
+            real: boolean | number | string | null;
+            /** Until */
+            until: number;
+            /** Value */
+            value: boolean | number | string;
+            /** Why */
+            why: string;
+        };
+        /**
+         * GoalBody
+         * @description What shall hold, in the model's language.
+         */
+        GoalBody: {
+            /** Predicate */
+            predicate: string;
+        };
+        /**
          * GraphTopicView
          * @description A topic; `station` is null where the model does not use it.
          */
@@ -1313,6 +2225,42 @@ export interface components {
              * @constant
              */
             status: "alive";
+        };
+        /**
+         * HistoryAnswer
+         * @description Records, newest first; `next` is the `before` with which older ones follow, null when there are none.
+         */
+        HistoryAnswer: {
+            /** Next */
+            next: number | null;
+            /** Records */
+            records: components["schemas"]["RunRecordView"][];
+        };
+        /**
+         * InvolvedView
+         * @description A variable that decides a condition. With one of the values `wanted`, and nothing else different, it would hold.
+         *
+         *     `since` is when the value was seen first, `topic` where a measured one is heard. An estimate may be unconfirmed.
+         */
+        InvolvedView: {
+            /** Changers */
+            changers: components["schemas"]["ChangerView"][];
+            /** Kind */
+            kind: string;
+            /** Name */
+            name: string;
+            /** Resource */
+            resource: string | null;
+            /** Since */
+            since: number | null;
+            /** Topic */
+            topic: string | null;
+            /** Unconfirmed Since */
+            unconfirmed_since: number | null;
+            /** Value */
+            value: boolean | number | string | null;
+            /** Wanted */
+            wanted: (boolean | number | string)[];
         };
         JsonValue: unknown;
         /**
@@ -1358,6 +2306,42 @@ export interface components {
             keys: components["schemas"]["KeyAnswer"][];
         };
         /**
+         * LastCorrectionView
+         * @description The last correction, which can be undone in one step while `undoable`.
+         */
+        LastCorrectionView: {
+            /** At */
+            at: number;
+            /** Before */
+            before: {
+                [key: string]: boolean | number | string;
+            };
+            /** By */
+            by: string;
+            /** Undoable */
+            undoable: boolean;
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+            /** Why */
+            why: string;
+        };
+        /**
+         * LastErrandView
+         * @description How the last errand has ended: `done`, or why not.
+         */
+        LastErrandView: {
+            /** Done */
+            done: boolean;
+            /** Ended */
+            ended: number;
+            /** Title */
+            title: string;
+            /** Why */
+            why: string;
+        };
+        /**
          * Link
          * @description The controller fell silent, or is back; then a snapshot follows.
          */
@@ -1401,15 +2385,27 @@ export interface components {
          * @description How the station executes (see `docs/semantics.md`).
          * @enum {string}
          */
-        Mode: "automatic" | "paused";
+        Mode: "automatic" | "paused" | "hold" | "restart";
         /**
          * ModeBody
-         * @description The mode that is wanted.
+         * @description The mode that is wanted. Restart mode has ways of its own, in and out.
          */
         ModeBody: {
-            mode: components["schemas"]["Mode"];
+            /**
+             * Mode
+             * @enum {string}
+             */
+            mode: "automatic" | "paused" | "hold";
             /** Reason */
             reason?: string | null;
+        };
+        /**
+         * MomentView
+         * @description A record, and how the station was right after it.
+         */
+        MomentView: {
+            past: components["schemas"]["PastView"];
+            record: components["schemas"]["RunRecordView"];
         };
         /**
          * NetworkSnapshot
@@ -1518,6 +2514,60 @@ export interface components {
             resource: string;
         };
         /**
+         * OfferView
+         * @description One way on from the state of `revision`, replayed on the reference tick from there.
+         *
+         *     First a person does what is `physical` at the station, brings the resources in `online` back, which are `assumed` to
+         *     say so and so then, and puts the abilities `in_service`. Then `corrections` are made and the plan `errand` is
+         *     carried out, until `ends` holds; `needs_restart` says that this takes restart mode. `then` is what the station does
+         *     afterwards for the operations `goals`, in automatic mode; null where that was not looked for or not found.
+         *
+         *     An offer `at_rest` ends where the station rests and its devices are as commanded. One that is `unsupervised` begins
+         *     outside the safe states, where starts go by their written guards alone; it `breaks` these specifications on its
+         *     way. `obstacle` says why it cannot be taken as things are now, null where it can.
+         */
+        OfferView: {
+            /** Assumed */
+            assumed: components["schemas"]["ChangeView"][];
+            /** At Rest */
+            at_rest: boolean;
+            /** Breaks */
+            breaks: components["schemas"]["SpecificationView"][];
+            /** Corrections */
+            corrections: components["schemas"]["ChangeView"][];
+            effort: components["schemas"]["EffortView"];
+            /** Ends */
+            ends: string | null;
+            errand: components["schemas"]["PlanPreviewView"] | null;
+            /** Goals */
+            goals: string[];
+            /** Id */
+            id: string;
+            /** In Service */
+            in_service: string[];
+            /** Kind */
+            kind: string;
+            /** Left Out */
+            left_out: string[];
+            /** Needs Restart */
+            needs_restart: boolean;
+            /** Obstacle */
+            obstacle: string | null;
+            /** Online */
+            online: string[];
+            /** Operation */
+            operation: string | null;
+            /** Physical */
+            physical: components["schemas"]["ChangeView"][];
+            /** Revision */
+            revision: number;
+            then: components["schemas"]["PlanPreviewView"] | null;
+            /** Title */
+            title: string;
+            /** Unsupervised */
+            unsupervised: boolean;
+        };
+        /**
          * OperationView
          * @description An operation: active until its goal holds.
          */
@@ -1534,6 +2584,8 @@ export interface components {
             left_out: boolean;
             /** Precondition */
             precondition: string;
+            /** Repeat */
+            repeat: boolean;
             /** Title */
             title: string;
         };
@@ -1625,6 +2677,12 @@ export interface components {
             time: number;
         };
         /**
+         * PackML
+         * @description The state that PackML (ISA-TR88.00.02) has for it; see `docs/control.md` for what it is made of.
+         * @enum {string}
+         */
+        PackML: "resetting" | "idle" | "execute" | "suspended" | "holding" | "held" | "stopping" | "stopped" | "aborted" | "clearing";
+        /**
          * PairingBody
          * @description The code that an operator has read out.
          */
@@ -1641,6 +2699,65 @@ export interface components {
             new: string;
             /** Old */
             old: string;
+        };
+        /**
+         * PastPlanView
+         * @description The plan as it was then, and why it was that or none.
+         */
+        PastPlanView: {
+            /** Reason */
+            reason: string;
+            status: components["schemas"]["PlanStatus"];
+            /** Steps */
+            steps: components["schemas"]["PastStepView"][];
+        };
+        /**
+         * PastStepView
+         * @description A start of the plan as it was then.
+         */
+        PastStepView: {
+            /** Ability */
+            ability: string;
+            /** Ended */
+            ended: number | null;
+            /** Started */
+            started: number | null;
+            status: components["schemas"]["StepStatus"];
+            /** Tick */
+            tick: number;
+            /** Title */
+            title: string;
+        };
+        /**
+         * PastView
+         * @description How the station was. `running` are the abilities under way, `active` the active operations.
+         */
+        PastView: {
+            /** Active */
+            active: string[];
+            errand: components["schemas"]["ErrandView"] | null;
+            /** Forces */
+            forces: {
+                [key: string]: components["schemas"]["ForceView"];
+            };
+            mode: components["schemas"]["Mode"];
+            /** Out Of Service */
+            out_of_service: components["schemas"]["ServiceView"][];
+            packml: components["schemas"]["PackML"];
+            plan: components["schemas"]["PastPlanView"];
+            production: components["schemas"]["Production"];
+            /** Revision */
+            revision: number;
+            /** Running */
+            running: string[];
+            /** Stepping */
+            stepping: boolean;
+            /** Tick */
+            tick: number;
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string | null;
+            };
         };
         /**
          * PeopleAnswer
@@ -1759,6 +2876,20 @@ export interface components {
             time: number;
         };
         /**
+         * PlanPreviewView
+         * @description A plan that nobody follows yet. Without steps nothing has to be started.
+         */
+        PlanPreviewView: {
+            /** Minimal Starts */
+            minimal_starts: boolean;
+            /** Minimal Ticks */
+            minimal_ticks: boolean;
+            /** Steps */
+            steps: components["schemas"]["PreviewStepView"][];
+            /** Ticks */
+            ticks: number;
+        };
+        /**
          * PlanStatus
          * @description What can be said about the plan.
          * @enum {string}
@@ -1813,6 +2944,24 @@ export interface components {
             why: components["schemas"]["DiagnosisView"] | null;
         };
         /**
+         * PreviewStepView
+         * @description One start. `tick` counts from the tick in which the plan begins.
+         */
+        PreviewStepView: {
+            /** Ability */
+            ability: string;
+            /** Human */
+            human: boolean;
+            /** Resource */
+            resource: string;
+            /** Restart */
+            restart: boolean;
+            /** Tick */
+            tick: number;
+            /** Title */
+            title: string;
+        };
+        /**
          * Priority
          * @description Urgency of an alarm, after ISA-18.2.
          * @enum {string}
@@ -1861,6 +3010,31 @@ export interface components {
             reliability: "reliable" | "best_effort";
         };
         /**
+         * QuestionView
+         * @description What to look at: the station's belief does not fit what is measured. The first question separates most.
+         *
+         *     `variable` is what is asked about, `believed` its value, `possible` those that would fit; `because` says which
+         *     belief does not go together with which measurement.
+         */
+        QuestionView: {
+            /** Because */
+            because: string[];
+            /** Believed */
+            believed: boolean | number | string;
+            /** Possible */
+            possible: (boolean | number | string)[];
+            /** Variable */
+            variable: string;
+        };
+        /**
+         * ReasonBody
+         * @description To ask for it is all that there is to say, but perhaps why.
+         */
+        ReasonBody: {
+            /** Reason */
+            reason?: string | null;
+        };
+        /**
          * Record
          * @description An entry as it was written: `number` counts from 1 without gaps, `time` is in seconds since the epoch.
          *
@@ -1875,6 +3049,14 @@ export interface components {
             number: number;
             /** Time */
             time: number;
+        };
+        /**
+         * ResetBody
+         * @description The operation whose precondition shall hold again.
+         */
+        ResetBody: {
+            /** Operation */
+            operation: string;
         };
         /**
          * ResourceView
@@ -1920,11 +3102,63 @@ export interface components {
          */
         Role: "viewer" | "operator" | "engineer" | "administrator";
         /**
+         * RunRecordView
+         * @description Something that has happened. What `content` has depends on the `kind`; `docs/journal.md` says what.
+         */
+        RunRecordView: {
+            /** Content */
+            content: {
+                [key: string]: components["schemas"]["JsonValue"];
+            };
+            /** Hash */
+            hash: string;
+            /** Kind */
+            kind: string;
+            /** Number */
+            number: number;
+            /** Time */
+            time: number;
+        };
+        /**
          * Scope
          * @description What the bearer of a key may do.
          * @enum {string}
          */
         Scope: "read" | "audit";
+        /**
+         * ServiceBody
+         * @description Whether it is to be in service, and why.
+         */
+        ServiceBody: {
+            /** In Service */
+            in_service: boolean;
+            /** Reason */
+            reason: string;
+        };
+        /**
+         * ServiceKind
+         * @description What can be taken out of service.
+         * @enum {string}
+         */
+        ServiceKind: "resource" | "ability" | "operation";
+        /**
+         * ServiceView
+         * @description What is out of service since when, by whom and why; `by` is null where the station gave an ability up itself.
+         */
+        ServiceView: {
+            /** By */
+            by: string | null;
+            /** Name */
+            name: string;
+            /** Of */
+            of: string;
+            /** Since */
+            since: number;
+            /** Title */
+            title: string;
+            /** Why */
+            why: string;
+        };
         /**
          * SessionAnswer
          * @description Who the browser is for this server.
@@ -1975,6 +3209,18 @@ export interface components {
             /** Resource */
             resource: string;
             state: components["schemas"]["WatchState"];
+        };
+        /**
+         * ShelveBody
+         * @description For how many seconds it is not to be told, and why.
+         */
+        ShelveBody: {
+            /** Alarm */
+            alarm: string;
+            /** Reason */
+            reason: string;
+            /** Seconds */
+            seconds: number;
         };
         /**
          * SignInBody
@@ -2045,14 +3291,6 @@ export interface components {
             summary: string;
         };
         /**
-         * StartBody
-         * @description To start production is all that there is to say, but perhaps why.
-         */
-        StartBody: {
-            /** Reason */
-            reason?: string | null;
-        };
-        /**
          * StateAnswer
          * @description Every variable.
          */
@@ -2068,16 +3306,39 @@ export interface components {
         };
         /**
          * StationAnswer
-         * @description What is running, and how.
+         * @description What is running, and how; and all that people have asked of it, or that it asks of them.
          */
         StationAnswer: {
+            control: components["schemas"]["ControlView"] | null;
+            errand: components["schemas"]["ErrandView"] | null;
+            /** Forces */
+            forces: {
+                [key: string]: components["schemas"]["ForceView"];
+            };
+            last_correction: components["schemas"]["LastCorrectionView"] | null;
+            last_errand: components["schemas"]["LastErrandView"] | null;
             mode: components["schemas"]["Mode"];
+            /** Out Of Service */
+            out_of_service: components["schemas"]["ServiceView"][];
+            packml: components["schemas"]["PackML"];
             production: components["schemas"]["Production"];
+            /** Questions */
+            questions: components["schemas"]["QuestionView"][];
+            /** Revision */
+            revision: number;
             station: components["schemas"]["StationIdentity"];
+            /** Stepping */
+            stepping: boolean;
             /** Tick */
             tick: number;
             /** Time */
             time: number;
+            /** Unconfirmed */
+            unconfirmed: boolean;
+            /** Undecided */
+            undecided: {
+                [key: string]: components["schemas"]["UndecidedOutputView"];
+            };
         };
         /**
          * StationChange
@@ -2094,22 +3355,38 @@ export interface components {
             };
             analysis?: components["schemas"]["AnalysisDocument"] | null;
             control?: components["schemas"]["ControlView"] | null;
+            errand?: components["schemas"]["ErrandView"] | null;
+            /** Forces */
+            forces?: {
+                [key: string]: components["schemas"]["ForceView"];
+            };
+            last_correction?: components["schemas"]["LastCorrectionView"] | null;
+            last_errand?: components["schemas"]["LastErrandView"] | null;
             mode?: components["schemas"]["Mode"];
             /** Operations */
             operations?: {
                 [key: string]: components["schemas"]["OperationView"];
             };
+            /** Out Of Service */
+            out_of_service?: components["schemas"]["ServiceView"][];
             /** Overrides */
             overrides?: {
                 [key: string]: components["schemas"]["OverrideView"];
             };
+            packml?: components["schemas"]["PackML"];
             plan?: components["schemas"]["PlanView"];
             production?: components["schemas"]["Production"];
+            /** Questions */
+            questions?: components["schemas"]["QuestionView"][];
             /** Resources */
             resources?: {
                 [key: string]: components["schemas"]["ResourceView"];
             };
+            /** Revision */
+            revision?: number;
             station?: components["schemas"]["StationIdentity"];
+            /** Stepping */
+            stepping?: boolean;
             /** Tasks */
             tasks?: {
                 [key: string]: components["schemas"]["TaskView"];
@@ -2121,6 +3398,12 @@ export interface components {
             /** Topics */
             topics?: {
                 [key: string]: components["schemas"]["TopicView"];
+            };
+            /** Unconfirmed */
+            unconfirmed?: boolean;
+            /** Undecided */
+            undecided?: {
+                [key: string]: components["schemas"]["UndecidedOutputView"];
             };
             /** Variables */
             variables?: {
@@ -2203,22 +3486,38 @@ export interface components {
             };
             analysis: components["schemas"]["AnalysisDocument"] | null;
             control: components["schemas"]["ControlView"] | null;
+            errand: components["schemas"]["ErrandView"] | null;
+            /** Forces */
+            forces: {
+                [key: string]: components["schemas"]["ForceView"];
+            };
+            last_correction: components["schemas"]["LastCorrectionView"] | null;
+            last_errand: components["schemas"]["LastErrandView"] | null;
             mode: components["schemas"]["Mode"];
             /** Operations */
             operations: {
                 [key: string]: components["schemas"]["OperationView"];
             };
+            /** Out Of Service */
+            out_of_service: components["schemas"]["ServiceView"][];
             /** Overrides */
             overrides: {
                 [key: string]: components["schemas"]["OverrideView"];
             };
+            packml: components["schemas"]["PackML"];
             plan: components["schemas"]["PlanView"];
             production: components["schemas"]["Production"];
+            /** Questions */
+            questions: components["schemas"]["QuestionView"][];
             /** Resources */
             resources: {
                 [key: string]: components["schemas"]["ResourceView"];
             };
+            /** Revision */
+            revision: number;
             station: components["schemas"]["StationIdentity"];
+            /** Stepping */
+            stepping: boolean;
             /** Tasks */
             tasks: {
                 [key: string]: components["schemas"]["TaskView"];
@@ -2230,6 +3529,12 @@ export interface components {
             /** Topics */
             topics: {
                 [key: string]: components["schemas"]["TopicView"];
+            };
+            /** Unconfirmed */
+            unconfirmed: boolean;
+            /** Undecided */
+            undecided: {
+                [key: string]: components["schemas"]["UndecidedOutputView"];
             };
             /** Variables */
             variables: {
@@ -2265,6 +3570,24 @@ export interface components {
          */
         StepStatus: "done" | "running" | "next" | "planned";
         /**
+         * SteppingBody
+         * @description Whether every start is to wait for a step.
+         */
+        SteppingBody: {
+            /** On */
+            on: boolean;
+            /** Reason */
+            reason?: string | null;
+        };
+        /**
+         * StopBody
+         * @description To stop is all that there is to say, but perhaps why.
+         */
+        StopBody: {
+            /** Reason */
+            reason?: string | null;
+        };
+        /**
          * StreamError
          * @description Something the client sent cannot be understood. The connection goes on.
          */
@@ -2282,6 +3605,16 @@ export interface components {
          * @description Any message from the server.
          */
         StreamMessage: components["schemas"]["Snapshot"] | components["schemas"]["Delta"] | components["schemas"]["Link"] | components["schemas"]["StreamError"];
+        /**
+         * SuppressBody
+         * @description Which alarm is taken out of service, and why.
+         */
+        SuppressBody: {
+            /** Alarm */
+            alarm: string;
+            /** Reason */
+            reason: string;
+        };
         /**
          * TaskView
          * @description A task that waits for a person. An acknowledgement must carry its id and revision.
@@ -2387,6 +3720,30 @@ export interface components {
             to: string;
         };
         /**
+         * UndecidedOutputView
+         * @description An output that came back from the journal, and would make its device react as soon as it is published.
+         *
+         *     `reacts` says how; with each of `quiet` its device would stay as it is.
+         */
+        UndecidedOutputView: {
+            /** Quiet */
+            quiet: (boolean | number | string)[];
+            /** Reacts */
+            reacts: string[];
+            /** Value */
+            value: boolean | number | string;
+        };
+        /**
+         * ValuesBody
+         * @description Estimated variables, each with the value that it is to have.
+         */
+        ValuesBody: {
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+        };
+        /**
          * VariableKind
          * @description Who writes a variable.
          * @enum {string}
@@ -2399,6 +3756,7 @@ export interface components {
         VariableView: {
             /** Awaits */
             awaits: string | null;
+            belief: components["schemas"]["BeliefView"] | null;
             /** Domain */
             domain: (boolean | number | string)[];
             kind: components["schemas"]["VariableKind"];
@@ -2542,6 +3900,37 @@ export interface components {
             ticks: number | null;
             /** Violated */
             violated: components["schemas"]["SpecificationView"][];
+        };
+        /**
+         * WhyBody
+         * @description Why it is wanted.
+         */
+        WhyBody: {
+            /** Reason */
+            reason: string;
+        };
+        /**
+         * WhyNotView
+         * @description All `conditions` have to be otherwise; without any, nothing is in the way.
+         *
+         *     For a goal, `plan` is how the station could reach it from here, or `reasons` say why it cannot at all; both are null
+         *     where nothing was found in time. For an operation that has no plan, `reasons` are those of the plan.
+         */
+        WhyNotView: {
+            /** Conditions */
+            conditions: components["schemas"]["ConditionView"][];
+            /** Name */
+            name: string;
+            /** Of */
+            of: string;
+            plan: components["schemas"]["PlanPreviewView"] | null;
+            reasons: components["schemas"]["DiagnosisView"] | null;
+            /** Revision */
+            revision: number;
+            /** Summary */
+            summary: string;
+            /** Title */
+            title: string;
         };
     };
     responses: {
@@ -2715,6 +4104,40 @@ export interface operations {
             };
         };
     };
+    advice_api_v1_advice_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AdviceView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     alarms_api_v1_alarms_get: {
         parameters: {
             query?: never;
@@ -2736,6 +4159,211 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    acknowledge_api_v1_alarms_acknowledge_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AcknowledgeBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    restore_api_v1_alarms_restore_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AlarmBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    shelve_api_v1_alarms_shelve_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ShelveBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    suppress_api_v1_alarms_suppress_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SuppressBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    unshelve_api_v1_alarms_unshelve_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AlarmBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -2890,6 +4518,345 @@ export interface operations {
             };
         };
     };
+    correct_api_v1_corrections_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CorrectionBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    confirm_api_v1_corrections_confirm_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DecisionBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    preview_api_v1_corrections_preview_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ValuesBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CorrectionPreview"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    undo_api_v1_corrections_undo_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["WhyBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    take_api_v1_errands_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ErrandBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    preview_goal_api_v1_errands_goal_preview_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["GoalBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OfferView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    preview_reset_api_v1_errands_reset_preview_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ResetBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OfferView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    stop_api_v1_errands_stop_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["StopBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     first_administrator_api_v1_first_administrator_post: {
         parameters: {
             query?: never;
@@ -2920,6 +4887,275 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    force_api_v1_forces__name__put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ForceBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    release_force_api_v1_forces__name__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_api_v1_history_get: {
+        parameters: {
+            query?: {
+                before?: number | null;
+                limit?: number;
+                kinds?: string | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HistoryAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    checkpoint_api_v1_history_checkpoint_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Checkpoint"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    export_api_v1_history_export_get: {
+        parameters: {
+            query?: {
+                after?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/x-ndjson": string;
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    look_back_api_v1_history__number__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["MomentView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    take_branch_api_v1_history__number__branch_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                number: number;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BranchBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BranchView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -3100,6 +5336,48 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    decide_api_v1_outputs_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DecisionBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -3533,7 +5811,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["StartBody"];
+                "application/json": components["schemas"]["ReasonBody"];
             };
         };
         responses: {
@@ -3586,6 +5864,88 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    enter_restart_api_v1_restart_enter_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ReasonBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    leave_restart_api_v1_restart_leave_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ReasonBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -3662,6 +6022,51 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_service_api_v1_service__of___name__put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                of: components["schemas"]["ServiceKind"];
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ServiceBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -3910,6 +6315,88 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_stepping_api_v1_stepping_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SteppingBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    take_step_api_v1_stepping_step_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ReasonBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -4275,6 +6762,86 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    why_not_goal_api_v1_why_not_goal_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["GoalBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WhyNotView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    why_not_api_v1_why_not__of___name__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                of: "ability" | "operation";
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WhyNotView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {

@@ -24,6 +24,14 @@ export type Analysis = Schemas['AnalysisDocument'];
 export type Trace = Schemas['TraceDocument'];
 export type Priority = Schemas['Priority'];
 export type Mode = Schemas['Mode'];
+export type PackML = Schemas['PackML'];
+export type AlarmState = Schemas['AlarmState'];
+export type Force = Schemas['ForceView'];
+export type OutOfService = Schemas['ServiceView'];
+export type Errand = Schemas['ErrandView'];
+export type LastErrand = Schemas['LastErrandView'];
+export type Question = Schemas['QuestionView'];
+export type UndecidedOutput = Schemas['UndecidedOutputView'];
 export type Value = NonNullable<Variable['value']>;
 
 export type SessionAnswer = Schemas['SessionAnswer'];
@@ -53,13 +61,17 @@ export type AuditRecord = Schemas['Record'];
 export type AuditAnswer = Schemas['AuditAnswer'];
 export type Outcome = Schemas['Outcome'];
 
+/** Written as a record, so that the compiler misses the name of a map that is not here. */
+const MERGED: Record<keyof Schemas['StationRemoval'], true> = {
+	resources: true,
+	variables: true,
+	abilities: true,
+	operations: true,
+	tasks: true,
+	topics: true,
+	overrides: true,
+	alarms: true
+};
+
 /** The fields of the document that are maps: a delta merges into them and `removed` names the keys that are gone. */
-export const MAPS = [
-	'resources',
-	'variables',
-	'abilities',
-	'operations',
-	'tasks',
-	'topics',
-	'alarms'
-] as const satisfies readonly (keyof Schemas['StationRemoval'])[];
+export const MAPS = Object.keys(MERGED) as (keyof typeof MERGED)[];

@@ -14,10 +14,10 @@ export class ControlSeen {
 		holderOf(this.holds, this.#session.id, this.#session.kind === 'person' ? (this.#session.person?.id ?? null) : null)
 	);
 	readonly mine: boolean = $derived(this.holder === 'you');
-	/** Something is wanted that needs it, and nobody has it: the station is paused, or waits for the start of production. */
+	/** Something is wanted that needs it, and nobody has it: the station does not work by itself, or waits for the start of production. */
 	readonly wanted: boolean = $derived.by(() => {
 		const view = this.#station.view;
-		return view !== null && view.control === null && (view.mode === 'paused' || view.production === 'waiting');
+		return view !== null && view.control === null && (view.mode !== 'automatic' || view.production === 'waiting');
 	});
 
 	constructor(station: Station, session: Session) {

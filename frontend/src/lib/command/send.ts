@@ -4,18 +4,59 @@
  * A command succeeds or is refused; a refusal carries words for the person. What a command did is never taken from its
  * answer: it shows in the stream.
  */
-import type { Mode } from '#lib/contract.ts';
+import type { Alarm, Mode, OutOfService, Value } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { command } from '#lib/rest/request.ts';
 
-/** Changes the mode of execution. */
-export function setMode(mode: Mode): Promise<Refusal | null> {
+/** Changes the mode of execution. Restart mode has a way in and a way out of its own. */
+export function setMode(mode: Exclude<Mode, 'restart'>): Promise<Refusal | null> {
 	return command('PUT', '/api/v1/mode', { body: { mode } });
 }
 
 /** Allows outputs to be published. */
 export function startProduction(): Promise<Refusal | null> {
 	return command('POST', '/api/v1/production/start', { body: {} });
+}
+
+/** Has the operations wait for a restart. Nothing is started by it. */
+export function enterRestart(): Promise<Refusal | null> {
+	return command('POST', '/api/v1/restart/enter', { body: {} });
+}
+
+/** Leaves restart mode for the paused one; to go on is another act. */
+export function leaveRestart(): Promise<Refusal | null> {
+	return command('POST', '/api/v1/restart/leave', { body: {} });
+}
+
+/** Starts no further what is being carried out. */
+export function stopErrand(): Promise<Refusal | null> {
+	return command('POST', '/api/v1/errands/stop', { body: {} });
+}
+
+/** Says that the alarm `key` has been seen as it was shown. 409: it has come again since. */
+export function acknowledgeAlarm(key: string, alarm: Alarm): Promise<Refusal | null> {
+	return command('POST', '/api/v1/alarms/acknowledge', { body: { alarm: key, since: alarm.since } });
+}
+
+/** Puts back into service what was taken out of it. */
+export function putBack({ of, name }: OutOfService, reason: string): Promise<Refusal | null> {
+	const path = `/api/v1/service/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;
+	return command('PUT', path, { body: { in_service: true, reason } });
+}
+
+/** Decides which values outputs shall have that came back from the journal. */
+export function decideOutputs(values: Readonly<Record<string, Value>>, reason: string): Promise<Refusal | null> {
+	return command('PUT', '/api/v1/outputs', { body: { values, reason } });
+}
+
+/** Says that the estimates are as believed. 409: one of them is another by now. */
+export function confirmEstimates(values: Readonly<Record<string, Value>>, reason: string): Promise<Refusal | null> {
+	return command('POST', '/api/v1/corrections/confirm', { body: { values, reason } });
+}
+
+/** Lets a forced variable be as it comes. */
+export function releaseForce(name: string): Promise<Refusal | null> {
+	return command('DELETE', `/api/v1/forces/${encodeURIComponent(name)}`);
 }
 
 /** Says that the task `id` is done as it was shown in `revision`. 404 or 409: it is gone. */

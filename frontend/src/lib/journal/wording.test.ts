@@ -37,6 +37,8 @@ test('on what it was done is said by its title, and with what was changed', () =
 	expect(subjectText(record('set-override', 'override ur10.speed', { fields: { speed: 0.25 } }))).toBe(
 		'override ur10.speed, speed = 0.25'
 	);
+	const corrected = record('correct-estimates', 'bolts[bolt_pair_1]', { values: { 'bolts[bolt_pair_1]': 'empty' } });
+	expect(subjectText(corrected)).toBe('bolts[bolt_pair_1] = empty');
 });
 
 test('why it was refused, and every detail, can be read', () => {

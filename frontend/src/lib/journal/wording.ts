@@ -5,6 +5,24 @@ import type { Actor, AuditRecord, Outcome } from '#lib/contract.ts';
 export const ACTS: Readonly<Record<string, string>> = {
 	'set-mode': 'Changed the mode',
 	'start-production': 'Started production',
+	'enter-restart': 'Entered restart mode',
+	'leave-restart': 'Left restart mode',
+	'set-stepping': 'Changed stepping',
+	'take-step': 'Allowed one start',
+	'set-service': 'Changed what is in service',
+	'correct-estimates': 'Corrected estimates',
+	'undo-correction': 'Took back a correction',
+	'confirm-estimates': 'Confirmed estimates',
+	'decide-outputs': 'Decided on outputs',
+	'take-errand': 'Took a plan to be carried out',
+	'stop-errand': 'Stopped what was carried out',
+	'force-variable': 'Forced a variable',
+	'release-force': 'Released a forced variable',
+	'acknowledge-alarm': 'Acknowledged an alarm',
+	'shelve-alarm': 'Shelved an alarm',
+	'unshelve-alarm': 'Took an alarm off the shelf',
+	'suppress-alarm': 'Took an alarm out of service',
+	'restore-alarm': 'Put an alarm back into service',
 	'acknowledge-task': 'Said that a task is done',
 	'set-override': 'Set an override',
 	'clear-override': 'Took back an override',
@@ -90,6 +108,10 @@ export function subjectText(record: AuditRecord): string {
 			return [subject, ...changes(details)].join(', ');
 		case 'set-override':
 			return [subject, ...settings(details['fields'])].join(', ');
+		case 'correct-estimates':
+		case 'confirm-estimates':
+		case 'decide-outputs':
+			return settings(details['values']).join(', ') || subject;
 		default:
 			return subject;
 	}

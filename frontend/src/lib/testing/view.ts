@@ -1,5 +1,5 @@
 /** Documents for tests: a small station, with what a test is about put in. */
-import type { Plan, PlanStep, StationView, Task } from '#lib/contract.ts';
+import type { Alarm, Plan, PlanStep, StationView, Task, Variable } from '#lib/contract.ts';
 
 export const PLAN: Plan = {
 	status: 'followed',
@@ -37,19 +37,62 @@ export function task(created: number): Task {
 	return { revision: 1, ...place, created, next_moves: [] };
 }
 
+export function alarm(rest: Partial<Alarm> = {}): Alarm {
+	return {
+		priority: 'medium',
+		state: 'unacknowledged',
+		text: 'The robot is silent',
+		consequence: 'Nothing is started with it',
+		action: 'Look at it',
+		since: 990,
+		ended: null,
+		by: null,
+		until: null,
+		why: null,
+		count: 1,
+		parts: [],
+		...rest
+	};
+}
+
+/** An estimated variable. */
+export function estimate(rest: Partial<Variable> = {}): Variable {
+	return {
+		resource: null,
+		kind: 'estimated',
+		value: 'placed',
+		domain: ['empty', 'placed'],
+		since: 900,
+		awaits: null,
+		belief: { writer: 'operator.place', at: 900, evidence: [], unconfirmed_since: null },
+		...rest
+	};
+}
+
 export function view(rest: Partial<StationView> = {}): StationView {
 	const station = { name: 'station', title: 'Station', description: '', transport: 'dds', emulated: true };
 	return {
 		station,
 		tick: 0,
 		time: 1000,
+		revision: 0,
 		mode: 'automatic',
+		packml: 'execute',
+		stepping: false,
 		production: 'started',
+		unconfirmed: false,
+		undecided: {},
 		resources: {},
 		variables: {},
 		abilities: {},
 		operations: {},
 		plan: PLAN,
+		errand: null,
+		last_errand: null,
+		forces: {},
+		out_of_service: [],
+		questions: [],
+		last_correction: null,
 		tasks: {},
 		topics: {},
 		overrides: {},

@@ -1,7 +1,41 @@
 /** How the state of execution is said. */
-import type { Mode, Plan, StationView } from '#lib/contract.ts';
+import type { Mode, PackML, Plan, StationView } from '#lib/contract.ts';
 
-export const MODES: Record<Mode, string> = { automatic: 'Automatic', paused: 'Paused' };
+export const MODES: Record<Mode, string> = {
+	automatic: 'Automatic',
+	paused: 'Paused',
+	hold: 'Hold',
+	restart: 'Restart'
+};
+
+/** What a mode means for what happens next, once production is started. */
+const MEANING: Record<Mode, string> = {
+	automatic: 'Operations are carried out.',
+	paused: 'What runs may finish; nothing is started.',
+	hold: 'Nothing is started, and what ran was called off where that is possible.',
+	restart: 'Operations wait. Nothing is started but what a person has looked at and taken.'
+};
+
+/** What happens next, and what does not. */
+export function modeMeaning({ mode, production }: Pick<StationView, 'mode' | 'production'>): string {
+	if (production === 'started') return MEANING[mode];
+	const nothing = 'Nothing is sent to the devices until production is started.';
+	return mode === 'automatic' ? nothing : `${MEANING[mode]} ${nothing}`;
+}
+
+/** The states of PackML by the names that the standard has for them. */
+export const PACKML: Record<PackML, string> = {
+	resetting: 'Resetting',
+	idle: 'Idle',
+	execute: 'Execute',
+	suspended: 'Suspended',
+	holding: 'Holding',
+	held: 'Held',
+	stopping: 'Stopping',
+	stopped: 'Stopped',
+	aborted: 'Aborted',
+	clearing: 'Clearing'
+};
 
 export const PRODUCTION: Record<StationView['production'], string> = {
 	preparing: 'preparing: nothing moves yet',
@@ -10,7 +44,7 @@ export const PRODUCTION: Record<StationView['production'], string> = {
 };
 
 export const PLAN_STATUS: Record<Plan['status'], string> = {
-	idle: 'Nothing to plan: no operation is active',
+	idle: 'Nothing to plan',
 	planning: 'Planning',
 	followed: 'Followed',
 	broken: 'The station departed from the plan; a new one is being looked for',

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import { PLAN, step } from '#lib/testing/view.ts';
-import { planLength, planOrigin, plannerTime } from './station.ts';
+import { modeMeaning, planLength, planOrigin, plannerTime } from './station.ts';
 import { ageText, agoText, durationText } from './time.ts';
 import { valueText, variableName } from './values.ts';
 
@@ -63,6 +63,12 @@ test('a variable loses the name of its resource and its underscores', () => {
 
 test('values are said in words', () => {
 	expect([true, false, 3, 'above_engine'].map(valueText)).toEqual(['yes', 'no', '3', 'above engine']);
+});
+
+test('no mode is said to carry anything out before production is started', () => {
+	expect(modeMeaning({ mode: 'automatic', production: 'started' })).toBe('Operations are carried out.');
+	expect(modeMeaning({ mode: 'automatic', production: 'waiting' })).toMatch(/^Nothing is sent/);
+	expect(modeMeaning({ mode: 'restart', production: 'waiting' })).toMatch(/^Operations wait.* until production is started/);
 });
 
 test('a plan says how much of it is ahead, and when less might do', () => {

@@ -1,0 +1,37 @@
+import { describe, expect, test } from 'vitest';
+import type { Operation, StationView } from '#lib/contract.ts';
+import { PLAN, estimate, view } from '#lib/testing/view.ts';
+import { concernsRestart, unconfirmed } from './shown.ts';
+
+const active: Operation = {
+	title: 'Tighten',
+	active: true,
+	active_since: 990,
+	completed: 0,
+	goal: 'b == tightened',
+	precondition: 'b == placed',
+	left_out: false,
+	repeat: true
+};
+
+describe('the page speaks of a restart', () => {
+	const cases: [string, Partial<StationView>][] = [
+		['in any mode but the automatic one', { mode: 'hold' }],
+		['while estimates are not confirmed', { unconfirmed: true }],
+		['while outputs are not decided', { undecided: { 'robot.go': { value: true, reacts: [], quiet: [false] } } }],
+		['while belief and measurement disagree', { questions: [{ variable: 'b', believed: 1, possible: [2], because: [] }] }],
+		['when there is no plan for what is active', { plan: { ...PLAN, status: 'none' }, operations: { tighten: active } }]
+	];
+	test.each(cases)('%s', (_, over) => expect(concernsRestart(view(over))).toBe(true));
+
+	test('but not while the station works by itself', () => {
+		expect(concernsRestart(view())).toBe(false);
+		expect(concernsRestart(view({ plan: { ...PLAN, status: 'none' } }))).toBe(false);
+	});
+});
+
+test('unconfirmed are the estimates that nobody has seen since', () => {
+	const belief = { writer: 'place', at: 900, evidence: [], unconfirmed_since: 950 };
+	const variables = { b: estimate({ belief }), c: estimate(), 'robot.pose': estimate({ kind: 'measured', belief: null }) };
+	expect(unconfirmed(variables).map(([name]) => name)).toEqual(['b']);
+});
