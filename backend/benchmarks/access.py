@@ -26,6 +26,7 @@ from typing import Any
 import httpx
 from argon2 import PasswordHasher
 
+from sequence_planner.control.asks import AboutFlows
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.web.controller_client import ControllerClient
 
@@ -245,7 +246,7 @@ async def first_answer(client: ControllerClient) -> None:
     async with asyncio.timeout(PATIENCE):
         while True:
             with contextlib.suppress(CommandRefused):
-                await client.flows()
+                await client.ask(AboutFlows())
                 return
             await asyncio.sleep(0.05)
 
@@ -255,7 +256,7 @@ async def asked(client: ControllerClient) -> list[float]:
     times, end = [], time.monotonic() + SECONDS
     while time.monotonic() < end:
         began = time.perf_counter()
-        await client.flows()
+        await client.ask(AboutFlows())
         times.append((time.perf_counter() - began) * 1000)
         await asyncio.sleep(ASK_EVERY)
     return times

@@ -17,10 +17,10 @@ from sequence_planner.storage.database import Database
 from sequence_planner.storage.location import default_url
 
 
-def signed_in(model: Path, port: int) -> httpx.Client:
-    """The browser of an engineer at the station in the folder `model`, whose database is where it is by default."""
+def signed_in(model: Path, port: int, url: str | None = None) -> httpx.Client:
+    """The browser of an engineer at the station in the folder `model`; its database is at `url`, or by default."""
     now, name = time.time(), f"Engineer {secrets.token_hex(4)}"
-    with contextlib.closing(Database.open(default_url(model))) as database:
+    with contextlib.closing(Database.open(url or default_url(model))) as database:
         database.upgrade()
         with database.writing() as connection:
             person = people.create(connection, name, Role.ENGINEER, "none", SYSTEM, now, temporary=False)

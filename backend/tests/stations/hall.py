@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -134,12 +135,13 @@ def hall(folder: Path, speed: float = 1.0, seed: int = 0) -> Iterator[Hall]:
 
 @contextmanager
 def controlled(folder: Path) -> Iterator[RunningStation]:
-    """The controller of the station, with production started."""
+    """The controller of the station, with production started. It remembers nothing of another hall."""
     port, log = free_port(), folder / "controller.log"
-    process = started(log, "sequence_planner.cli", "run", str(MODEL), "--port", str(port))
+    model = shutil.copytree(REPOSITORY / MODEL, folder / MODEL.name)  # its database is its own
+    process = started(log, "sequence_planner.cli", "run", str(model), "--port", str(port))
     try:
         seen = RunningStation(process, port, log)
-        eventually(seen.up, 2 * PATIENCE)
+        eventually(seen.up, 4 * PATIENCE)
 
         def at_work() -> bool:
             try:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
@@ -79,7 +80,7 @@ def planned(operation: str, state: State) -> PlanAnswer:
     return planner.answer(PlanRequest(state, (goal,), 20.0, 60, Contract.FAST))
 
 
-def situation(values: dict[str, Value]) -> State:
+def situation(values: Mapping[str, Value | None]) -> State:
     """The initial state but for some values."""
     automaton = ready()[0].automaton
     return synchronise(automaton, {**initial_state(automaton), **values})
@@ -117,6 +118,23 @@ def test_a_person_who_takes_over_is_asked_to_tighten_by_hand() -> None:
     assert answer.plan is not None
     starts = [name for tick in answer.plan.ticks for name in tick.starts]
     assert starts == ["nutrunner.float", "operator.guide_nutrunner(AtBoltPair1TCPPose)"]
+
+
+@pytest.mark.parametrize("pose", [None, "UNKNOWN", PAIRS[0]])
+def test_the_nutrunner_is_taken_off_a_dead_robot_first_wherever_it_stands(pose: str | None) -> None:
+    dead: dict[str, Value | None] = {"robot.target_pose": PAIRS[0], "robot.pose": pose, "operator.takes_over": True}
+    answer = planned("tighten_bolt_pair(AtBoltPair1TCPPose)", situation(MOUNTED | PLACED | holding("ATLASTOOL") | dead))
+    assert answer.plan is not None
+    starts = [name for tick in answer.plan.ticks for name in tick.starts]
+    assert starts == ["operator.free_nutrunner", "operator.guide_nutrunner(AtBoltPair1TCPPose)"]
+
+
+def test_a_robot_that_is_switched_off_is_sent_nowhere() -> None:
+    station, _, _, _ = ready()
+    state = situation(KIT | MOUNTED | PLACED | holding("ATLASTOOL") | {"operator.takes_over": True})
+    robot = [ability for ability in station.automaton.abilities.values() if ability.resource == "robot"]
+    assert robot
+    assert not any(state[ability.flag("enabled")] for ability in robot)
 
 
 def test_an_emulated_lift_says_what_it_was_told() -> None:

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from core.budget import examples
 from core.choices import Choices, made_by
-from sequence_planner.emulation.truck_station.poses import PAIRS, POSES
+from sequence_planner.emulation.truck_station.poses import HOME, PAIRS, POSES
 from sequence_planner.emulation.truck_station.server import WorldServer
 from sequence_planner.emulation.truck_station.signals import NODES, put, read
 from sequence_planner.emulation.truck_station.world import World
@@ -182,6 +182,44 @@ def test_a_hand_and_the_robot_are_not_at_the_same_bolts() -> None:
     assert f"collision: the robot and a hand at {PAIRS[1]}" in world.verdict.wrong
 
 
+def test_a_robot_that_is_switched_off_is_pushed_home_and_goes_only_where_it_is_sent_once_it_is_on_again() -> None:
+    world = with_nutrunner()
+    world.person.takes_over = True
+    for pose in (PAIRS[0], "AboveKitJOINTPose"):
+        put(world, "ur10", {"pose": pose, "action": "MOVEL", "scaling": 1.0})
+        pass_time(world, 2)
+        assert world.arm.joints == POSES[HOME]
+    world.person.takes_over = False
+    put(world, "ur10", {"pose": "AboveKitJOINTPose", "action": "MOVEL", "scaling": 1.0})  # as its computer repeats it
+    pass_time(world, 2)
+    assert world.arm.joints == POSES[HOME]
+    go(world, "AboveEngineTCPPose")
+    assert not world.verdict.events
+
+
+def test_the_nutrunner_comes_off_a_robot_that_is_switched_off_and_tightens_by_hand() -> None:
+    world = with_nutrunner()
+    world.person.takes_over = True
+    for task in ("free", "none", "guide", "none", "guide", "none"):
+        put(world, "watch", {"task": task, "pair": PAIRS[0]})
+        pass_time(world, 9)
+    assert read(world, "rsp_ecu") == {"tool": None, "frame": False, "locked": False, "closed": True}
+    assert read(world, "tool_ecu")["home"] is True
+    assert [event for _, event in world.verdict.events] == [
+        "nutrunner taken off by hand",
+        f"bolt tightened: {PAIRS[0]} by hand",
+        f"bolt found tight: {PAIRS[0]} by hand",
+    ]
+
+
+def test_nobody_takes_the_nutrunner_off_a_robot_that_is_on() -> None:
+    world = with_nutrunner()
+    put(world, "watch", {"task": "free"})
+    pass_time(world, 9)
+    assert world.verdict.wrong == ["wrong task: no nutrunner can be taken off the robot"]
+    assert read(world, "rsp_ecu")["tool"] == "ATLASTOOL"
+
+
 def drawn_signals(choices: Choices) -> tuple[str, dict[str, object]]:
     """What a node might set, sensible or not."""
     node = choices.pick(NODES)
@@ -199,7 +237,7 @@ def drawn_signals(choices: Choices) -> tuple[str, dict[str, object]]:
         "goal": choices.pick(("kitting", "station", "home")),
         "read": choices.pick((True, False)),
         "release": choices.pick((True, False)),
-        "task": choices.pick(("none", "place", "guide", "sleep")),
+        "task": choices.pick(("none", "place", "guide", "free", "sleep")),
         "pair": choices.pick((*PAIRS, "elsewhere")),
     }
     return node, signals

@@ -1,0 +1,271 @@
+"""Ticks of a running station with its journal, beside planning, synthesis and fifty people who look on.
+
+Run with `make bench`. The truck engine station runs as its users run it, in processes of its own over DDS, with a
+database of SQLite on the disk; only its controller notes beside how long each turn with ticks took, on the wall, and
+how long after it what has happened was durable. Synthesis of the same station goes on all the time, and tasks are
+acknowledged at once. In the end the controller is killed again and again, and it is seen how long it takes until the
+station is shown again.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import os
+import signal
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+
+import httpx
+from websockets.asyncio.client import connect
+
+from sequence_planner.control.controller import Controller
+from sequence_planner.control.moment import Moment
+from sequence_planner.program import main as program
+
+STATION = Path(__file__).parents[2] / "models" / "truck_engine_station"
+DOMAIN = 1 + (os.getpid() + 5) % 100
+CLIENTS = 50
+SECONDS = 60.0
+RESTARTS = 7
+PATIENCE = 120.0  # seconds
+NOTES = "SEQUENCE_PLANNER_BENCHMARK_NOTES"
+
+
+def main() -> None:
+    """Measure and print."""
+    os.environ["ROS_DOMAIN_ID"] = str(DOMAIN)
+    with tempfile.TemporaryDirectory(prefix="ticking-") as folder, Parts(Path(folder)) as parts:
+        client = signed_in(parts.address)
+        wait_for(lambda: production(client) == "started")
+        print(f"alone, {SECONDS:g} s:", *parts.measured(client), sep="\n  ")
+        with parts.beside("synthesising"), parts.beside("clients", parts.address, session(client)):
+            time.sleep(5.0)  # until all of them look on
+            print(f"with synthesis and {CLIENTS} clients, {SECONDS:g} s:", *parts.measured(client), sep="\n  ")
+    took = sorted(restarts())
+    print(f"killed controller, to a live state: {statistics.median(took):.2f} s median, {took[-1]:.2f} s at most")
+
+
+def restarts() -> Iterator[float]:
+    """Seconds from the death of a controller until its station is shown again, as the launcher starts it anew."""
+    port = free_port()
+    command = [sys.executable, "-m", "sequence_planner.cli", "run", str(STATION), "--emulator", "--demonstration"]
+    launcher = subprocess.Popen([*command, "--port", str(port)], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    try:
+        client = signed_in(f"http://127.0.0.1:{port}")
+        wait_for(lambda: production(client) == "waiting")
+        for _ in range(RESTARTS):
+            time.sleep(5.0)  # until it rests
+            killed = controller_of(launcher.pid)
+            os.kill(killed, signal.SIGKILL)
+            began = time.monotonic()
+            while controller_of(launcher.pid) in (0, killed):
+                time.sleep(0.01)
+            wait_for(lambda: production(client) == "waiting", 0.01)
+            yield time.monotonic() - began
+    finally:
+        launcher.terminate()
+        launcher.wait(PATIENCE)
+
+
+def controller_of(launcher: int) -> int:
+    """The process id of the controller that a launcher has started; 0 while there is none."""
+    asked = ["ps", "-ww", "--ppid", str(launcher), "-o", "pid=,args="]
+    listed = subprocess.run(asked, capture_output=True, text=True, check=False).stdout
+    return next((int(line.split()[0]) for line in listed.splitlines() if " controller " in line), 0)
+
+
+def free_port() -> int:
+    """A port of the loopback that nobody uses."""
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        port: int = probe.getsockname()[1]
+        return port
+
+
+def signed_in(address: str) -> httpx.Client:
+    """Somebody who acts at a demonstration."""
+    client = httpx.Client(base_url=f"{address}/api/v1", timeout=10)
+
+    def opened() -> bool:
+        with contextlib.suppress(httpx.HTTPError):
+            return client.post("session/demonstration", json={}).status_code == httpx.codes.OK
+        return False
+
+    wait_for(opened)
+    return client
+
+
+class Parts:
+    """The processes of a station."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._socket = folder / "controller.socket"
+        self._notes = folder / "notes.jsonl"
+        self._port = free_port()
+        self.address = f"http://127.0.0.1:{self._port}"
+        self._environment = {
+            **os.environ,
+            "SEQUENCE_PLANNER_DATABASE": f"sqlite:///{folder / 'station.sqlite'}",
+            NOTES: str(self._notes),
+        }
+        self._running: list[subprocess.Popen[bytes]] = []
+
+    def __enter__(self) -> Parts:
+        model, link = str(STATION), ["--socket", str(self._socket)]
+        self._spawn("-m", "sequence_planner.cli", "emulate", model)
+        self._spawn(__file__, "controller", "controller", model, *link, "--emulated", "--start")
+        self._spawn(
+            *("-m", "sequence_planner.cli", "server", *link, "--model", model, "--demonstration"),
+            *("--port", str(self._port)),
+        )
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for process in self._running:
+            process.terminate()
+        for process in self._running:
+            process.wait(PATIENCE)
+
+    def measured(self, client: httpx.Client) -> Iterator[str]:
+        """What the controller notes meanwhile."""
+        begin = self._notes.stat().st_size
+        end = time.monotonic() + SECONDS
+        while time.monotonic() < end:
+            acknowledge(client)
+            time.sleep(0.1)
+        with self._notes.open() as file:
+            file.seek(begin)
+            notes = [json.loads(line) for line in file if line.endswith("\n")]
+        for name, what in (("step", "turns with ticks"), ("durable", "from there until durable")):
+            times = sorted(note[name] * 1000 for note in notes if name in note)
+            median, most = statistics.median(times), percentile(times)
+            yield f"{what}: {len(times)}, {median:.2f} ms median, {most:.2f} ms 99th percentile"
+
+    @contextmanager
+    def beside(self, what: str, *arguments: str) -> Iterator[None]:
+        """Something of this file that goes on meanwhile."""
+        process = self._spawn(__file__, what, *arguments)
+        try:
+            yield
+        finally:
+            process.terminate()
+            process.wait(PATIENCE)
+            self._running.remove(process)
+
+    def _spawn(self, *arguments: str) -> subprocess.Popen[bytes]:
+        quiet = subprocess.DEVNULL
+        process = subprocess.Popen([sys.executable, *arguments], env=self._environment, stdout=quiet, stderr=quiet)
+        self._running.append(process)
+        return process
+
+
+def controller(arguments: Sequence[str]) -> None:
+    """The controller's command, with its ticks timed."""
+    step, journalled = Controller._step, Controller._journalled
+    waiting: deque[tuple[int, float]] = deque()
+    notes = Path(os.environ[NOTES]).open("a", buffering=1)  # noqa: SIM115 - until the process ends
+
+    def timed(self: Controller, moment: Moment) -> None:
+        before, began = self.execution.ticks, time.perf_counter()
+        step(self, moment)
+        if self.execution.ticks > before:
+            now = time.perf_counter()
+            waiting.append((self._recorder.last, now))
+            notes.write(json.dumps({"step": now - began}) + "\n")
+
+    def heard(self: Controller) -> None:
+        journalled(self)
+        while waiting and waiting[0][0] <= self._writer.durable:
+            notes.write(json.dumps({"durable": time.perf_counter() - waiting.popleft()[1]}) + "\n")
+
+    Controller._step = timed  # type: ignore[method-assign]
+    Controller._journalled = heard  # type: ignore[method-assign]
+    sys.argv = ["sequence-planner", *arguments]
+    program()
+
+
+async def look_on(address: str, cookie: str) -> None:
+    """Fifty clients of the stream."""
+
+    async def client() -> None:
+        url = address.replace("http", "ws") + "/api/v1/stream"
+        async with connect(url, additional_headers={"Cookie": cookie}, origin=address) as stream:  # type: ignore[arg-type]
+            async for _ in stream:
+                pass
+
+    await asyncio.gather(*(client() for _ in range(CLIENTS)))
+
+
+def synthesise() -> None:
+    """The safe states of the station, over and over, computed anew each time."""
+    with tempfile.TemporaryDirectory() as cache:
+        environment = {**os.environ, "XDG_CACHE_HOME": cache}
+        command = [sys.executable, "-m", "sequence_planner.cli", "synthesize", str(STATION)]
+        process: list[subprocess.Popen[bytes]] = []
+
+        def end(*_: object) -> None:
+            for each in process:
+                each.kill()
+            sys.exit()
+
+        signal.signal(signal.SIGTERM, end)
+        while True:
+            process[:] = [subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL)]
+            process[0].wait()
+            for file in Path(cache).rglob("*.json"):
+                file.unlink()
+
+
+def session(client: httpx.Client) -> str:
+    """The cookies of somebody signed in, as a header has them."""
+    return "; ".join(f"{name}={value}" for name, value in client.cookies.items())
+
+
+def acknowledge(client: httpx.Client) -> None:
+    """Whatever waits for a person is done."""
+    for id_, task in client.get("tasks").json()["tasks"].items():
+        client.post(f"tasks/{id_}/acknowledgement", json={"revision": task["revision"]})
+
+
+def production(client: httpx.Client) -> str | None:
+    """Whether it has been started."""
+    with contextlib.suppress(httpx.HTTPError):
+        return str(client.get("station").json().get("production"))
+    return None
+
+
+def percentile(times: Sequence[float]) -> float:
+    """The 99th of sorted times."""
+    return times[min(len(times) - 1, int(len(times) * 0.99))]
+
+
+def wait_for(condition: Callable[[], bool], every: float = 0.1) -> None:
+    """Return when it is true; raises `TimeoutError`."""
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        if time.monotonic() > end:
+            raise TimeoutError("the station did not come up")
+        time.sleep(every)
+
+
+if __name__ == "__main__":
+    match sys.argv[1:]:
+        case []:
+            main()
+        case ["controller", *rest]:
+            controller(rest)
+        case ["clients", address, cookie]:
+            asyncio.run(look_on(address, cookie))
+        case ["synthesising"]:
+            synthesise()

@@ -1,0 +1,334 @@
+"""A controller that is killed at many points: its devices and its operator are in another process, and live on.
+
+It is the whole controller with its journal, and this process forks it, so that it needs no time to import and prepare
+itself. Its network is a pipe, and it plans in its own process: nothing of it is left when it is killed. Real processes
+on a real network are killed in `killing`, at fewer points.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import json
+import logging
+import os
+import random
+import select
+import signal
+import socket
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from pathlib import Path
+from typing import Any
+from unittest.mock import patch
+
+import structlog
+
+from control.rig import truck_engine
+from running.judging import Judge, Kept
+from running.wire import Wire
+from sequence_planner.actor import SYSTEM
+from sequence_planner.control import questions
+from sequence_planner.control.answering_process import Listener
+from sequence_planner.control.commands import AcknowledgeTask, CommandRefused, StartProduction
+from sequence_planner.control.controller import Controller
+from sequence_planner.control.heard import Heard
+from sequence_planner.control.process import what_is_known
+from sequence_planner.control.restart_commands import DecideOutputs
+from sequence_planner.control.view import Production, StationIdentity
+from sequence_planner.emulation.devices import EmulatedDevices
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.plan import Contract, PlanRequest, WayBackRequest
+from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.questions import Answer, Request
+from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
+from sequence_planner.planning.way_back import WaysBack
+from sequence_planner.ros.memory import MemoryNetwork
+from sequence_planner.ros.transport import Sample
+from sequence_planner.storage.database import Database
+
+SPEED = 20.0  # of the devices
+STEP, REPORT_EVERY = 0.01, 0.1  # seconds
+UNTIL_KILLED = 0.6  # seconds after it has done some work, at most
+PATIENCE = 240.0  # on a machine that is busy with much else
+SHOW_EVERY = 2.0
+IDENTITY = StationIdentity(name="truck", title="Truck", description="", transport="memory", emulated=True)
+
+
+@cache
+def truck_engine_ways() -> WaysBack:
+    """The ways back into the safe states of the truck engine station."""
+    station, supervisor, _ = truck_engine()
+    return WaysBack(station.automaton, supervisor.safe)
+
+
+class NearPlanner:
+    """Plans in a thread of this process; better plans, which take longer, it never finds."""
+
+    trouble = None
+
+    def __init__(self, planner: Planner, loop: asyncio.AbstractEventLoop, listener: Listener[Request, Answer]) -> None:
+        self._planner, self._loop, self._listener = planner, loop, listener
+        self._thread = ThreadPoolExecutor(1)
+        self.busy = False
+
+    def ask(self, request: Request) -> None:
+        self.busy = True
+        if not isinstance(request, PlanRequest) or request.contract is not Contract.MINIMAL:
+            self._thread.submit(self._work, request)
+
+    def _work(self, request: Request) -> None:
+        answer = self._answer(request)
+        self._loop.call_soon_threadsafe(self._tell, request, answer)
+
+    def _tell(self, request: Request, answer: Answer) -> None:
+        self.busy = False
+        self._listener.answered(request, answer)
+
+    def _answer(self, request: Request) -> Answer:
+        match request:
+            case PlanRequest():
+                return self._planner.answer(request)
+            case WayBackRequest():
+                return truck_engine_ways().answer(request, Budget.seconds(request.deadline))
+            case DiagnosisRequest():
+                return Diagnosis(None, ())
+
+    def call_off(self) -> None:
+        self.busy = False
+
+    def close(self) -> None:
+        """There is nothing to end."""
+
+
+class Child:
+    """What a forked process does: it is a controller, with somebody in front of it who decides what is asked."""
+
+    def __init__(self, url: str, line: socket.socket, seed: str) -> None:
+        self._url, self._line, self._chance = url, line, random.Random(seed)
+        self._rest = b""
+
+    async def live(self) -> None:
+        """Until it is killed."""
+        station, supervisor, planner = truck_engine()
+        loop, network, database = asyncio.get_running_loop(), MemoryNetwork(), Database.open(self._url)
+        relay = network.join(station.registry, "emulated_devices", loop)
+        for incoming in station.pipelines.incoming.values():
+            relay.advertise(incoming.topic.name, incoming.topic.type_name, incoming.topic.quality)
+        for outgoing in station.pipelines.outgoing.values():
+            relay.subscribe(outgoing.topic.name, outgoing.topic.type_name, outgoing.topic.quality, self._commanded)
+        self._relay = relay
+        self._types = {name: each.topic.type_name for name, each in station.pipelines.incoming.items()}
+        transport = network.join(station.registry, "sequence_planner", loop)
+        near = lambda automaton, supervisor, loop, listener: NearPlanner(planner, loop, listener)  # noqa: E731
+        with patch.object(questions, "PlannerProcess", near):
+            controller = Controller(
+                IDENTITY, station, supervisor, transport, database, what_is_known(database, station.automaton)
+            )
+        controller.execution.listeners.append(self._heard)
+        self._controller = controller
+        loop.add_reader(self._line, self._hear)
+        await asyncio.gather(controller.run(), self._operate(), self._tell_durable(), self._show())
+
+    def _say(self, *words: object) -> None:
+        self._line.sendall(json.dumps(words).encode() + b"\n")
+
+    def _commanded(self, samples: Sequence[Sample]) -> None:
+        for sample in samples:
+            self._say("commanded", sample.topic, sample.data.hex())
+
+    def _heard(self, heard: Heard) -> None:
+        if heard.outcome is not None and (heard.outcome.started or heard.outcome.ended):
+            self._say("worked")
+
+    def _hear(self) -> None:
+        *lines, self._rest = (self._rest + self._line.recv(1 << 16)).split(b"\n")
+        for line in lines:
+            topic, data = json.loads(line)
+            self._relay.publish(topic, self._types[topic], bytes.fromhex(data))
+
+    async def _tell_durable(self) -> None:
+        said = 0
+        while True:
+            if (durable := self._controller._writer.durable) != said:
+                said = durable
+                self._say("durable", said)
+            await asyncio.sleep(0.002)
+
+    async def _show(self) -> None:
+        while True:
+            await asyncio.sleep(SHOW_EVERY)
+            view = self._controller.view()
+            alarms = [f"{each.text} {each.action}" for each in view.alarms.values() if each.ended is None]
+            self._say("shown", view.production, view.plan.status, view.plan.reason, list(view.undecided), alarms)
+
+    async def _operate(self) -> None:
+        """Decide on outputs, start production, and do what people are asked to do."""
+        controller = self._controller
+        while True:
+            await asyncio.sleep(0.02)
+            with contextlib.suppress(CommandRefused):
+                if controller.execution.blind:
+                    continue
+                if controller.execution.production is Production.WAITING:
+                    for name, each in controller.view().undecided.items():
+                        value = self._chance.choice([each.value, *each.quiet])
+                        decision = DecideOutputs(actor=SYSTEM, values={name: value}, reason="looked at")
+                        await controller.command(decision)
+                        self._say("seen", "outputs decided on")
+                    await controller.command(StartProduction(actor=SYSTEM))
+                else:
+                    for task in list(controller.desk.open.values()):
+                        acknowledged = AcknowledgeTask(actor=SYSTEM, task=task.id, revision=task.revision)
+                        await controller.command(acknowledged)
+
+
+class Hall:
+    """The devices, which go on whatever becomes of their controller."""
+
+    def __init__(self, folder: Path, seed: str) -> None:
+        self._url = f"sqlite:///{folder}/station.sqlite"
+        self._chance = random.Random(seed)
+        self._seed = seed
+        station, self._supervisor, _ = truck_engine()
+        self._station = station
+        self._devices = EmulatedDevices(station.automaton, station.pipelines, SPEED, self._chance.randrange(1000))
+        self._wire = Wire(station)
+        self._durable = 0
+        self._shown: list[object] = []
+        self.seen: Counter[str] = Counter()
+        with contextlib.closing(Database.open(self._url)) as database:
+            database.upgrade()
+            self._kept = Kept(database)
+
+    def live(self, number: int, *, kill: bool = True) -> None:
+        """One life of the controller. AssertionError when it does no work, or something is lost by its death."""
+        line, theirs = socket.socketpair()
+        child = os.fork()
+        if child == 0:
+            line.close()
+            _be_child(Child(self._url, theirs, f"{self._seed}.{number}"))
+        theirs.close()
+        try:
+            how = "after work" if not kill or self._chance.random() < 0.8 else "at any moment"
+            self._go_on(line, how)
+        finally:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+        self._take_rest(line)
+        line.close()
+        self.seen[f"controllers killed {how}"] += 1
+        with contextlib.closing(Database.open(self._url)) as database:
+            self._kept.database = database
+            self._kept.look()
+        assert self._kept.end.number >= self._durable, f"{self._durable} was durable, {self._kept.end.number} is there"
+
+    def _go_on(self, line: socket.socket, how: str) -> None:
+        """Let devices and controller work together until it is to be killed."""
+        began = time.monotonic()
+        end = None if how == "after work" else began + self._chance.uniform(0, UNTIL_KILLED)
+        self._rest, said = b"", dict[str, tuple[float, bytes]]()
+        while end is None or time.monotonic() < end:
+            now = time.monotonic()
+            truth = {name: self._devices.state[name] for name in self._devices.topics}
+            assert end is not None or now - began < PATIENCE, f"nothing goes on: {truth} {self._shown}"
+            self._devices.advance(now)
+            for topic, pipeline in self._station.pipelines.incoming.items():
+                message = self._devices.report(topic)
+                data = self._station.registry.encode(pipeline.topic.type_name, message)
+                due, last = said.get(topic, (0.0, b""))
+                if data != last or now >= due:
+                    said[topic] = now + REPORT_EVERY, data
+                    line.sendall(json.dumps([topic, data.hex()]).encode() + b"\n")
+            if self._take(line) and end is None:
+                end = time.monotonic() + self._chance.uniform(0, UNTIL_KILLED)
+
+    def _take(self, line: socket.socket) -> bool:
+        """What the controller says within a step; whether it has worked."""
+        readable, _, _ = select.select([line], [], [], STEP)
+        return bool(readable) and self._understand(line.recv(1 << 16))
+
+    def _take_rest(self, line: socket.socket) -> None:
+        """What it has said before it died."""
+        with contextlib.suppress(ConnectionResetError):
+            while data := line.recv(1 << 16):
+                self._understand(data)
+
+    def _understand(self, data: bytes) -> bool:
+        assert data, "the controller has ended by itself"
+        *lines, self._rest = (self._rest + data).split(b"\n")
+        worked = False
+        for each in lines:
+            what, *about = json.loads(each)
+            if what == "commanded":
+                topic, command = about[0], bytes.fromhex(about[1])
+                self._wire.take([Sample(topic, command, 0.0)])
+                type_name = self._station.pipelines.outgoing[topic].topic.type_name
+                assert not self._devices.command(topic, self._station.registry.decode(type_name, command))
+            elif what == "durable":
+                self._durable = max(self._durable, about[0])
+            elif what == "shown":
+                self._shown = about
+            elif what == "seen":
+                self.seen[about[0]] += 1
+            worked = worked or what == "worked"
+        return worked
+
+    def judged(self) -> Counter[str]:
+        """All that was met; AssertionError when the journal and the devices say otherwise than they should."""
+        judge = Judge(self._station.automaton, self._supervisor)
+        with contextlib.closing(Database.open(self._url)) as database:
+            judge.judge(database)
+        for topic, heard in self._wire.heard.items():
+            judge.require_decided(topic, heard)
+            self.seen["commands heard by devices"] += len(heard)
+        self.seen["records"] += self._kept.end.number
+        self.seen["starts"] += judge.starts.total()
+        return self.seen
+
+
+def _be_child(child: Child) -> None:
+    try:
+        asyncio.run(child.live())
+    except BaseException:
+        logging.exception("the controller failed")
+    finally:
+        os._exit(1)
+
+
+def lives(seed: str, kills: int) -> Counter[str]:
+    """So many lives of a controller, and one that lives on. AssertionError when one of them is not as it should be."""
+    with tempfile.TemporaryDirectory() as folder:
+        hall = Hall(Path(folder), seed)
+        for number in range(kills):
+            hall.live(number)
+        hall.live(kills, kill=False)
+        return hall.judged()
+
+
+def apart(seed: str, kills: int) -> Counter[str]:
+    """The same in a process of its own, which has no threads and can be forked."""
+    done = subprocess.run(
+        [sys.executable, "-m", "running.forked", seed, str(kills)],
+        env={**os.environ, "PYTHONPATH": ":".join(sys.path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr[-4000:]
+    found: dict[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return Counter(found)
+
+
+if __name__ == "__main__":
+    structlog.configure(
+        wrapper_class=structlog.make_filtering_bound_logger(logging.WARNING),
+        logger_factory=structlog.PrintLoggerFactory(sys.stderr),
+    )
+    sys.stdout.write(json.dumps(lives(sys.argv[1], int(sys.argv[2]))) + "\n")

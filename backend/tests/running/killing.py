@@ -1,0 +1,224 @@
+"""A station whose processes are killed and started one by one, and an operator who brings it back to work."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import random
+import signal
+import subprocess
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import httpx
+
+from control.rig import truck_engine
+from running.judging import Judge, Kept
+from running.signing_in import signed_in
+from running.stations import MODEL, REPOSITORY, command, environment, eventually, free_port
+from running.wire import Wire, listening
+from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.storage.database import Database
+from sequence_planner.storage.environment import DATABASE
+
+SPEED = 10.0  # of the devices
+UNTIL_KILLED = 1.5  # seconds for which it works at most, until it is killed
+PATIENCE = 240.0  # on a machine that is busy with much else
+AT_WORK, AT_ONCE = "while it worked", "while it started"
+
+
+@dataclass
+class Mortal:
+    """The station in front of its operator. `seen` is what has been met."""
+
+    folder: Path
+    database: Database
+    wire: Wire
+    chance: random.Random
+    port: int = field(default_factory=free_port)
+    seen: Counter[str] = field(default_factory=Counter)
+    _parts: dict[str, subprocess.Popen[bytes]] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        self.kept = Kept(self.database)
+        self.url = f"sqlite:///{self.folder}/station.sqlite"
+        self.browser = signed_in(REPOSITORY / MODEL, self.port, self.url)
+
+    def start(self, part: str) -> None:
+        """Start one of its processes."""
+        socket = ("--socket", str(self.folder / "socket"))
+        arguments = {
+            "emulate": ("--speed", str(SPEED)),
+            "controller": (*socket, "--emulated"),
+            "server": (*socket, "--page", str(self.folder), "--port", str(self.port)),
+        }[part]
+        model = ("--model", str(MODEL)) if part == "server" else (str(MODEL),)
+        with (self.folder / f"{part}.log").open("ab") as log:
+            self._parts[part] = subprocess.Popen(
+                command(part, *model, *arguments),
+                cwd=REPOSITORY,
+                env={**environment(), DATABASE: self.url},
+                stdout=log,
+                stderr=log,
+            )
+
+    def kill(self, part: str) -> None:
+        """It has no time to end in good order."""
+        self._parts[part].send_signal(signal.SIGKILL)
+        self._parts[part].wait()
+
+    def end(self) -> None:
+        """All processes end in good order."""
+        for each in self._parts.values():
+            each.terminate()
+        for each in self._parts.values():
+            each.wait(timeout=20)
+
+    def children(self, part: str) -> list[int]:
+        """The processes that a part has started."""
+        listed = subprocess.run(
+            ["ps", "--ppid", str(self._parts[part].pid), "-o", "pid="], capture_output=True, text=True, check=False
+        )
+        return [int(line) for line in listed.stdout.split()]
+
+    def kill_workers(self) -> None:
+        """What the controller has started beside itself, such as its planner, is killed."""
+        for worker in self.children("controller"):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(worker, signal.SIGKILL)
+                self.seen["workers killed"] += 1
+
+    def production(self) -> str | None:
+        """What the station says of production; None while nobody answers."""
+        code = self._parts["controller"].poll()
+        assert code is None, f"the controller ended with {code}: {self.log('controller')}"
+        with contextlib.suppress(httpx.HTTPError):
+            answer = self.browser.get("station")
+            if answer.status_code == httpx.codes.OK:
+                return str(answer.json()["production"])
+        return None
+
+    def log(self, part: str) -> str:
+        """The last that a part has said."""
+        return (self.folder / f"{part}.log").read_text()[-3000:]
+
+    def wait(self, what: Callable[[], bool], why: str) -> None:
+        """Until that is true. AssertionError, with what the controller says, when it does not come true."""
+        try:
+            eventually(what, PATIENCE)
+        except AssertionError:
+            raise AssertionError(f"{why}: {self.shown()}\n{self.log('controller')}\n{self.log('server')}") from None
+
+    def shown(self) -> object:
+        """What the station shows."""
+        try:
+            return self.browser.get("station").json(), self.browser.get("plan").json()
+        except httpx.HTTPError as error:
+            return str(error)
+
+    def ask(self, method: str, path: str, body: dict[str, object]) -> httpx.Response:
+        """What is answered; control is taken where it is needed."""
+        answer = self.browser.request(method, path, json=body)
+        if answer.status_code == httpx.codes.CONFLICT and answer.json()["type"] == "/problems/control-needed":
+            self.browser.put("control", json={"over": None}).raise_for_status()
+            answer = self.browser.request(method, path, json=body)
+        return answer
+
+    def acknowledge(self) -> None:
+        """Do what people are asked to do. What has changed meanwhile is refused."""
+        for id_, task in self.browser.get("tasks").json()["tasks"].items():
+            self.ask("POST", f"tasks/{id_}/acknowledgement", {"revision": task["revision"]})
+
+    def begin_production(self) -> None:
+        """Decide what devices shall do, and start production."""
+        self.wait(lambda: self.production() == "waiting", "it is not up")
+
+        def started() -> bool:
+            station = self.browser.get("station").json()
+            for name, undecided in station["undecided"].items():
+                value = self.chance.choice([undecided["value"], *undecided["quiet"]])
+                answer = self.ask("PUT", "outputs", {"values": {name: value}, "reason": "looked at"})
+                self.seen["outputs decided on" if answer.is_success else "decisions refused"] += 1
+            answer = self.ask("POST", "production/start", {"reason": "looked at"})
+            if answer.status_code == httpx.codes.CONFLICT:
+                assert answer.json()["type"] in ("/problems/outputs-undecided",), answer.text
+            return answer.is_success
+
+        self.wait(started, "production cannot be started")
+
+    def get_back_to_work(self) -> None:
+        """Until something starts or finishes that was not done before. Nothing but what REST shows is known."""
+        self.begin_production()
+        self.kept.look()
+
+        def goes_on() -> bool:
+            self.acknowledge()
+            return any(_does_work(each) for each in self.kept.look())
+
+        self.wait(goes_on, "nothing goes on")
+
+    def killed(self) -> None:
+        """The controller is killed at some moment and started again; AssertionError if anything is lost by that."""
+        shown: dict[str, object] = {}
+        if self.chance.random() < 0.85:
+            self.get_back_to_work()
+            end = time.monotonic() + self.chance.uniform(0, UNTIL_KILLED)
+            while time.monotonic() < end:
+                self.acknowledge()
+                shown = self.browser.get("history?limit=1").json()["records"][0]
+                time.sleep(self.chance.uniform(0, 0.1))
+            self.seen[f"controllers killed {AT_WORK}"] += 1
+        else:
+            time.sleep(self.chance.uniform(0, 4 * UNTIL_KILLED))
+            self.seen[f"controllers killed {AT_ONCE}"] += 1
+        self.kill("controller")
+        self.kept.look()
+        assert not shown or self.kept.has(shown), f"a record that was shown is gone: {shown}"
+        self.start("controller")
+
+    def judged(self) -> Counter[str]:
+        """All that has been met; AssertionError when something happened twice, or should not have."""
+        self.kill("controller")  # or it would command more than the journal had when that was read
+        self.kept.look()
+        station, supervisor, _ = truck_engine()
+        judge = Judge(station.automaton, supervisor)
+        judge.judge(self.database)
+        for topic, heard in self.wire.heard.items():
+            judge.require_decided(topic, heard)
+            self.seen["commands heard by devices"] += len(heard)
+        self.seen["records"] += self.kept.end.number
+        self.seen["starts"] += judge.starts.total()
+        return self.seen
+
+
+@contextlib.contextmanager
+def mortal(seed: str) -> Iterator[Mortal]:
+    """The bolt tightening station with devices of its own, about to start."""
+    with contextlib.ExitStack() as stack:
+        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
+        database = Database.open(f"sqlite:///{folder}/station.sqlite")
+        stack.callback(database.close)
+        database.upgrade()
+        wire = stack.enter_context(listening(truck_engine()[0]))
+        station = Mortal(folder, database, wire, random.Random(seed))
+        stack.callback(station.end)
+        for part in ("emulate", "server", "controller"):
+            station.start(part)
+        yield station
+
+
+def lives(seed: str, kills: int) -> Counter[str]:
+    """A station whose controller is killed so many times. AssertionError when anything is not as it should be."""
+    with mortal(seed) as station:
+        for _ in range(kills):
+            station.killed()
+        station.get_back_to_work()
+        return station.judged()
+
+
+def _does_work(record: RunRecord) -> bool:
+    return any(f'"{what}":[' in record.content for what in ("started", "ended"))
