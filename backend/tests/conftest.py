@@ -35,13 +35,48 @@ ALONE = (
     "pipelines/test_stage_python.py",
     "test_tutorial.py",
 )
+# Of those, what neither runs anything nor looks at the clock.
+TOGETHER = (
+    "control/alarming/test_causes.py",
+    "control/alarming/test_folding.py",
+    "control/alarming/test_life.py",
+    "control/test_asking_decisions.py",
+    "control/test_belief.py",
+    "control/test_conduct.py",
+    "control/test_contradictions.py",
+    "control/test_device_faults.py",
+    "control/test_example_stations.py",
+    "control/test_execution.py",
+    "control/test_forcing.py",
+    "control/test_release.py",
+    "control/test_responsible.py",
+    "control/test_standing_still.py",
+    "control/test_starts.py",
+    "control/test_tasks.py",
+    "control/test_ticks.py",
+    "control/test_trying_again.py",
+    "control/test_undecided.py",
+    "emulation/test_devices.py",
+    "emulation/test_fault_text.py",
+    "ros/test_ros_ament.py",
+    "ros/test_ros_definitions.py",
+    "ros/test_ros_interfaces.py",
+    "ros/test_ros_messages.py",
+    "stations/test_drivers.py",
+    "stations/test_faults_at_the_dock.py",
+    "stations/test_taking_over.py",
+)
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the tests that run alone."""
     for item in items:
-        if any(item.path.is_relative_to(TESTS / each) for each in ALONE):
+        if _is_in(item, ALONE) and not _is_in(item, TOGETHER):
             item.add_marker(pytest.mark.alone)
+
+
+def _is_in(item: pytest.Item, places: tuple[str, ...]) -> bool:
+    return any(item.path.is_relative_to(TESTS / each) for each in places)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -8,10 +8,10 @@ from running import forked, killing
 
 
 def test_a_controller_that_is_killed_again_and_again_loses_nothing_and_does_nothing_twice() -> None:
-    seen = forked.apart("sample", 12)
-    assert seen["controllers killed after work"] > 5
+    seen = forked.apart("sample", 6)
+    assert seen["controllers killed after work"] > 1
     assert seen["commands heard by devices"] > 0
-    assert seen["starts"] >= 6
+    assert seen["starts"] >= 2
 
 
 @pytest.mark.parametrize("seed", ["sample"])

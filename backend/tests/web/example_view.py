@@ -8,6 +8,7 @@ from sequence_planner.control.view import (
     AlarmState,
     AlarmView,
     BeliefView,
+    ForceView,
     Mode,
     OperationView,
     PackML,
@@ -22,6 +23,7 @@ from sequence_planner.control.view import (
     StepStatus,
     TaskView,
     TopicView,
+    UndecidedOutputView,
     VariableKind,
     VariableView,
 )
@@ -73,7 +75,11 @@ def example_view(**changes: object) -> StationView:
         stepping=False,
         production=Production.STARTED,
         unconfirmed=False,
-        undecided={},
+        undecided={
+            "robot.target_pose": UndecidedOutputView(
+                value="home", reacts=["robot reacts: robot.moving"], quiet=["above"]
+            )
+        },
         resources={
             "robot": ResourceView(title="Robot", online=True, awaited_topics=[]),
             "operator": ResourceView(title="Operator", online=True, awaited_topics=[]),
@@ -132,7 +138,7 @@ def example_view(**changes: object) -> StationView:
         ),
         errand=None,
         last_errand=None,
-        forces={},
+        forces={"robot.pose": ForceView(value="home", real="unknown", until=1700000100.0, by="Eva", why="a look")},
         out_of_service=[],
         questions=[],
         last_correction=None,

@@ -11,8 +11,11 @@ from .running import Server
 
 EDGES = ("coverage",)  # each edge of each schema once, and methods that are none
 UNREAD = {400, 405, 415}  # of requests that are refused before anybody asks who sends them
-# What takes a secret, a model of the station, or a demonstration.
+# What takes a secret, a model of the station, a person's resource, a demonstration, or what a running station makes in
+# time.
 NOT_GUESSED = {
+    "POST /api/v1/watches/offers",
+    "GET /api/v1/history/checkpoint",
     "POST /api/v1/first-administrator",
     "POST /api/v1/session",
     "POST /api/v1/session/demonstration",
@@ -20,6 +23,12 @@ NOT_GUESSED = {
     "POST /api/v1/ros/attachments",
     "POST /api/v1/watches/pairing",
     "GET /api/v1/watches/self",
+}
+
+# This server has no model to look back with, and says so with 503; `tests/history` asks one that has.
+WITHOUT_MODEL = {
+    "GET /api/v1/history/{number}: Server error: ",
+    "POST /api/v1/history/{number}/branch: Server error: ",
 }
 
 
@@ -32,7 +41,7 @@ def roles(server: Server) -> dict[str, str]:
 def test_an_administrator_finds_every_answer_as_it_is_described(tmp_path: Path) -> None:
     with station(tmp_path) as (server, _):
         found = fuzz(server, Role.ADMINISTRATOR, examples=5)
-        assert found.wrong == {}
+        assert found.wrong.keys() <= WITHOUT_MODEL, found.wrong
         assert found.statuses.keys() == roles(server).keys()
     undone = {operation for operation, seen in found.statuses.items() if min(seen) >= 300 and "{" not in operation}
     assert undone <= NOT_GUESSED

@@ -3436,6 +3436,8 @@ export interface components {
             abilities?: string[];
             /** Alarms */
             alarms?: string[];
+            /** Forces */
+            forces?: string[];
             /** Operations */
             operations?: string[];
             /** Overrides */
@@ -3446,6 +3448,8 @@ export interface components {
             tasks?: string[];
             /** Topics */
             topics?: string[];
+            /** Undecided */
+            undecided?: string[];
             /** Variables */
             variables?: string[];
         };

@@ -70,6 +70,8 @@ const MERGED: Record<keyof Schemas['StationRemoval'], true> = {
 	tasks: true,
 	topics: true,
 	overrides: true,
+	forces: true,
+	undecided: true,
 	alarms: true
 };
 

@@ -40,14 +40,14 @@ class AlarmBody(Body):
 class AcknowledgeBody(AlarmBody):
     """The alarm as it was seen, `since` when: none that came later is acknowledged by mistake."""
 
-    since: Annotated[float, Field(ge=0, allow_inf_nan=False)]
+    since: Annotated[float, Field(ge=0, allow_inf_nan=False, strict=True)]
 
 
 class ShelveBody(Body):
     """For how many seconds it is not to be told, and why."""
 
     alarm: Annotated[str, Field(min_length=1, max_length=400)]
-    seconds: Annotated[float, Field(gt=0, le=LONGEST_SHELVING)]
+    seconds: Annotated[float, Field(gt=0, le=LONGEST_SHELVING, strict=True)]
     reason: Why
 
 

@@ -74,7 +74,7 @@ class HistoryAnswer(View):
 class BranchBody(Body):
     """For how long to go on, and estimates that are other than they were."""
 
-    seconds: Annotated[float, Field(gt=0, le=MOST_SECONDS)]
+    seconds: Annotated[float, Field(gt=0, le=MOST_SECONDS, strict=True)]
     corrections: dict[str, GivenValue] = Field(default_factory=dict, max_length=200)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 from fastapi import APIRouter, Path
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from sequence_planner.control.production_commands import (
     EnterRestart,
@@ -60,14 +60,14 @@ class ReasonBody(Body):
 class SteppingBody(Body):
     """Whether every start is to wait for a step."""
 
-    on: bool
+    on: StrictBool
     reason: Reason = None
 
 
 class ServiceBody(Body):
     """Whether it is to be in service, and why."""
 
-    in_service: bool
+    in_service: StrictBool
     reason: Why
 
 
@@ -75,7 +75,7 @@ class ForceBody(Body):
     """The value that the variable is to have, for how many seconds, and why."""
 
     value: GivenValue
-    seconds: Annotated[float, Field(gt=0, le=LONGEST_FORCE)]
+    seconds: Annotated[float, Field(gt=0, le=LONGEST_FORCE, strict=True)]
     reason: Why
 
 

@@ -84,6 +84,8 @@ class StationRemoval(TypedDict, total=False):
     tasks: list[str]
     topics: list[str]
     overrides: list[str]
+    forces: list[str]
+    undecided: list[str]
     alarms: list[str]
 
 

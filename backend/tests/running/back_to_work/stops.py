@@ -8,6 +8,7 @@ from __future__ import annotations
 import os
 import random
 import signal
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar
@@ -23,7 +24,7 @@ Ways = dict[str, tuple[str, Callable[[], None]]]
 
 
 @dataclass
-class Stops:
+class Stops(ABC):
     """Whoever stops a station, at moments that `chance` draws."""
 
     station: RunningStation
@@ -31,9 +32,9 @@ class Stops:
     chance: random.Random
     pairs: ClassVar[Sequence[str]]  # of bolts
 
+    @abstractmethod
     def ways(self) -> Ways:
         """Each way to stop it by its name, with the way back that is meant."""
-        raise NotImplementedError
 
     def drawn(self, number: int) -> list[str]:
         """The names of so many ways: of each kind one, then any, in any order."""
