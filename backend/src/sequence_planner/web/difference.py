@@ -11,8 +11,7 @@ from typing import cast
 
 from pydantic import BaseModel
 
-from sequence_planner.control.override_view import OverrideView
-from sequence_planner.control.view import StationView, VariableView
+from sequence_planner.control.view import StationView
 from sequence_planner.web.stream_messages import StationChange, StationRemoval
 
 MAPS = tuple(StationRemoval.__annotations__)
@@ -28,7 +27,7 @@ def difference(old: StationView, new: StationView) -> tuple[StationChange, Stati
     for name in StationView.model_fields:
         before, after = getattr(old, name), getattr(new, name)
         if name not in MAPS:
-            if before != after:
+            if not _same(before, after):
                 changed[name] = after
             continue
         if entries := changed_entries(before, after):
@@ -44,18 +43,21 @@ def changed_entries(old: Mapping[str, BaseModel], new: Mapping[str, BaseModel]) 
     return {key: entry for key, entry in new.items() if key not in old or not _same(old[key], entry)}
 
 
-def _same(old: BaseModel, new: BaseModel) -> bool:
+def _same(old: object, new: object) -> bool:
+    """Whether both are written as the same JSON, as far as these views go: equal, and of the same types throughout."""
+    return old is new or (old == new and _same_types(old, new))
+
+
+def _same_types(old: object, new: object) -> bool:
+    """Whether what is equal is also of the same types, down to the values in it."""
     if old is new:
         return True
-    if old != new:
+    if type(old) is not type(new):
         return False
-    return _types(old) == _types(new)
-
-
-def _types(entry: BaseModel) -> list[type]:
-    """The types of the values in it that can be of several."""
-    if isinstance(entry, VariableView):
-        return [type(value) for value in (entry.value, *entry.domain)]
-    if isinstance(entry, OverrideView):
-        return [type(value) for field in entry.fields.values() for value in (field.value, *(field.among or ()))]
-    return []
+    if isinstance(old, BaseModel):
+        return _same_types(old.__dict__, new.__dict__)
+    if isinstance(old, Mapping) and isinstance(new, Mapping):
+        return all(_same_types(value, new[key]) for key, value in old.items())
+    if isinstance(old, list | tuple) and isinstance(new, list | tuple):
+        return all(map(_same_types, old, new))
+    return True
