@@ -81,8 +81,12 @@ def _is_in(item: pytest.Item, places: tuple[str, ...]) -> bool:
 
 @pytest.fixture(scope="session", autouse=True)
 def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """A cache and databases of this run alone, also for the processes that it starts."""
+    """A cache and databases of this run alone, also for the processes that it starts; certificates of nobody.
+
+    Nothing leaves the loopback, and to read all that a machine trusts takes each client longer than most tests do.
+    """
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_CACHE_HOME", str(tmp_path_factory.mktemp("cache")))
         patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
+        patch.setenv("SSL_CERT_DIR", str(tmp_path_factory.mktemp("certificates")))
         yield

@@ -123,12 +123,26 @@ def test_one_step_of_undo() -> None:
     station = in_restart(Station())
     before = station.execution.state
     station.correct({BOLT: "placed"})
-    station.corrections.carry_out(UndoCorrection(actor=ADAM, reason="that was another one"), station.now)
+    shown = station.corrections.last
+    assert shown is not None
+    undo = UndoCorrection(actor=ADAM, revision=shown.revision, reason="that was another one")
+    station.corrections.carry_out(undo, station.now)
     assert station.execution.state == before
     assert station.beliefs.of(BOLT).writer == "Adam"
     assert station.corrections.last is None
-    again = UndoCorrection(actor=ADAM, reason="once more")
+    again = UndoCorrection(actor=ADAM, revision=shown.revision, reason="once more")
     assert refusal(lambda: station.corrections.carry_out(again, station.now)) == "nothing-to-undo"
+
+
+def test_no_undo_of_another_correction_than_the_one_that_was_seen() -> None:
+    station = in_restart(Station())
+    station.correct({BOLT: "placed"})
+    seen = station.corrections.last
+    assert seen is not None
+    station.correct({BOLT: "tightened"})
+    undo = UndoCorrection(actor=ADAM, revision=seen.revision, reason="it is not placed")
+    assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "state-moved"
+    assert station.execution.state[BOLT] == "tightened"
 
 
 def test_no_undo_over_what_has_happened_since() -> None:
@@ -137,7 +151,7 @@ def test_no_undo_over_what_has_happened_since() -> None:
     station.execution.correct({BOLT: "tightened"}, "Adam", "it is tight", station.now)
     assert station.corrections.last is not None
     assert not station.corrections.last.undoable
-    undo = UndoCorrection(actor=EVA, reason="not so")
+    undo = UndoCorrection(actor=EVA, revision=station.corrections.last.revision, reason="not so")
     assert refusal(lambda: station.corrections.carry_out(undo, station.now)) == "state-moved"
     assert station.execution.state[BOLT] == "tightened"
     station.execution.correct({BOLT: "placed"}, "Adam", "another one is placed", station.now)

@@ -185,6 +185,7 @@ def test_a_second_life_begins_with_what_the_first_has_left() -> None:
             second = looking_back(connection, AUTOMATON, SUPERVISOR, begun[1]).execution
         for name in AUTOMATON.names(Kind.ESTIMATED):
             assert second.state[name] == first.state[name]
+        assert second.revision >= first.revision > 0, "what was looked at in one life is never decided on in the next"
 
 
 def without_protection(database: Database) -> None:

@@ -19,17 +19,16 @@ from schemathesis import AuthContext, AuthProvider, Case, CheckContext, Response
 from schemathesis.engine import events, from_schema
 
 from control.test_network_watch import REPORTS
-from identity.cheap import cheap_passwords
 from sequence_planner.control.link import ControllerLink
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.sessions import find_session
-from sequence_planner.identity.sign_in import SignIn
 from sequence_planner.web.cookies import session_cookie
 from sequence_planner.web.settings import Settings
 
 from .running import Loop, Server, free_port, until
 from .test_looking import Telling, network
 
+MODEL = Path(__file__).parents[3] / "models" / "bolt_tightening"
 PHASES = ("examples", "coverage", "fuzzing", "stateful")
 PATIENCE = 10.0  # seconds
 MEDIA_TYPE = "application/problem+json"
@@ -67,7 +66,7 @@ def station(folder: Path) -> Iterator[tuple[Server, Telling]]:
     """A server all of whose operations have something to answer, and its controller; files go to `folder`."""
     database = f"sqlite:///{folder / 'station.sqlite'}"
     path = folder / "controller.sock"
-    settings = Settings(controller_socket=path, page=folder / "page", database=database, port=free_port())
+    settings = Settings(controller_socket=path, page=folder / "page", database=database, model=MODEL, port=free_port())
     loop = Loop()
     controller, server = Telling(loop, path), Server(loop, settings)
     controller.link = ControllerLink(path, controller.handle, controller.answer)
@@ -76,7 +75,6 @@ def station(folder: Path) -> Iterator[tuple[Server, Telling]]:
     try:
         until(lambda: httpx.get(f"{server.address}/healthz").json()["controller"] == "heard")
         controller.tell(network(REPORTS))
-        _hash_cheaply(server)
         yield server, controller
     finally:
         server.stop()
@@ -90,14 +88,6 @@ def documented(server: Server) -> dict[str, Any]:
         found: dict[str, Any] = client.get("/api/v1/openapi.json").raise_for_status().json()
     found["components"]["securitySchemes"]["session"]["name"] = session_cookie(server.settings)
     return found
-
-
-def _hash_cheaply(server: Server) -> None:
-    """Have the server hash with parameters that cost nothing, from now on."""
-    office = server.identity
-    office.passwords.close()
-    office.passwords = cheap_passwords()
-    office.sign_in = SignIn(office.database, office.passwords)
 
 
 def fuzz(server: Server, role: Role | None, *, examples: int, phases: Collection[str] = PHASES, seed: int = 1) -> Found:

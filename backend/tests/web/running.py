@@ -17,6 +17,7 @@ import uvicorn
 from fastapi import FastAPI
 from websockets.sync.client import ClientConnection, connect
 
+from identity.cheap import cheap_passwords
 from sequence_planner.actor import SYSTEM, ActorKind
 from sequence_planner.control.commands import AcknowledgeTask, Command, CommandRefused
 from sequence_planner.control.link import ControllerLink
@@ -25,6 +26,7 @@ from sequence_planner.identity import people
 from sequence_planner.identity.people import Person
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.sessions import SignedIn, open_session
+from sequence_planner.identity.sign_in import SignIn
 from sequence_planner.web.binding import bind
 from sequence_planner.web.cookies import session_cookie
 from sequence_planner.web.identity import IdentityOffice
@@ -123,7 +125,7 @@ class Controller:
 
 
 class Server:
-    """The server under uvicorn, on a free port."""
+    """The server under uvicorn, on a free port. Its passwords are hashed with parameters that cost nothing."""
 
     def __init__(self, loop: Loop, settings: Settings) -> None:
         self.loop = loop
@@ -145,6 +147,13 @@ class Server:
 
         self.loop.run(begin())
         until(lambda: self._uvicorn.started, 15)
+        self._hash_cheaply()
+
+    def _hash_cheaply(self) -> None:
+        office = self.identity
+        office.passwords.close()
+        office.passwords = cheap_passwords()
+        office.sign_in = SignIn(office.database, office.passwords)
 
     @property
     def identity(self) -> IdentityOffice:

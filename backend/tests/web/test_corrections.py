@@ -51,7 +51,12 @@ def operator(server: Server) -> Iterator[httpx.Client]:
             {"values": VALUES, "revision": 7, "reason": WHY},
             CorrectEstimates.model_construct(values=VALUES, revision=7, reason=WHY),
         ),
-        ("POST", "corrections/undo", {"reason": WHY}, UndoCorrection.model_construct(reason=WHY)),
+        (
+            "POST",
+            "corrections/undo",
+            {"revision": 3, "reason": WHY},
+            UndoCorrection.model_construct(revision=3, reason=WHY),
+        ),
         (
             "POST",
             "corrections/confirm",
@@ -103,7 +108,8 @@ def test_a_refused_preview_is_a_problem(operator: httpx.Client, controller: Aske
         ("POST", "corrections", {"values": VALUES, "revision": 7, "reason": ""}, "body.reason"),
         ("POST", "corrections", {"values": {}, "revision": 7, "reason": WHY}, "body.values"),
         ("POST", "corrections/preview", {}, "body.values"),
-        ("POST", "corrections/undo", {}, "body.reason"),
+        ("POST", "corrections/undo", {"revision": 7}, "body.reason"),
+        ("POST", "corrections/undo", {"reason": WHY}, "body.revision"),
         ("POST", "corrections/confirm", {"values": VALUES}, "body.reason"),
         ("PUT", "outputs", {"values": VALUES}, "body.reason"),
     ],

@@ -306,6 +306,8 @@ export interface paths {
         /**
          * Undo
          * @description Take the last correction back, as long as its variables have the values that it gave them. It takes control.
+         *
+         *     409 `state-moved` when they have others, or when the last correction was made on another revision.
          */
         post: operations["undo_api_v1_corrections_undo_post"];
         delete?: never;
@@ -2307,7 +2309,7 @@ export interface components {
         };
         /**
          * LastCorrectionView
-         * @description The last correction, which can be undone in one step while `undoable`.
+         * @description The last correction, made on `revision`; it can be undone in one step while `undoable`.
          */
         LastCorrectionView: {
             /** At */
@@ -2318,6 +2320,8 @@ export interface components {
             };
             /** By */
             by: string;
+            /** Revision */
+            revision: number;
             /** Undoable */
             undoable: boolean;
             /** Values */
@@ -2793,6 +2797,11 @@ export interface components {
         /**
          * PersonBody
          * @description A new person, with a password that has to be changed at the first sign-in.
+         * @example {
+         *       "name": "Ada",
+         *       "password": "seven quiet engines",
+         *       "role": "operator"
+         *     }
          */
         PersonBody: {
             /** Name */
@@ -3738,6 +3747,16 @@ export interface components {
             value: boolean | number | string;
         };
         /**
+         * UndoBody
+         * @description The revision on which the correction was made that is to be taken back, and why.
+         */
+        UndoBody: {
+            /** Reason */
+            reason: string;
+            /** Revision */
+            revision: number;
+        };
+        /**
          * ValuesBody
          * @description Estimated variables, each with the value that it is to have.
          */
@@ -3904,14 +3923,6 @@ export interface components {
             ticks: number | null;
             /** Violated */
             violated: components["schemas"]["SpecificationView"][];
-        };
-        /**
-         * WhyBody
-         * @description Why it is wanted.
-         */
-        WhyBody: {
-            /** Reason */
-            reason: string;
         };
         /**
          * WhyNotView
@@ -4659,7 +4670,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["WhyBody"];
+                "application/json": components["schemas"]["UndoBody"];
             };
         };
         responses: {

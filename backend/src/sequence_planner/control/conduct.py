@@ -59,7 +59,8 @@ class Beginning(Immutable):
 
     Nobody has seen since `unconfirmed_since` whether the estimates are still true; None where nothing came back. `done`
     are the operations that do not repeat and have been completed. It goes on in the same mode, and steps as before: who
-    had held the station finds it held.
+    had held the station finds it held. `revision` is higher than any that was shown before, so that nobody decides on a
+    state of another life.
     """
 
     values: Mapping[str, Value]
@@ -69,6 +70,7 @@ class Beginning(Immutable):
     now: Moment
     mode: Mode = Mode.AUTOMATIC
     stepping: bool = False
+    revision: int = 0
 
 
 class Conduct(Immutable):

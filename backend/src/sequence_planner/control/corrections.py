@@ -79,6 +79,7 @@ class Corrections:
         execution.correct(values, command.actor.name, command.reason, moment)
         self._stayed = True
         self._last = LastCorrectionView(
+            revision=command.revision,
             values=dict(values),
             before=before,
             by=command.actor.name,
@@ -92,6 +93,9 @@ class Corrections:
         if last is None:
             raise CommandRefused("nothing-to-undo", "There is nothing to undo", "No correction can be taken back.")
         self._require_allowed()
+        if command.revision != last.revision:
+            detail = f"The last correction is another one by now, made by {last.by}. Look at it, then decide."
+            raise CommandRefused("state-moved", "The state has moved", detail)
         if not self._stayed:
             detail = "Something that was corrected has got another value since. Look at the state and correct that."
             raise CommandRefused("state-moved", "The state has moved", detail)

@@ -63,7 +63,7 @@ class Course:
         self.plan = LivePlan(automaton, self._supervised)
         self.asked: PlanRequest | None = None  # of the planner, last
         self.ticks = 0
-        self.revision = 0
+        self.revision = 0 if beginning is None else beginning.revision
         self.obstacles: tuple[str, ...] = ()  # what keeps everything from starting, as one waits for it
         self.circumstances = Circumstances()
         self._face()

@@ -30,11 +30,12 @@ class CorrectEstimates(CommandBase):
 
 
 class UndoCorrection(CommandBase):
-    """The last correction is taken back, as long as its variables still have the values that it gave them."""
+    """The last correction, made on `revision`, is taken back, as long as its variables have the values that it gave."""
 
     kind: Literal["undo-correction"] = "undo-correction"
     for_control: ClassVar[bool] = True
     reason: Why
+    revision: int
 
 
 class ConfirmEstimates(CommandBase):

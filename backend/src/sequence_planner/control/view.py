@@ -369,8 +369,9 @@ class QuestionView(View):
 
 
 class LastCorrectionView(View):
-    """The last correction, which can be undone in one step while `undoable`."""
+    """The last correction, made on `revision`; it can be undone in one step while `undoable`."""
 
+    revision: int
     values: dict[str, Value]
     before: dict[str, Value]
     by: str

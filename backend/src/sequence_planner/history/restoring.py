@@ -96,6 +96,7 @@ class _Known:
             now,
             Mode(self._found["mode"]),
             bool(self._found["stepping"]),
+            self.record.number,  # each change of the state is in a record of its own, so there were fewer
         )
         return Restored(beginning, tuple(left_out))
 

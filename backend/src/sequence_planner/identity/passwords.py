@@ -57,7 +57,7 @@ class Passwords:
 
     def __init__(self, hasher: PasswordHasher | None = None, *, most_waiting: int = MOST_WAITING) -> None:
         self._hasher = hasher if hasher is not None else PasswordHasher()
-        self._nobodys = self._hasher.hash(new_token())
+        self._nobodys: str | None = None  # what nobody's password is compared with
         self._most, self._inside = most_waiting + 1, 0
         self._executor = ThreadPoolExecutor(1, "passwords", _give_way)
 
@@ -106,6 +106,8 @@ class Passwords:
         self._executor.shutdown(cancel_futures=True)
 
     def _verify(self, hashed: str | None, password: str) -> bool:
+        # Made with the first password that is checked, whosesoever that is: it tells nothing, and a start is quicker.
+        self._nobodys = self._nobodys or self._hasher.hash(new_token())
         tried = hashed if hashed and len(password) <= LONGEST else None
         try:
             right = self._hasher.verify(tried if tried is not None else self._nobodys, _bytes(password))

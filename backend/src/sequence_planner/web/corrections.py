@@ -47,9 +47,10 @@ class CorrectionBody(Body):
     reason: Why
 
 
-class WhyBody(Body):
-    """Why it is wanted."""
+class UndoBody(Body):
+    """The revision on which the correction was made that is to be taken back, and why."""
 
+    revision: Annotated[StrictInt, Field(ge=0, le=LARGEST_REVISION)]
     reason: Why
 
 
@@ -79,9 +80,12 @@ async def correct(body: CorrectionBody, client: Controller, actor: Actor) -> Non
 
 
 @router.post("/corrections/undo", status_code=204)
-async def undo(body: WhyBody, client: Controller, actor: Actor) -> None:
-    """Take the last correction back, as long as its variables have the values that it gave them. It takes control."""
-    await client.send(UndoCorrection(actor=actor, reason=body.reason))
+async def undo(body: UndoBody, client: Controller, actor: Actor) -> None:
+    """Take the last correction back, as long as its variables have the values that it gave them. It takes control.
+
+    409 `state-moved` when they have others, or when the last correction was made on another revision.
+    """
+    await client.send(UndoCorrection(actor=actor, revision=body.revision, reason=body.reason))
 
 
 @router.post("/corrections/confirm", status_code=204)

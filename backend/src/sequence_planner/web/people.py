@@ -66,6 +66,9 @@ class PeopleAnswer(BaseModel):
 class PersonBody(Body):
     """A new person, with a password that has to be changed at the first sign-in."""
 
+    model_config = ConfigDict(
+        json_schema_extra={"examples": [{"name": "Ada", "role": "operator", "password": "seven quiet engines"}]}
+    )
     name: Name
     role: Role
     password: Password
