@@ -21,7 +21,6 @@ ALONE = (
     "stations",
     "web/test_connections.py",
     "web/test_ending.py",
-    "web/test_guard.py",
     "web/test_looking.py",
     "web/test_stream.py",
     "web/test_watches.py",

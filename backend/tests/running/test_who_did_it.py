@@ -160,10 +160,13 @@ def test_the_journal_on_the_command_line_is_the_same_and_is_whole(hall: Hall, ad
     lines = [json.loads(line) for line in finished("journal", str(hall.model), "--jsonl").stdout.splitlines()]
     verified = finished("journal", str(hall.model), "--verify")
     assert verified.returncode == 0, verified.stderr
-    assert " records, all as they were written" in verified.stdout
-    number, records = int(verified.stdout.split()[0]), journal(ada)
+    who, what = verified.stdout.splitlines()[:2]
+    assert who.startswith("who did what: ")
+    assert what.startswith("what happened: ")
+    assert all(", all as they were written; " in each for each in (who, what))
+    number, records = int(who.removeprefix("who did what: ").split()[0]), journal(ada)
     assert len(lines) <= number <= len(records)  # the station goes on meanwhile
-    assert records[number - 1]["hash"] in verified.stdout
+    assert records[number - 1]["hash"] in who
     written = [(each["number"], each["hash"]) for each in records]
     assert [(each["number"], each["hash"]) for each in lines] == written[: len(lines)]
 

@@ -52,7 +52,8 @@ class Running:
     """What shall run, and how.
 
     `start` starts production without a person, for demonstrations: as soon as emulated devices and nothing else are
-    there to be commanded. `database` is the URL of where commands are recorded.
+    there to be commanded. These have just begun, so nothing is believed of them from before. `database` is the URL of
+    where commands are recorded.
     """
 
     station: ReadyStation
@@ -109,7 +110,9 @@ async def _live(running: Running, preparation: Preparation, recording: Recording
                 return
         transport = running.connect(NODE)
         try:
-            known = await asyncio.to_thread(what_is_known, database, running.station.automaton)
+            known = Known()
+            if not running.start:
+                known = await asyncio.to_thread(what_is_known, database, running.station.automaton)
             identity = _identity(running, transport.name)
             controller = Controller(identity, running.station, supervisor, transport, database, known)
             keep_everything()  # a running station must not be held up
