@@ -9,49 +9,99 @@ import errno
 import io
 import os
 import sys
+from typing import Any
 
 import typer
+from typer.core import TyperGroup
 
-from sequence_planner.cli import journal_replay, running, serving
-from sequence_planner.cli.attach import attach
-from sequence_planner.cli.check import check
-from sequence_planner.cli.edit import edit
-from sequence_planner.cli.export import export
-from sequence_planner.cli.journal import journal
-from sequence_planner.cli.new import new
-from sequence_planner.cli.people import people
-from sequence_planner.cli.plan import plan
-from sequence_planner.cli.show import show
-from sequence_planner.cli.synthesize import synthesize
-from sequence_planner.cli.tick import tick
-from sequence_planner.cli.topics import topics
+from sequence_planner.cli.put_off import PutOff
 
-app = typer.Typer(no_args_is_help=True, add_completion=False, help="Model and control automation stations on ROS 2.")
+# In the order of the help, with what it says of each: the first paragraph of what the command says of itself.
+COMMANDS = (
+    PutOff(
+        "new",
+        "new:new",
+        "Write a small station that can be checked and run at once, with comments that say what is what.",
+    ),
+    PutOff(
+        "check",
+        "check:check",
+        "Check a model: its documents, its pipelines, that its specifications can be met, "
+        "and what is suspicious in it.",
+    ),
+    PutOff(
+        "synthesize",
+        "synthesize:synthesize",
+        "Compute the supervisor of a model: how many states can be reached with and without it, "
+        "and the guards it adds.",
+    ),
+    PutOff(
+        "show",
+        "show:show",
+        "Show what a model means: its variables, ground abilities with their effects, operations and specifications.",
+    ),
+    PutOff(
+        "edit",
+        "edit:edit",
+        "Change one entry of a station's document, and print the difference. Comments and order stay.",
+    ),
+    PutOff("tick", "tick:tick", "Take one tick of the reference interpreter, and say what each of its steps did."),
+    PutOff(
+        "plan",
+        "plan:plan",
+        "Plan the goals of operations from the initial state, or from that of --state: what `tick --json` prints.",
+    ),
+    PutOff(
+        "export",
+        "export:export",
+        "Write a model for other tools, as a plain automaton or in CIF; "
+        "a station with its ticks by single transitions.",
+    ),
+    PutOff("run", "serving:run", "Run a station: controller, server and page."),
+    PutOff(
+        "messages",
+        "running:messages",
+        "Write the station's message definitions as packages that colcon builds, for ROS 2 with rclpy.",
+    ),
+    PutOff(
+        "topics",
+        "topics:topics",
+        "Show who and what is on the ROS network: topics with their types, who publishes and subscribes, and services.",
+    ),
+    PutOff(
+        "attach",
+        "attach:attach",
+        "Turn a topic of the ROS network into variables of a model: enter it into a resource's document, and check.",
+    ),
+    PutOff("emulate", "running:emulate_command", "Run emulated devices for a station, in place of real ones."),
+    PutOff("by-hand", "running:by_hand", "Move an emulated device by hand, as somebody might move a real one."),
+    PutOff("fault", "running:fault", "Let an emulated device have a fault, or end faults."),
+    PutOff("people", "people:people", "Add people who may sign in, and set passwords that were forgotten."),
+    PutOff(
+        "journal",
+        "journal:journal",
+        "Who did what, and what has happened. Without a command it is list, as in: journal MODEL --verify",
+    ),
+    PutOff("controller", "running:controller", hidden=True),
+    PutOff("server", "serving:server", hidden=True),
+)
 
-for command in (
-    new,
-    check,
-    synthesize,
-    show,
-    edit,
-    tick,
-    plan,
-    export,
-    serving.run,
-    running.messages,
-    topics,
-    attach,
-):
-    app.command()(command)
-app.command("emulate")(running.emulate_command)
-app.command("by-hand")(running.by_hand)
-app.command("fault")(running.fault)
-app.add_typer(people, name="people")
-journal.command()(journal_replay.replay)
-journal.command()(journal_replay.show)
-app.add_typer(journal, name="journal")
-app.command(hidden=True)(running.controller)
-app.command(hidden=True)(serving.server)
+
+class _Commands(TyperGroup):
+    """All commands; none is imported before it is given."""
+
+    def __init__(self, **settings: Any) -> None:  # noqa: ANN401 (as typer gives them)
+        super().__init__(**{**settings, "commands": COMMANDS})
+
+
+app = typer.Typer(
+    cls=_Commands, no_args_is_help=True, add_completion=False, help="Model and control automation stations on ROS 2."
+)
+
+
+@app.callback()
+def _nothing_before_a_command() -> None:
+    """Typer makes a group of what has this, though it knows no command."""
 
 
 def main() -> None:

@@ -3,20 +3,15 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
 
+from sequence_planner.cli import journal_replay
+from sequence_planner.cli.journal_database import the_database
 from sequence_planner.cli.options import FINDINGS, FINE, DatabaseOption, refuse
-from sequence_planner.storage.error import StorageError
-from sequence_planner.storage.location import default_url
-
-if TYPE_CHECKING:
-    from sequence_planner.storage.database import Database
 
 Model = Annotated[Path | None, typer.Argument(metavar="[MODEL]", help="The station's folder.", show_default=False)]
 DEFAULT_LIMIT = 50
@@ -33,7 +28,9 @@ class _Group(TyperGroup):
 
 
 journal = typer.Typer(
+    name="journal",
     cls=_Group,
+    add_completion=False,
     help="Who did what, and what has happened. Without a command it is list, as in: journal MODEL --verify",
 )
 
@@ -108,20 +105,5 @@ def trim(
     typer.echo(f"{trimmed.removed} records were taken out; what happened begins with record {trimmed.begin + 1}")
 
 
-@contextmanager
-def the_database(model: Path | None, database: str | None) -> Iterator[Database]:
-    """A station's database; what cannot be read or written is said with exit code 2."""
-    if model is None and not database:
-        refuse("say whose journal: a station's folder, or --database URL")
-    # The other commands do without a database, and start sooner for it.
-    from sequence_planner.storage.database import Database  # noqa: PLC0415
-
-    try:
-        opened = Database.open(database or default_url(model or Path()), create=False)
-        try:
-            opened.check()
-            yield opened
-        finally:
-            opened.close()
-    except StorageError as error:
-        refuse(str(error))
+journal.command()(journal_replay.replay)
+journal.command()(journal_replay.show)

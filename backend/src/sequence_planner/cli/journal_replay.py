@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.cli.journal import the_database
+from sequence_planner.cli.journal_database import the_database
 from sequence_planner.cli.options import FINDINGS, AsJson, DatabaseOption, StationFolder, print_json, refuse
 
 if TYPE_CHECKING:

@@ -20,7 +20,12 @@ from sequence_planner.storage.error import StorageError
 if TYPE_CHECKING:
     from sequence_planner.cli.people_at_hand import PeopleAtHand
 
-people = typer.Typer(no_args_is_help=True, help="Add people who may sign in, and set passwords that were forgotten.")
+people = typer.Typer(
+    name="people",
+    no_args_is_help=True,
+    add_completion=False,
+    help="Add people who may sign in, and set passwords that were forgotten.",
+)
 
 ItsModel = Annotated[
     Path | None, typer.Argument(metavar="[MODEL]", help="The station's folder; not needed with --database.")

@@ -12,8 +12,9 @@ from sequence_planner.model.source import SourceText
 class DocumentPart(BaseModel):
     """Base of all parts: nothing beside what is declared."""
 
+    # Parts are read as parts of whole documents; a validator of its own is built only for what is read by itself.
     model_config = ConfigDict(
-        frozen=True, extra="forbid", allow_inf_nan=False, strict=True, use_attribute_docstrings=True
+        frozen=True, extra="forbid", allow_inf_nan=False, strict=True, use_attribute_docstrings=True, defer_build=True
     )
 
 

@@ -1,0 +1,33 @@
+"""Commands are imported when they are given, and the help says of each what it says of itself."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+from sequence_planner.cli import COMMANDS
+from sequence_planner.cli.put_off import PutOff
+
+
+@pytest.mark.parametrize("put_off", COMMANDS, ids=lambda each: each.name)
+def test_the_help_says_of_a_command_what_it_says_of_itself(put_off: PutOff) -> None:
+    command = put_off.command()
+    assert command.name == put_off.name
+    if not put_off.hidden:
+        assert put_off.short_help == command.help.partition("\n\n")[0]
+
+
+def test_the_help_imports_no_command() -> None:
+    code = (
+        "import sys; sys.argv = ['sequence-planner', '--help']\n"
+        "from sequence_planner.cli import main\n"
+        "try:\n    main()\nexcept SystemExit:\n    pass\n"
+        "print('imported:', *sorted(name for name in sys.modules if name.startswith('sequence_planner.')))"
+    )
+    printed = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60
+    ).stdout
+    assert "Run a station" in printed
+    assert printed.splitlines()[-1] == "imported: sequence_planner.cli sequence_planner.cli.put_off"
