@@ -1,4 +1,4 @@
-"""What the commands share: their arguments, and how they refuse."""
+"""What the commands share: their arguments, where the database is, and how they refuse."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import Annotated, NoReturn
 import typer
 
 from sequence_planner.storage.environment import DATABASE
+from sequence_planner.storage.error import StorageError
+from sequence_planner.storage.location import default_url
 
 FINE, FINDINGS, UNUSABLE = 0, 1, 2  # exit codes
 
@@ -33,6 +35,14 @@ def refuse(message: str) -> NoReturn:
     """Say on standard error what makes the input unusable, and end."""
     typer.echo(message, err=True)
     raise typer.Exit(UNUSABLE)
+
+
+def database_url(model: Path, given: str | None) -> str:
+    """Where the database of the station in the folder `model` is."""
+    try:
+        return default_url(model) if given is None else given
+    except StorageError as error:
+        refuse(str(error))
 
 
 def print_json(document: object) -> None:

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.cli.options import AsJson, DatabaseOption, print_json, refuse
-from sequence_planner.cli.running import database_url
+from sequence_planner.cli.options import AsJson, DatabaseOption, database_url, print_json, refuse
 from sequence_planner.identity.refusal import IdentityRefused
 from sequence_planner.identity.roles import Role
 from sequence_planner.storage.error import StorageError

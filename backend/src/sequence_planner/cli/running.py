@@ -14,7 +14,7 @@ import typer
 
 from sequence_planner.analysis.process import SynthesisEndedError
 from sequence_planner.cli.emulated import say
-from sequence_planner.cli.options import DatabaseOption, StationFolder, refuse
+from sequence_planner.cli.options import DatabaseOption, StationFolder, database_url, refuse
 from sequence_planner.control.unix_socket import SocketTakenError
 from sequence_planner.emulation.fault_script import read_script
 from sequence_planner.emulation.live import BY_HAND_TOPIC, FAULTS_TOPIC
@@ -32,7 +32,6 @@ from sequence_planner.ros.routing import ROSBRIDGE, open_routed
 from sequence_planner.ros.transport import Transport, TransportError
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.storage.error import StorageError
-from sequence_planner.storage.location import default_url
 
 TransportOption = Annotated[
     TransportChoice, typer.Option(help="How to speak ROS 2; auto takes rclpy where it can be imported.")
@@ -136,14 +135,6 @@ def controller(
     network = _Network(station, transport, rosbridge)
     url = database_url(model, database)
     _until_interrupted(lambda connect: control(Running(station, socket, connect, emulated, start, url)), network)
-
-
-def database_url(model: Path, given: str | None) -> str:
-    """Where the database of the station in the folder `model` is."""
-    try:
-        return default_url(model) if given is None else given
-    except StorageError as error:
-        refuse(str(error))
 
 
 def begin(launched: bool, folder: Path | None = None) -> None:

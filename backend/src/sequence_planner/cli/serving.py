@@ -7,14 +7,13 @@ from typing import Annotated
 
 import typer
 
-from sequence_planner.cli.options import DatabaseOption, StationFolder, refuse
+from sequence_planner.cli.options import DatabaseOption, StationFolder, database_url, refuse
 from sequence_planner.cli.running import (
     Launched,
     RosbridgeOption,
     Socket,
     TransportOption,
     begin,
-    database_url,
     prepare,
 )
 from sequence_planner.storage.environment import DATABASE
