@@ -12,6 +12,9 @@ PAGE_SOURCES := $(shell find frontend/src frontend/static -type f 2>/dev/null) $
 LOCK := uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
   --no-emit-find-links --no-annotate --custom-compile-command 'make lock'
 
+# Where it is set, each process compiles all of the program anew, which takes longer than most tests do.
+unexport PYTHONDONTWRITEBYTECODE
+
 # A Node of our own, where the machine has none that is recent enough.
 export PATH := $(CURDIR)/.node/bin:$(PATH)
 .NOTPARALLEL:
@@ -37,13 +40,13 @@ lint: install-test
 typecheck: install-test
 	cd backend && .venv/bin/mypy --strict
 
-pytest: pytest-together pytest-alone
+pytest: pytest-light pytest-heavy
 
-pytest-together: install-test postgresql
-	cd backend && .venv/bin/pytest -m 'not alone' -n auto --dist worksteal --junitxml=../.ci/results/pytest.xml
+pytest-light: install-test postgresql
+	cd backend && .venv/bin/pytest -m 'not heavy' -n auto --dist worksteal --junitxml=../.ci/results/pytest.xml
 
-pytest-alone: install-test foreign postgresql
-	cd backend && .venv/bin/pytest -m alone --junitxml=../.ci/results/pytest-alone.xml
+pytest-heavy: install-test foreign postgresql
+	cd backend && .venv/bin/pytest -m heavy -n 2 --dist loadfile --junitxml=../.ci/results/pytest-heavy.xml
 
 svelte-check: frontend/node_modules/done.stamp
 	cd frontend && npm run check
@@ -147,4 +150,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator hall test lint typecheck pytest pytest-together pytest-alone svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium
+.PHONY: help run emulator hall test lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium

@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
-SUITES = ("pytest", "pytest-alone", "vitest", "playwright")
+SUITES = ("pytest", "pytest-heavy", "vitest", "playwright")
 
 
 def count(report: Path) -> tuple[int, int, int]:

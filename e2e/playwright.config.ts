@@ -32,7 +32,7 @@ export default defineConfig({
 		viewport: { width: 1440, height: 900 },
 		launchOptions: { executablePath: chromium(), args: FLAGS },
 		screenshot: 'only-on-failure',
-		trace: 'retain-on-failure'
+		trace: process.env['TRACE'] ? 'retain-on-failure' : 'off' // it makes every step slower
 	},
 	projects: [
 		{ name: 'light', use: { colorScheme: 'light' } },

@@ -1,7 +1,8 @@
-"""Which tests run beside others; and nothing that one run of the tests has kept is believed by the next."""
+"""Which tests run beside many others; and nothing that one run of the tests has kept is believed by the next."""
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,8 +11,8 @@ import pytest
 pytest_plugins = ["storage.databases"]
 
 TESTS = Path(__file__).parent
-# What runs a station, or measures how long something takes, would be disturbed by tests beside it.
-ALONE = (
+# What runs a station, or measures how long something takes, would be disturbed by many tests beside it.
+HEAVY = (
     "control",
     "emulation",
     "foreign",
@@ -35,7 +36,7 @@ ALONE = (
     "test_tutorial.py",
 )
 # Of those, what neither runs anything nor looks at the clock.
-TOGETHER = (
+LIGHT = (
     "control/alarming/test_causes.py",
     "control/alarming/test_folding.py",
     "control/alarming/test_life.py",
@@ -68,10 +69,10 @@ TOGETHER = (
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Mark the tests that run alone."""
+    """Mark the tests that are heavy."""
     for item in items:
-        if _is_in(item, ALONE) and not _is_in(item, TOGETHER):
-            item.add_marker(pytest.mark.alone)
+        if _is_in(item, HEAVY) and not _is_in(item, LIGHT):
+            item.add_marker(pytest.mark.heavy)
 
 
 def _is_in(item: pytest.Item, places: tuple[str, ...]) -> bool:
@@ -89,3 +90,8 @@ def _own_folders(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
         patch.setenv("SSL_CERT_DIR", str(tmp_path_factory.mktemp("certificates")))
         yield
+
+
+def pytest_xdist_auto_num_workers(config: pytest.Config) -> int:
+    """One more worker than processors, as tests with servers wait for these now and then."""
+    return (os.cpu_count() or 1) + 1
