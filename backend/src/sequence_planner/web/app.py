@@ -12,7 +12,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from typing import Any
 
-from fastapi import APIRouter, FastAPI
+from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.history.process import HistoryProcess
@@ -143,10 +143,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     app.state.streams = Counter()  # how many each person, key and watch has open, by id
     app.state.settings, app.state.attaching = settings, asyncio.Lock()
     problems.install(app)
-    api = APIRouter(prefix=PREFIX)
     for part in PARTS:
-        api.include_router(part)
-    app.include_router(api)
+        app.include_router(part, prefix=PREFIX)
     app.include_router(health.router)
     check_declared(app.routes)
     app.router.default = PageFiles(settings.page)
