@@ -160,6 +160,20 @@ def _append(database: Database) -> int:
         return audit.append(connection, Entry(actor=SYSTEM, action="try"), 1.0).number
 
 
+def test_who_opens_it_once_more_takes_no_lock_from_who_has_it_open(opened: Database, file: Path) -> None:
+    """Else another process would take itself for the last one, and remove the log that is still written to."""
+
+    def elsewhere() -> int:
+        code = f"{APPENDING}\nprint(record(Database.open(sys.argv[1])).number)"
+        command = [sys.executable, "-c", code, f"sqlite:///{file}"]
+        return int(subprocess.run(command, capture_output=True, text=True, check=True).stdout)
+
+    numbers = [_append(opened)]
+    Database.open(f"sqlite:///{file}").close()
+    numbers += [elsewhere(), _append(opened), elsewhere(), _append(opened)]
+    assert numbers == [1, 2, 3, 4, 5]
+
+
 def test_a_reader_cannot_write(opened: Database) -> None:
     with pytest.raises(StorageError, match="cannot be written to"), opened.reading() as connection:
         connection.execute(text("INSERT INTO first_start_links (token_hash, expires) VALUES ('a', 1)"))

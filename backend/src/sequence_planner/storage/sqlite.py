@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
 import os
 import sqlite3
 import stat
@@ -45,15 +47,22 @@ def _make_folder(file: SqliteFile) -> None:
 
 
 def _make(file: SqliteFile, create: bool) -> None:
-    """The file, for this user alone, as SQLite then makes the files beside it. Raises `StorageError`."""
+    """The file, for this user alone, as SQLite then makes the files beside it. Raises `StorageError`.
+
+    One that is there is not opened: to close it would take the locks of all connections that this process has to it,
+    and another process could remove its log (sqlite.org/howtocorrupt.html, 2.2).
+    """
     try:
-        descriptor = os.open(file.path, os.O_RDWR | os.O_CLOEXEC | (os.O_CREAT if create else 0), 0o600)
-        try:
-            found = os.fstat(descriptor)
-            if found.st_uid == os.geteuid() and stat.S_IMODE(found.st_mode) & 0o077:
-                os.fchmod(descriptor, 0o600)
-        finally:
-            os.close(descriptor)
+        if create:
+            with contextlib.suppress(FileExistsError):
+                os.close(os.open(file.path, os.O_RDWR | os.O_CLOEXEC | os.O_CREAT | os.O_EXCL, 0o600))
+        found = file.path.stat()
+        if stat.S_ISDIR(found.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        if found.st_uid == os.geteuid() and stat.S_IMODE(found.st_mode) & 0o077:
+            file.path.chmod(0o600)
+        if not os.access(file.path, os.R_OK | os.W_OK):
+            raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
     except FileNotFoundError as error:
         raise StorageError(f"{file} is not there: no station has kept its database there yet") from error
     except OSError as error:
