@@ -111,14 +111,14 @@ def test_what_does_not_end_in_good_order_is_killed(monkeypatch: pytest.MonkeyPat
 @pytest.mark.usefixtures("_no_nohup")
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 @pytest.mark.parametrize("after", [0.0, 1.0])
-def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, tmp_path: Path) -> None:
+def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, short_path: Path) -> None:
     """However it ends, and however early."""
     with (
-        (tmp_path / "log").open("wb") as log,
+        (short_path / "log").open("wb") as log,
         subprocess.Popen(
             command("run", str(MODEL), "--port", str(free_port()), "--emulator"),
             cwd=REPOSITORY,
-            env={**environment(), "TMPDIR": str(tmp_path)},
+            env={**environment(), "TMPDIR": str(short_path)},
             stdout=log,
             stderr=log,
         ) as running,
@@ -134,7 +134,7 @@ def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, tmp_pa
         finally:
             running.kill()
     assert running.returncode == (-how if how is signal.SIGKILL else 0)
-    assert [each.name for each in tmp_path.iterdir()] == ["log"]
+    assert [each.name for each in short_path.iterdir()] == ["log"]
 
 
 def test_beside_real_devices_nothing_is_emulated_and_nothing_starts_by_itself(tmp_path: Path) -> None:

@@ -102,10 +102,10 @@ def test_where_there_is_no_terminal_it_is_only_said_how_to_get_the_link(tmp_path
     assert "first-start" not in text
 
 
-def test_a_demonstration_is_forgotten(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_demonstration_is_forgotten(short_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """And it asks for no administrator."""
-    log, port = tmp_path / "log", free_port()
-    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    log, port = short_path / "log", free_port()
+    monkeypatch.setenv("TMPDIR", str(short_path))
     with (
         process(log, "run", str(MODEL), "--port", str(port), "--emulator", "--demonstration") as running,
         httpx.Client(base_url=f"http://127.0.0.1:{port}/api/v1/") as opened,
@@ -120,6 +120,6 @@ def test_a_demonstration_is_forgotten(tmp_path: Path, monkeypatch: pytest.Monkey
 
         eventually(is_open)
         assert opened.get("session").json()["kind"] == "demonstration"
-        assert [*tmp_path.glob("*/demonstration.sqlite")]
-    assert [*tmp_path.iterdir()] == [log]
+        assert [*short_path.glob("*/demonstration.sqlite")]
+    assert [*short_path.iterdir()] == [log]
     assert "administrator" not in log.read_text()
