@@ -15,10 +15,11 @@ from control.journalling import journal
 from core.building import Does, automaton
 from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import StateSet, Supervisor
+from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.commands import CommandRefused, SetMode, StartProduction
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.process import start_when_alone
-from sequence_planner.control.view import Mode, PlanStatus, Priority, Production
+from sequence_planner.control.view import Mode, PlanStatus, Production
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.ros.memory import MemoryNetwork, MemoryTransport

@@ -10,9 +10,11 @@ from core.building import Does, automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.control.alarm_view import AlarmState
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.outside import Difference, Outside
-from sequence_planner.control.view import AlarmState, DifferenceView, PlanStatus, SpecificationView, WayBackView
+from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.way_back_view import DifferenceView, SpecificationView, WayBackView
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.way_back import WaysBack
 from sequence_planner.synthesis.supervision import synthesise

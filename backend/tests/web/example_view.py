@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
+from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.override_view import OverrideFieldView, OverrideView
+from sequence_planner.control.restart_view import ForceView, UndecidedOutputView
 from sequence_planner.control.view import (
     AbilityView,
-    AlarmState,
-    AlarmView,
     BeliefView,
-    ForceView,
     Mode,
     OperationView,
     PackML,
     PlanStatus,
     PlanStepView,
     PlanView,
-    Priority,
     Production,
     ResourceView,
     StationIdentity,
@@ -23,7 +21,6 @@ from sequence_planner.control.view import (
     StepStatus,
     TaskView,
     TopicView,
-    UndecidedOutputView,
     VariableKind,
     VariableView,
 )

@@ -15,8 +15,8 @@ from math import inf, prod
 from sequence_planner.analysis.never_together import NeverTogether
 from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, StateSet
 from sequence_planner.automaton.structure import Automaton, Kind, State
+from sequence_planner.control.restart_view import QuestionView
 from sequence_planner.control.value_text import value_text
-from sequence_planner.control.view import QuestionView
 from sequence_planner.expressions.types import Value
 
 MOST_HYPOTHESES = 64

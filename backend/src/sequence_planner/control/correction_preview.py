@@ -15,7 +15,7 @@ from sequence_planner.control.doubting import Doubting
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.offer_showing import plan_preview
 from sequence_planner.control.value_text import value_text
-from sequence_planner.control.view import SpecificationView
+from sequence_planner.control.way_back_view import SpecificationView
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import replace

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from sequence_planner.control.offer_view import PlanPreviewView
-from sequence_planner.control.view import BeliefView, SpecificationView, Value
-from sequence_planner.control.view_part import View
+from sequence_planner.control.view import BeliefView
+from sequence_planner.control.view_part import Value, View
+from sequence_planner.control.way_back_view import SpecificationView
 
 
 class CorrectedView(View):

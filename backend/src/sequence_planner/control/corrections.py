@@ -26,7 +26,8 @@ from sequence_planner.control.restart_commands import (
     GivenValue,
     UndoCorrection,
 )
-from sequence_planner.control.view import LastCorrectionView, Mode, Production
+from sequence_planner.control.restart_view import LastCorrectionView
+from sequence_planner.control.view import Mode, Production
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.types import Value, contains

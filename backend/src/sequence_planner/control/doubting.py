@@ -13,8 +13,9 @@ from sequence_planner.analysis.never_together_process import find_never_together
 from sequence_planner.automaton.structure import Kind, State
 from sequence_planner.control.contradictions import Contradictions, contradictions, questions
 from sequence_planner.control.execution import Execution
+from sequence_planner.control.restart_view import QuestionView, UndecidedOutputView
 from sequence_planner.control.undecided import Undecided
-from sequence_planner.control.view import Production, QuestionView, UndecidedOutputView
+from sequence_planner.control.view import Production
 
 LOG = structlog.get_logger(__name__)
 

@@ -12,7 +12,8 @@ from sequence_planner.control.offer_view import (
     PlanPreviewView,
     PreviewStepView,
 )
-from sequence_planner.control.view import DiagnosisView, SpecificationView
+from sequence_planner.control.view import DiagnosisView
+from sequence_planner.control.way_back_view import SpecificationView
 from sequence_planner.expressions.printing import print_expression, print_value
 from sequence_planner.planning.advice.offer import Change, Offer, OfferKind
 from sequence_planner.planning.plan import Plan

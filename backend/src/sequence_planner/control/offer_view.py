@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from sequence_planner.control.view import DiagnosisView, SpecificationView, Value
-from sequence_planner.control.view_part import View
+from sequence_planner.control.view import DiagnosisView
+from sequence_planner.control.view_part import Value, View
+from sequence_planner.control.way_back_view import SpecificationView
 
 
 class ChangeView(View):

@@ -14,16 +14,14 @@ from sequence_planner.analysis.process import SynthesisEndedError, analysing
 from sequence_planner.analysis.remembering import remember, remembered
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.view import (
-    AlarmState,
-    AlarmView,
     Mode,
     PackML,
     PlanStatus,
     PlanView,
-    Priority,
     Production,
     StationIdentity,
     StationView,

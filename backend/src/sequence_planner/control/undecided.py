@@ -12,8 +12,8 @@ from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Automaton, Effect, State, target
 from sequence_planner.control.conduct import Conduct
 from sequence_planner.control.execution import Execution
+from sequence_planner.control.restart_view import UndecidedOutputView
 from sequence_planner.control.value_text import value_text
-from sequence_planner.control.view import UndecidedOutputView
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.types import Value
 

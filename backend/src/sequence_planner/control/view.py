@@ -10,11 +10,20 @@ from __future__ import annotations
 from enum import StrEnum
 
 from sequence_planner.analysis.document import AnalysisDocument
+from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.override_view import OverrideView
-from sequence_planner.control.view_part import View
+from sequence_planner.control.restart_view import (
+    ErrandView,
+    ForceView,
+    LastCorrectionView,
+    LastErrandView,
+    QuestionView,
+    ServiceView,
+    UndecidedOutputView,
+)
+from sequence_planner.control.view_part import Value, View
+from sequence_planner.control.way_back_view import WayBackView
 from sequence_planner.planning.plan import Contract
-
-Value = bool | int | str
 
 
 class Mode(StrEnum):
@@ -74,14 +83,6 @@ class PlanStatus(StrEnum):
     FOLLOWED = "followed"
     BROKEN = "broken"  # the state departed from it; a new one is being looked for
     NONE = "none"  # no plan was found
-
-
-class Priority(StrEnum):
-    """Urgency of an alarm, after ISA-18.2."""
-
-    HIGH = "high"
-    MEDIUM = "medium"
-    LOW = "low"
 
 
 class StationIdentity(View):
@@ -228,156 +229,6 @@ class TopicView(View):
     fresh: bool
     peers: int  # matched publishers or subscribers
     trouble: str | None
-
-
-class AlarmState(StrEnum):
-    """Where an alarm stands in its life (ISA-18.2, figure 4.2)."""
-
-    UNACKNOWLEDGED = "unacknowledged"
-    ACKNOWLEDGED = "acknowledged"
-    RETURNED = "returned"  # its cause has gone, and nobody has acknowledged it yet
-    SHELVED = "shelved"
-    OUT_OF_SERVICE = "out-of-service"
-
-
-class AlarmView(View):
-    """Something that wants a person's attention. `ended` is when its cause has gone, null while it lasts.
-
-    One that was acknowledged goes with its cause. `by` is who acknowledged or shelved it or took it out of service,
-    `until` when it is shelved no more, `why` the reason that was given. `count` is how often it came since it was
-    last acknowledged; `part_of` lists what else the same cause has brought about.
-    """
-
-    priority: Priority
-    state: AlarmState
-    text: str  # what is wrong
-    consequence: str  # what comes of it
-    action: str  # what to do
-    since: float
-    ended: float | None
-    by: str | None
-    until: float | None
-    why: str | None
-    count: int
-    parts: list[str]
-
-
-class SpecificationView(View):
-    """A ground specification; several can have one title."""
-
-    name: str
-    title: str
-
-
-class DifferenceView(View):
-    """A variable that has another value in the nearest safe state."""
-
-    name: str
-    now: Value
-    safe: Value
-
-
-class WayBackStepView(View):
-    """One start on the way back. `tick` counts from the tick in which the way begins."""
-
-    tick: int
-    ability: str
-    title: str
-    resource: str
-
-
-class WayBackView(View):
-    """The state does not count as safe: why, how the nearest safe state differs, and the shortest way back.
-
-    Without differences and with nothing violated the state may be safe, and what `awaits` names decides. `ticks` is
-    null while no way is known; a way without steps needs no start.
-    """
-
-    violated: list[SpecificationView]
-    threatened: list[SpecificationView]  # what the devices could violate without any start
-    differences: list[DifferenceView]
-    awaits: list[str]  # topics whose values decide whether the state is safe
-    ticks: int | None
-    steps: list[WayBackStepView]
-    breaks: list[SpecificationView]  # what is violated on the way, and is not now
-    reason: str  # which way leads back, or why none is known
-
-
-class ForceView(View):
-    """A forced variable: what it is taken to be, what it would be, until when, by whom and why."""
-
-    value: Value
-    real: Value | None
-    until: float
-    by: str
-    why: str
-
-
-class ServiceView(View):
-    """What is out of service since when, by whom and why; `by` is null where the station gave an ability up itself."""
-
-    of: str  # resource, ability or operation
-    name: str
-    title: str
-    since: float
-    by: str | None
-    why: str
-
-
-class ErrandView(View):
-    """What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for."""
-
-    kind: str  # way-back, reset, goal
-    title: str
-    by: str
-    why: str
-    since: float
-    ends: str  # when it is done, in the model's language
-
-
-class LastErrandView(View):
-    """How the last errand has ended: `done`, or why not."""
-
-    title: str
-    done: bool
-    why: str
-    ended: float
-
-
-class UndecidedOutputView(View):
-    """An output that came back from the journal, and would make its device react as soon as it is published.
-
-    `reacts` says how; with each of `quiet` its device would stay as it is.
-    """
-
-    value: Value
-    reacts: list[str]
-    quiet: list[Value]
-
-
-class QuestionView(View):
-    """What to look at: the station's belief does not fit what is measured. The first question separates most.
-
-    `variable` is what is asked about, `believed` its value, `possible` those that would fit; `because` says which
-    belief does not go together with which measurement.
-    """
-
-    variable: str
-    believed: Value
-    possible: list[Value]
-    because: list[str]
-
-
-class LastCorrectionView(View):
-    """The last correction, made on `revision`; it can be undone in one step while `undoable`."""
-
-    revision: int
-    values: dict[str, Value]
-    before: dict[str, Value]
-    by: str
-    why: str
-    at: float
-    undoable: bool
 
 
 class StationView(View):

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pydantic import BaseModel, ConfigDict
 
+Value = bool | int | str
+
 
 class View(BaseModel):
     """Base of all parts of a document: immutable, and nothing beside what is declared."""

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.structure import Kind
+from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.belief import Beliefs
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution
@@ -16,25 +17,22 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.override_view import OverrideView
+from sequence_planner.control.restart_view import LastCorrectionView, QuestionView, UndecidedOutputView
 from sequence_planner.control.start_order import Step
 from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.view import (
     AbilityView,
-    AlarmView,
     ControlView,
     DiagnosisView,
-    LastCorrectionView,
     OperationView,
     PlanStepView,
     PlanView,
-    QuestionView,
     ResourceView,
     StationIdentity,
     StationView,
     StepStatus,
     TaskView,
     TopicView,
-    UndecidedOutputView,
     VariableKind,
     VariableView,
 )

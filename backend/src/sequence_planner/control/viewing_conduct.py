@@ -6,16 +6,8 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.conduct import Conduct
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import (
-    ErrandView,
-    ForceView,
-    LastErrandView,
-    Mode,
-    PackML,
-    PlanStatus,
-    Production,
-    ServiceView,
-)
+from sequence_planner.control.restart_view import ErrandView, ForceView, LastErrandView, ServiceView
+from sequence_planner.control.view import Mode, PackML, PlanStatus, Production
 from sequence_planner.expressions.printing import print_expression
 
 _ENDING = {Mode.PAUSED: (PackML.HOLDING, PackML.HELD), Mode.HOLD: (PackML.STOPPING, PackML.STOPPED)}

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.outside import Outside
-from sequence_planner.control.view import DifferenceView, SpecificationView, WayBackStepView, WayBackView
+from sequence_planner.control.way_back_view import DifferenceView, SpecificationView, WayBackStepView, WayBackView
 from sequence_planner.planning.plan import WayBack, WayBackAnswer
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from sequence_planner.control.offer_view import PlanPreviewView
-from sequence_planner.control.view import DiagnosisView, Value
-from sequence_planner.control.view_part import View
+from sequence_planner.control.view import DiagnosisView
+from sequence_planner.control.view_part import Value, View
 
 
 class ChangerView(View):

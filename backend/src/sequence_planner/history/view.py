@@ -6,18 +6,9 @@ import json
 
 from pydantic import JsonValue
 
-from sequence_planner.control.view import (
-    ErrandView,
-    ForceView,
-    Mode,
-    PackML,
-    PlanStatus,
-    Production,
-    ServiceView,
-    StepStatus,
-    Value,
-)
-from sequence_planner.control.view_part import View
+from sequence_planner.control.restart_view import ErrandView, ForceView, ServiceView
+from sequence_planner.control.view import Mode, PackML, PlanStatus, Production, StepStatus
+from sequence_planner.control.view_part import Value, View
 from sequence_planner.immutable import Immutable
 from sequence_planner.journal.run_journal import RunRecord
 

@@ -10,27 +10,29 @@ from fastapi import APIRouter
 from pydantic import BaseModel
 
 from sequence_planner.analysis.document import AnalysisDocument
+from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.override_view import OverrideView
-from sequence_planner.control.view import (
-    AbilityView,
-    AlarmView,
-    ControlView,
+from sequence_planner.control.restart_view import (
     ErrandView,
     ForceView,
     LastCorrectionView,
     LastErrandView,
+    QuestionView,
+    ServiceView,
+    UndecidedOutputView,
+)
+from sequence_planner.control.view import (
+    AbilityView,
+    ControlView,
     Mode,
     OperationView,
     PackML,
     PlanView,
     Production,
-    QuestionView,
     ResourceView,
-    ServiceView,
     StationIdentity,
     TaskView,
     TopicView,
-    UndecidedOutputView,
     VariableView,
 )
 from sequence_planner.identity.roles import Role, Scope

@@ -14,31 +14,33 @@ from pydantic import BaseModel, ConfigDict, Field, RootModel
 from typing_extensions import TypedDict
 
 from sequence_planner.analysis.document import AnalysisDocument
+from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.override_view import OverrideView
-from sequence_planner.control.view import (
-    AbilityView,
-    AlarmView,
-    ControlView,
+from sequence_planner.control.restart_view import (
     ErrandView,
     ForceView,
     LastCorrectionView,
     LastErrandView,
+    QuestionView,
+    ServiceView,
+    UndecidedOutputView,
+)
+from sequence_planner.control.view import (
+    AbilityView,
+    ControlView,
     Mode,
     OperationView,
     PackML,
     PlanView,
     Production,
-    QuestionView,
     ResourceView,
-    ServiceView,
     StationIdentity,
     StationView,
     TaskView,
     TopicView,
-    UndecidedOutputView,
     VariableView,
-    WayBackView,
 )
+from sequence_planner.control.way_back_view import WayBackView
 
 
 class StationChange(TypedDict, total=False):

@@ -9,8 +9,8 @@ import pytest
 from control.bench import STATE, Arm, bench
 from sequence_planner.actor import SYSTEM
 from sequence_planner.control.alarm_commands import AcknowledgeAlarm
+from sequence_planner.control.alarm_view import AlarmState
 from sequence_planner.control.commands import CommandRefused
-from sequence_planner.control.view import AlarmState
 
 
 def test_an_alarm_comes_is_acknowledged_and_goes() -> None:

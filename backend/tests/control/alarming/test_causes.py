@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from control.alarming.scene import acknowledge, alarms
 from control.rig import Rig, never
+from sequence_planner.control.alarm_view import AlarmState, Priority
 from sequence_planner.control.alarming.alarms import Alarms
 from sequence_planner.control.conduct import LastErrand, OutOfService
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import AlarmState, Mode, Priority, QuestionView
+from sequence_planner.control.restart_view import QuestionView
+from sequence_planner.control.view import Mode
 from sequence_planner.immutable import replace
 
 

@@ -10,6 +10,7 @@ import pytest
 
 from control.alarming.scene import Told, acknowledge, shelve, suppress
 from sequence_planner.automaton.state_set import StateSet, Supervisor
+from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.alarming.alarms import Alarms
 from sequence_planner.control.alarming.keeping import aside_from
 from sequence_planner.control.commander import Commander
@@ -19,7 +20,6 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import AlarmState, AlarmView, Priority
 from sequence_planner.emulation.devices import EmulatedDevices
 from sequence_planner.planning.planner import Planner
 from sequence_planner.ros.transport import Endpoint, QualityOfService, Sample, TransportError

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from core.budget import examples
+from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.alarming.cause import Cause, urgency
 from sequence_planner.control.alarming.folding import LINGERS, Folding
-from sequence_planner.control.view import Priority
 
 KEYS = ("a", "b", "c", "d", "e")
 LINKS = st.fixed_dictionaries({key: st.lists(st.sampled_from(KEYS), max_size=2, unique=True) for key in KEYS})

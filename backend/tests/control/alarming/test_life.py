@@ -10,13 +10,13 @@ from hypothesis import settings
 from hypothesis import strategies as st
 from hypothesis.stateful import Bundle, RuleBasedStateMachine, consumes, initialize, invariant, precondition, rule
 
+from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.alarming.cause import Cause
 from sequence_planner.control.alarming.chattering import OFTEN, QUIET
 from sequence_planner.control.alarming.life import Life
 from sequence_planner.control.alarming.lives import Lives
 from sequence_planner.control.command_base import CommandRefused
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import AlarmState, AlarmView, Priority
 
 FAR = 1000.0  # seconds after which nothing counts as coming and going
 

@@ -14,6 +14,7 @@ from sequence_planner.control.alarm_commands import (
     SuppressAlarm,
     UnshelveAlarm,
 )
+from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.alarming.folding import Folding
 from sequence_planner.control.alarming.keeping import KIND, PutAside, aside_to_keep
 from sequence_planner.control.alarming.life import Aside, Life
@@ -28,7 +29,6 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import AlarmView
 
 Tell = Callable[[str, Mapping[str, JsonValue]], None]
 KEEP_EVERY = 86400.0  # seconds after which what is aside is told again, so that it is among what the journal keeps

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from sequence_planner.control.view import Priority
+from sequence_planner.control.alarm_view import Priority
 
 _URGENCY = (Priority.LOW, Priority.MEDIUM, Priority.HIGH)
 

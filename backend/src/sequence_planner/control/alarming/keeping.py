@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 from pydantic import BaseModel, ConfigDict, JsonValue, TypeAdapter, ValidationError
 
+from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.alarming.cause import Cause
 from sequence_planner.control.alarming.life import Aside, Life
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import Priority
 
 KIND = "alarms-aside"  # of the record
 

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.alarming.cause import Cause
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import AlarmState, AlarmView, Priority
 
 
 @dataclass(frozen=True)

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping
 
+from sequence_planner.control.alarm_view import AlarmView, Priority
 from sequence_planner.control.alarming.cause import Cause, urgency
 from sequence_planner.control.alarming.chattering import Arrivals
 from sequence_planner.control.alarming.life import Aside, Life
 from sequence_planner.control.command_base import CommandRefused
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import AlarmView, Priority
 
 Tell = Callable[[str, Life, str], None]  # key, life, what has become of it
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Collection, Iterator, Mapping
 
+from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.alarming.cause import Cause
 from sequence_planner.control.alarming.consequence import Consequences, listed
 from sequence_planner.control.bad_input import Report, Reports
@@ -13,7 +14,6 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feed, Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
-from sequence_planner.control.view import Priority
 
 PATIENCE = 15.0  # seconds after the start for devices to be heard first
 MANY = "many-silent"

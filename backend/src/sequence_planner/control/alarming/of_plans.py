@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sequence_planner.automaton.structure import Ability
+from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.alarming.cause import Cause
 from sequence_planner.control.alarming.consequence import Consequences, listed
 from sequence_planner.control.alarming.of_devices import MANY, silent_key
@@ -16,7 +17,7 @@ from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.standing_still import StandingStill
 from sequence_planner.control.timeouts import overdue
 from sequence_planner.control.value_text import value_text
-from sequence_planner.control.view import PlanStatus, Priority, Production
+from sequence_planner.control.view import PlanStatus, Production
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.planning.plan import PlanAnswer
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
 
+from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.alarming.cause import Cause
 from sequence_planner.control.alarming.consequence import Consequences
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.outside import Outside
-from sequence_planner.control.view import Mode, Priority, Production, QuestionView
+from sequence_planner.control.restart_view import QuestionView
+from sequence_planner.control.view import Mode, Production
 from sequence_planner.expressions.printing import print_value
 
 _UNJOURNALLED = "unjournalled"

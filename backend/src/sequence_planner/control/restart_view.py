@@ -1,0 +1,82 @@
+"""What people have asked of a station beside its work, and what it asks of them, as it is shown."""
+
+from __future__ import annotations
+
+from sequence_planner.control.view_part import Value, View
+
+
+class ForceView(View):
+    """A forced variable: what it is taken to be, what it would be, until when, by whom and why."""
+
+    value: Value
+    real: Value | None
+    until: float
+    by: str
+    why: str
+
+
+class ServiceView(View):
+    """What is out of service since when, by whom and why; `by` is null where the station gave an ability up itself."""
+
+    of: str  # resource, ability or operation
+    name: str
+    title: str
+    since: float
+    by: str | None
+    why: str
+
+
+class ErrandView(View):
+    """What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for."""
+
+    kind: str  # way-back, reset, goal
+    title: str
+    by: str
+    why: str
+    since: float
+    ends: str  # when it is done, in the model's language
+
+
+class LastErrandView(View):
+    """How the last errand has ended: `done`, or why not."""
+
+    title: str
+    done: bool
+    why: str
+    ended: float
+
+
+class UndecidedOutputView(View):
+    """An output that came back from the journal, and would make its device react as soon as it is published.
+
+    `reacts` says how; with each of `quiet` its device would stay as it is.
+    """
+
+    value: Value
+    reacts: list[str]
+    quiet: list[Value]
+
+
+class QuestionView(View):
+    """What to look at: the station's belief does not fit what is measured. The first question separates most.
+
+    `variable` is what is asked about, `believed` its value, `possible` those that would fit; `because` says which
+    belief does not go together with which measurement.
+    """
+
+    variable: str
+    believed: Value
+    possible: list[Value]
+    because: list[str]
+
+
+class LastCorrectionView(View):
+    """The last correction, made on `revision`; it can be undone in one step while `undoable`."""
+
+    revision: int
+    values: dict[str, Value]
+    before: dict[str, Value]
+    by: str
+    why: str
+    at: float
+    undoable: bool
