@@ -58,6 +58,7 @@ STEP, REPORT_EVERY = 0.01, 0.1  # seconds
 UNTIL_KILLED = 0.6  # seconds after it has done some work, at most
 PATIENCE = 240.0  # on a machine that is busy with much else
 SHOW_EVERY = 2.0
+LONGEST_STEP = 7200.0  # seconds by which the clock is stepped at most
 IDENTITY = StationIdentity(name="truck", title="Truck", description="", transport="memory", emulated=True)
 
 
@@ -132,9 +133,17 @@ class Child:
                 IDENTITY, station, supervisor, transport, database, what_is_known(database, station.automaton)
             )
         controller.execution.listeners.append(self._heard)
+        if self._chance.random() < 0.3:
+            loop.call_later(self._chance.uniform(0, UNTIL_KILLED), self._step_clock)
         self._controller = controller
         loop.add_reader(self._line, self._hear)
         await asyncio.gather(controller.run(), self._operate(), self._tell_durable(), self._show())
+
+    def _step_clock(self) -> None:
+        """Somebody sets the clock that people read."""
+        real, step = time.time, self._chance.uniform(-LONGEST_STEP, LONGEST_STEP)
+        time.time = lambda: real() + step
+        self._say("seen", f"clock set {'forward' if step > 0 else 'back'}")
 
     def _say(self, *words: object) -> None:
         self._line.sendall(json.dumps(words).encode() + b"\n")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import random
+import resource
 import signal
 import subprocess
 import tempfile
@@ -29,6 +30,7 @@ SPEED = 10.0  # of the devices
 UNTIL_KILLED = 1.5  # seconds for which it works at most, until it is killed
 PATIENCE = 240.0  # on a machine that is busy with much else
 AT_WORK, AT_ONCE = "while it worked", "while it started"
+STANDSTILL = 1.0  # seconds in which nothing may happen while nothing can be recorded
 
 
 @dataclass
@@ -154,6 +156,10 @@ class Mortal:
         """Until something starts or finishes that was not done before. Nothing but what REST shows is known."""
         self.begin_production()
         self.kept.look()
+        self.go_on()
+
+    def go_on(self) -> None:
+        """Do what people are asked to do until something starts or finishes that was not done before."""
 
         def goes_on() -> bool:
             self.acknowledge()
@@ -179,6 +185,42 @@ class Mortal:
         self.kept.look()
         assert not shown or self.kept.has(shown), f"a record that was shown is gone: {shown}"
         self.start("controller")
+
+    def troubled(self) -> None:
+        """Something beside the controller dies, or there is no room left on the disk; then work goes on by itself."""
+        trouble = self.chance.choice([self.kill_workers, self.lose_server, self.fill_disk])
+        trouble()
+        self.seen[trouble.__name__.replace("_", " ")] += 1
+        self.kept.look()
+        self.go_on()
+
+    def lose_server(self) -> None:
+        """The server dies and is started again, while production goes on."""
+        self.kill("server")
+        time.sleep(self.chance.uniform(0, UNTIL_KILLED))
+        self.start("server")
+        self.wait(lambda: self.production() == "started", "production does not go on without the server")
+
+    def fill_disk(self) -> None:
+        """The controller can write to no file any more: it says so, and commands nothing until it can again."""
+        controller = self._parts["controller"].pid
+        resource.prlimit(controller, resource.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))
+        try:
+            self.wait(lambda: "unjournalled" in self.alarms(), "nobody is told that nothing can be recorded")
+            self.kept.look()
+            heard = sum(map(len, self.wire.heard.values()))
+            time.sleep(STANDSTILL)
+            assert not self.kept.look(), "something was recorded on a full disk"
+            assert sum(map(len, self.wire.heard.values())) == heard, "something was commanded that is not recorded"
+        finally:
+            unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
+            resource.prlimit(controller, resource.RLIMIT_FSIZE, unlimited)
+        self.wait(lambda: "unjournalled" not in self.alarms(), "nothing can be recorded, though there is room again")
+
+    def alarms(self) -> set[str]:
+        """What is wrong now, by its key."""
+        alarms: dict[str, dict[str, object]] = self.browser.get("alarms").json()["alarms"]
+        return {key for key, alarm in alarms.items() if alarm["ended"] is None}
 
     def judged(self) -> Counter[str]:
         """All that has been met; AssertionError when something happened twice, or should not have."""
@@ -217,6 +259,15 @@ def lives(seed: str, kills: int) -> Counter[str]:
         for _ in range(kills):
             station.killed()
         station.get_back_to_work()
+        return station.judged()
+
+
+def troubles(seed: str, number: int) -> Counter[str]:
+    """A station at work, in trouble so many times. AssertionError when anything is not as it should be."""
+    with mortal(seed) as station:
+        station.get_back_to_work()
+        for _ in range(number):
+            station.troubled()
         return station.judged()
 
 
