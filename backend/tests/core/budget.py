@@ -10,7 +10,7 @@ from hypothesis import HealthCheck, settings
 SHARE = float(os.environ.get("SHARE_OF_EXAMPLES", "0.4"))
 
 
-def examples(number: int) -> settings:
+def examples(number: int, share: float = SHARE) -> settings:
     """So many examples where all are tried, always the same ones; how long one takes does not matter."""
     slow = (
         HealthCheck.too_slow,
@@ -18,5 +18,5 @@ def examples(number: int) -> settings:
         HealthCheck.large_base_example,
         HealthCheck.filter_too_much,
     )
-    tried = max(min(number, 20), round(SHARE * number))
+    tried = max(min(number, 20), round(share * number))
     return settings(max_examples=tried, derandomize=True, deadline=None, database=None, suppress_health_check=slow)

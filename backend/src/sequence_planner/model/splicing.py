@@ -128,7 +128,7 @@ def removed(text: str, path: EntryPath) -> str:
         return _cut_in_brackets(layout, parent, position)
     if len(entries) == 1:
         if len(path) > 1:
-            return replaced(text, path[:-1], {} if parent.kind == "mapping" else [])
+            return _emptied(layout, path[:-1], way)
         nothing = "" if parent.kind == "mapping" else "[]"
         return text[: layout.line_start(entry.start)] + nothing + text[layout.line_end(entry.end) :]
     if text[layout.line_start(entry.start) : entry.start].strip():
@@ -142,6 +142,17 @@ def removed(text: str, path: EntryPath) -> str:
     if end < len(text):
         return text[:begin] + text[end + 1 :]
     return text[: begin - 1]  # the last line of a text that does not end with a line break
+
+
+def _emptied(layout: Layout, path: EntryPath, way: list[tuple[Node, int]]) -> str:
+    """Without the only entry of what stands at `path`. Comments that are set apart from that entry stay there."""
+    text, (parent, _), whole = layout.text, way[-1], layout.entry(way[:-1])
+    new = replaced(text, path, {} if parent.kind == "mapping" else [])
+    apart = text[layout.line_end(whole.head) : layout.comments_above(parent, 0)].rstrip()
+    if "#" not in apart:
+        return new
+    end = len(new) - len(text) + layout.line_end(whole.end)
+    return new[:end] + apart + new[end:]
 
 
 def _cut_behind_dash(layout: Layout, entry: Entry, following: Entry) -> str:
