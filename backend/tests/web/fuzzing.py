@@ -28,7 +28,6 @@ from sequence_planner.web.settings import Settings
 from .running import Loop, Server, free_port, until
 from .test_looking import Telling, network
 
-MODEL = Path(__file__).parents[3] / "models" / "bolt_tightening"
 PHASES = ("examples", "coverage", "fuzzing", "stateful")
 PATIENCE = 10.0  # seconds
 MEDIA_TYPE = "application/problem+json"
@@ -66,7 +65,7 @@ def station(folder: Path) -> Iterator[tuple[Server, Telling]]:
     """A server all of whose operations have something to answer, and its controller; files go to `folder`."""
     database = f"sqlite:///{folder / 'station.sqlite'}"
     path = folder / "controller.sock"
-    settings = Settings(controller_socket=path, page=folder / "page", database=database, model=MODEL, port=free_port())
+    settings = Settings(controller_socket=path, page=folder / "page", database=database, port=free_port())
     loop = Loop()
     controller, server = Telling(loop, path), Server(loop, settings)
     controller.link = ControllerLink(path, controller.handle, controller.answer)
