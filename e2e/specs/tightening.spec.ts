@@ -17,20 +17,22 @@ test('the operator acknowledges on the watch and three bolt pairs are tightened 
 	const engines = await completed(operate, 'new_engine');
 	await picture(watch, 'watch-192');
 	await picture(operate, 'operate-1440');
+	const before = await place();
 
 	for (let round = 1; round <= ROUNDS && tightened.size < PAIRS.length; round++) {
 		const counts = new Map<string, number>();
 		for (const pair of PAIRS) counts.set(pair, await completed(operate, `tighten_bolt_pair(${pair})`));
 		const built = await completed(operate, 'new_engine');
-		const before = await place();
 		const pair = await acknowledge(watch);
+		// Looked for from now on: the robot may stand there for a moment only, while something else is looked at.
+		const arrives = expect(variable(operate, 'robot.pose')).toHaveAttribute('data-value', pair);
 
 		// The plan runs: the tool is commanded to turn, the robot goes to the pair, and the picture of the plan says so.
 		await expect(variable(operate, 'nutrunner.run_tool_forward')).toHaveAttribute('data-value', 'true');
 		await expect(block('nutrunner.run_nut', 'running')).toBeVisible();
 		await picture(operate, `operate-running-${round}`);
 		expect(await place(), 'the plan changes, its place on the page does not').toEqual(before);
-		// It may stay there for a moment only, which a busy machine does not show: the plan says it as long as it is followed.
+		await arrives;
 		await expect(block(`robot.move_to_position(${pair})`, 'running', 'done')).toBeVisible();
 
 		// The last pair of an engine is seen tightened only for the moment until the next engine comes in.
