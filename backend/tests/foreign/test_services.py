@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import time
 from collections.abc import Awaitable, Callable
 
 import pytest
@@ -19,11 +20,12 @@ from foreign.peers import FAST_DDS, PATIENCE, ROS2_CLIENT, Peer, built, eventual
 from sequence_planner.ros import names
 from sequence_planner.ros.choice import open_transport
 from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.transport import NoServerError, Transport
+from sequence_planner.ros.transport import NoAnswerError, NoServerError, Transport
 
 DOMAIN = 1 + (os.getpid() + 25) % 100
 Role = tuple[str, ...]
 ASKS_AS_WE_DO, SERVES_AS_WE_DO = (ROS2_CLIENT, "call", "cyclone"), (ROS2_CLIENT, "serve", "cyclone")
+LOOKING = "asked 0 + 0"
 SERVICE, TYPE = "/add_two_ints", "example_interfaces/srv/AddTwoInts"
 
 
@@ -92,14 +94,27 @@ def test_a_client_that_does_not_tell_its_mapping_is_not_answered(registry: Messa
 @pytest.mark.usefixtures("vouched")
 def test_a_server_of_the_same_mapping_understands_each_call(registry: MessageRegistry) -> None:
     async def scenario(station: Transport, peer: Peer) -> None:
-        async def added(a: int, b: int) -> object:
+        async def added(a: int, b: int, within: float = PATIENCE) -> object:
             request = registry.encode(f"{TYPE}_Request", {"a": a, "b": b})
-            return registry.decode(f"{TYPE}_Response", await station.call(SERVICE, TYPE, request, PATIENCE))["sum"]
+            return registry.decode(f"{TYPE}_Response", await station.call(SERVICE, TYPE, request, within))["sum"]
 
+        async def found() -> None:
+            """Call until the peer has found the station: what it answers before that, its DDS sends to nobody."""
+            deadline = time.monotonic() + PATIENCE
+            while True:
+                try:
+                    await added(0, 0, within=2)
+                    return
+                except NoAnswerError:
+                    assert time.monotonic() < deadline, "never found"
+
+        await found()
         assert await added(-(2**62), 2**62 - 1) == -1
         # As many at a time as the peer keeps.
         assert await asyncio.gather(*(added(number, 1) for number in range(10))) == list(range(1, 11))
-        assert len(peer.lines) == 11
+        expected = [f"asked {-(2**62)} + {2**62 - 1}", *(f"asked {number} + 1" for number in range(10))]
+        await eventually(lambda: len(peer.lines) >= len(expected) + peer.lines.count(LOOKING), "each call is heard")
+        assert sorted(line for line in peer.lines if line != LOOKING) == sorted(expected)
 
     play(registry, SERVES_AS_WE_DO, scenario)
 

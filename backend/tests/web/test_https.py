@@ -117,6 +117,30 @@ def test_who_signed_in_acts_and_listens_by_name(secured: Secured, controller: Co
         assert '"snapshot"' in str(stream.recv(2))
 
 
+def test_a_client_that_closes_and_does_not_hang_up_does_not_keep_the_server_from_ending(secured: Secured) -> None:
+    origin = {"Origin": f"https://{secured.host}"}
+    key = "dGhlIHNhbXBsZSBub25jZQ=="
+    asks = {"Host": secured.host, "Connection": "Upgrade", "Upgrade": "websocket", "Sec-WebSocket-Version": "13"}
+    headers = asks | {"Sec-WebSocket-Key": key} | secured.signed_in() | origin
+    head = "".join(f"{name}: {value}\r\n" for name, value in headers.items())
+    plain = socket.create_connection(("127.0.0.1", secured.server.settings.port))
+    with secured.trusting.wrap_socket(plain, server_hostname=NAME) as client:
+        client.sendall(f"GET /api/v1/stream HTTP/1.1\r\n{head}\r\n".encode())
+        assert client.recv(4096).startswith(b"HTTP/1.1 101 ")
+        client.sendall(bytes([0x88, 0x80, 0, 0, 0, 0]))  # that it closes; a frame of RFC 6455
+        before_it_hangs_up(client)
+        secured.server.stop()
+    with pytest.raises(httpx.ConnectError), secured.browser() as browser:
+        browser.get("/healthz")
+
+
+def before_it_hangs_up(client: ssl.SSLSocket) -> None:
+    """Read until the server has closed its side, so that it waits for the client's."""
+    client.settimeout(5)
+    while client.recv(4096):
+        pass
+
+
 FOREIGN_ORIGINS = (
     "https://evil.example",
     "https://evil.example:{port}",

@@ -10,6 +10,7 @@ import asyncio
 from ipaddress import IPv4Address, IPv6Address
 
 from uvicorn.protocols.http.h11_impl import H11Protocol
+from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
 from sequence_planner.web.settings import address_of
 
@@ -81,3 +82,18 @@ class ProxiedConnection(PromptConnection):
     """A connection of a server that stands behind proxies, which alone connect to it, for everybody."""
 
     of_one_address = MOST_CONNECTIONS
+
+
+class Stream(WebSocketsSansIOProtocol):
+    """A stream that can be ended at any time, also while its client is about to close it.
+
+    uvicorn 0.54 closes each stream at its shutdown, and stops short, with requests unfinished and the application not
+    told, at one whose client has said that it closes but has not hung up yet.
+    """
+
+    def shutdown(self) -> None:
+        """Say that the server goes, unless the client went first, and hang up."""
+        if self.transport.is_closing():
+            self.stop_keepalive()
+        else:
+            super().shutdown()

@@ -24,6 +24,7 @@ from sequence_planner.web.connections import (
     MOST_CONNECTIONS,
     PromptConnection,
     ProxiedConnection,
+    Stream,
 )
 from sequence_planner.web.controller_client import ControllerClient
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
@@ -40,7 +41,7 @@ def uvicorn_config(settings: Settings) -> uvicorn.Config:
     return uvicorn.Config(
         create_app(settings, ControllerClient(settings.controller_socket)),
         http=ProxiedConnection if settings.proxies else PromptConnection,
-        ws="websockets-sansio",
+        ws=Stream,
         ws_max_size=LARGEST_FRAME,
         ws_per_message_deflate=False,  # what is secret and what an attacker chose are not compressed together
         ssl_context_factory=None if tls is None else lambda *_: tls,
