@@ -117,6 +117,7 @@ async def bench(network: MemoryNetwork | None = None, database: Database | None 
         database = database or kept.enter_context(journal())
         known = what_is_known(database, station.automaton)
         controller = Controller(IDENTITY, station, supervisor, transport, database, known)
+        controller.take_command()
         running = asyncio.create_task(controller.run())
         await asyncio.sleep(0)  # what has not begun would not end in good order either
         try:

@@ -181,6 +181,7 @@ async def _disturbed(seconds: float, seed: str, clock: Clock, database: Database
     devices = Devices(network, chance.randrange(1000))
     transport = network.join(station.registry, "sequence_planner", asyncio.get_running_loop())
     controller = Controller(IDENTITY, station, supervisor, transport, database)
+    controller.take_command()
     trouble = Trouble(controller, devices, chance, seen.seen)
     with watched(seen, clock):
         living = [asyncio.create_task(devices.live()), asyncio.create_task(controller.run())]

@@ -71,6 +71,7 @@ class Plant:
         """A controller that runs, and waits for production to be started."""
         identity = StationIdentity(name="mixer", title="", description="", transport=self._kind, emulated=True)
         controller = Controller(identity, self.station, supervisor, self.join("sequence_planner"), self._database)
+        controller.take_command()
         self._running.append(asyncio.create_task(controller.run()))
         return controller
 

@@ -285,6 +285,7 @@ def test_a_station_that_never_comes_to_rest_is_said_and_paced() -> None:
         transport = MemoryNetwork().join(registry, "sequence_planner", asyncio.get_running_loop())
         station = ReadyStation(blinking, StationPipelines({}, {}), registry)
         controller = Controller(IDENTITY, station, everything_is_safe, transport, database)
+        controller.take_command()
         running = asyncio.create_task(controller.run())
         await until(lambda: "restless" in controller.view().alarms)
         assert "blink" in controller.view().alarms["restless"].text

@@ -115,6 +115,7 @@ def test_every_endpoint_stands_once_and_peers_are_those_that_the_alarms_know(end
     assert sum(len(topic.publishers) + len(topic.subscribers) for topic in found.topics.values()) == len(endpoints)
     station = cell()[0]
     watch = NetworkWatch(station.pipelines, station.registry)
+    watch.commands = True
     watch.look(endpoints)
     for name, topic in found.topics.items():
         if topic.station is not None:

@@ -23,7 +23,9 @@ OBEYS = replace(REPORTS, topic=COMMAND, type_name=COMMAND_TYPE, direction="subsc
 
 def watch() -> NetworkWatch:
     station = cell()[0]
-    return NetworkWatch(station.pipelines, station.registry)
+    made = NetworkWatch(station.pipelines, station.registry)
+    made.commands = True
+    return made
 
 
 def test_peers_are_those_that_can_be_understood() -> None:

@@ -218,6 +218,23 @@ def test_where_there_was_too_little_time_for_advice_asking_again_finds_it(monkey
     asyncio.run(scenario())
 
 
+def test_all_who_ask_at_once_get_one_answer_though_one_of_them_leaves(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(offers, "WAITING", 60.0)  # the adviser is only being started
+
+    async def scenario() -> None:
+        async with desk() as there:
+            there.tick()
+            leaving, *staying = (asyncio.create_task(there.offers.advice()) for _ in range(4))
+            await asyncio.sleep(0.1)
+            leaving.cancel()
+            first, *others = await asyncio.gather(*staying)
+            assert first.offers
+            assert all(each is first for each in others)
+            assert leaving.cancelled()
+
+    asyncio.run(scenario())
+
+
 def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_taken(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

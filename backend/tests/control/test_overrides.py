@@ -157,6 +157,7 @@ def test_the_controller_sets_shows_and_tells_what_passes(tmp_path: Path) -> None
         orders: list[object] = []
         tank.subscribe("/tank/order", "tank_msgs/msg/Order", QualityOfService.RELIABLE, orders.extend)
         controller = Controller(IDENTITY, station, supervisor, transport, database)
+        controller.take_command()
         running = asyncio.create_task(controller.run())
         await asyncio.sleep(0)
         await controller.command(StartProduction(actor=SYSTEM))

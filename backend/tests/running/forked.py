@@ -132,6 +132,7 @@ class Child:
             controller = Controller(
                 IDENTITY, station, supervisor, transport, database, what_is_known(database, station.automaton)
             )
+        controller.take_command()
         controller.execution.listeners.append(self._heard)
         if self._chance.random() < 0.3:
             loop.call_later(self._chance.uniform(0, UNTIL_KILLED), self._step_clock)

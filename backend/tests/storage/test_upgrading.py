@@ -16,6 +16,7 @@ import sequence_planner.identity
 import sequence_planner.journal
 from sequence_planner.storage.database import Database, StorageError
 from sequence_planner.storage.metadata import METADATA
+from sequence_planner.storage.upgrading import NEWEST
 from storage.servers import PASSWORD
 
 UPGRADE = """
@@ -36,6 +37,15 @@ def test_the_migrations_make_the_tables_that_the_program_declares(database: Data
     assert {"audit", "people", "sessions", "keys", "watches"} <= set(METADATA.tables)
     with database.reading() as connection:
         assert compare_metadata(MigrationContext.configure(connection), METADATA) == []
+
+
+def test_tables_of_the_newest_version_need_no_migrations(database_url: str, database: Database) -> None:
+    with database.reading() as connection:
+        assert MigrationContext.configure(connection).get_current_heads() == (NEWEST,)
+    asked = "import sys; from sequence_planner.storage.database import Database; Database.open(sys.argv[1]).upgrade()"
+    code = f"{asked}; print('alembic' in sys.modules)"
+    said = subprocess.run([sys.executable, "-c", code, database_url], capture_output=True, text=True, check=True).stdout
+    assert said.strip() == "False"
 
 
 def test_upgrading_again_changes_nothing(database: Database) -> None:

@@ -60,8 +60,12 @@ class Commander:
         self._registry = registry
         self._transport = transport
         self.reports = Reports()
-        for pipeline in pipelines.values():
-            transport.advertise(pipeline.topic.name, pipeline.topic.type_name, pipeline.topic.quality)
+
+    def advertise(self) -> None:
+        """Announce the topics; before, nothing is sent."""
+        for command in self.topics.values():
+            topic = command.pipeline.topic
+            self._transport.advertise(topic.name, topic.type_name, topic.quality)
 
     @property
     def owed(self) -> dict[str, str]:

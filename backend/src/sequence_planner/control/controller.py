@@ -68,7 +68,9 @@ MOST_TICKS = 100  # in a row without anything new; then the station is taken to 
 class Controller:
     """A running station. Used from one event loop; `run` is its life.
 
-    What happens is written into the journal of `database`; `known` is what came back from there.
+    It only listens, and tells nobody anything but how the station stands, until it is told to `take_command`. From then
+    on what happens, and has happened till then, is written into the journal of `database`; `known` is what came back
+    from there.
     """
 
     def __init__(
@@ -92,7 +94,7 @@ class Controller:
         )
         self.desk = TaskDesk(automaton, station.pipelines.feeds)
         self._outside = Outside(self.execution)
-        self._alarms = Alarms(self.execution, self._outside, feeds, network, commander, self._note, known.aside)
+        self._alarms = Alarms(self.execution, self._outside, feeds, network, commander, self._note, known)
         self._beliefs = Beliefs(self.execution, known.beginning, known.beliefs, partial(self._note, BELIEFS))
         self._doubting = Doubting(self.execution)
         self._viewing = Viewing(identity, self.execution, self._outside, feeds, network, self._beliefs)
@@ -148,6 +150,17 @@ class Controller:
         """Seconds until the next look at the clock: at the latest when a stage of a pipeline waits for it."""
         due = self.devices.due(self._release.released is not None)
         return LOOK_EVERY if due is None else min(LOOK_EVERY, max(0.0, due - time.monotonic()))
+
+    @property
+    def commands(self) -> bool:
+        """Whether it is the one that commands the station's devices."""
+        return self.devices.network.commands
+
+    def take_command(self) -> None:
+        """Nobody else commands the station's devices, so this one does from now on."""
+        self.devices.take_command()
+        self._writer.begin()
+        self._tick_again()
 
     async def command(self, command: Command) -> None:
         """Carry out a command. Raises `CommandRefused`."""

@@ -60,6 +60,11 @@ class Devices:
         dues = (self.feeds.due, self.commander.due if is_released else None)
         return min((due for due in dues if due is not None), default=None)
 
+    def take_command(self) -> None:
+        """Say on the network that this station commands its devices. Until then it only listens."""
+        self.network.commands = True
+        self.commander.advertise()
+
     def publish(self, state: State, everything: bool) -> None:
         """Send the outputs of a state: all of them, or those that differ from what was sent before."""
         now = time.monotonic()

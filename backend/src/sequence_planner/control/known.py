@@ -12,8 +12,12 @@ from sequence_planner.control.view import BeliefView
 
 @dataclass(frozen=True)
 class Known:
-    """What came back from the journal: estimates and why they were believed, outputs, service, and alarms put aside."""
+    """What came back from the journal: estimates and why they were believed, outputs, service, and alarms put aside.
+
+    `left_out` says what did not come back, and why.
+    """
 
     beginning: Beginning | None = None
     aside: Mapping[str, PutAside] = field(default_factory=dict)
     beliefs: Mapping[str, BeliefView] = field(default_factory=dict)
+    left_out: tuple[str, ...] = ()

@@ -6,6 +6,7 @@ soon as anything has changed at the station it is refused, and has to be asked f
 
 from __future__ import annotations
 
+import asyncio
 import itertools
 import secrets
 from collections.abc import Callable, Iterable
@@ -55,6 +56,12 @@ class _Kept:
     revision: int
 
 
+@dataclass(frozen=True)
+class _Asked:
+    of: tuple[int, AdviceRequest]
+    answer: asyncio.Future[AdviceView]
+
+
 class Offers:
     """Asks for offers about `execution`, and carries out those that are taken.
 
@@ -77,6 +84,7 @@ class Offers:
         self._kept: dict[str, _Kept] = {}
         self._life = secrets.token_hex(3)  # no offer is taken for one of an earlier life of the controller
         self._numbers = itertools.count(1)
+        self._asked: _Asked | None = None
         self._advised: tuple[int, AdviceRequest, AdviceView] | None = None
 
     async def advice(self) -> AdviceView:
@@ -93,6 +101,13 @@ class Offers:
             impossible=self._impossible(),
             fixed=frozenset(execution.conduct.forces),
         )
+        if self._asked is None or self._asked.of != (revision, request) or self._asked.answer.done():
+            of = revision, request
+            self._asked = _Asked(of, asyncio.ensure_future(self._found(revision, request)))
+        # Whoever asks the same meanwhile waits for the same answer; one who leaves takes it from nobody.
+        return await asyncio.shield(self._asked.answer)
+
+    async def _found(self, revision: int, request: AdviceRequest) -> AdviceView:
         deadline = request.deadline
         if self._advised is not None and self._advised[:2] == (revision, request):
             view = self._advised[2]

@@ -81,10 +81,22 @@ async def control(running: Running) -> None:
 
 
 async def _live(running: Running, preparation: Preparation, recording: Recording, database: Database) -> None:
-    """Prepare the station, then run it."""
+    """Prepare the station and run it, while the network is asked whether somebody else commands its devices."""
+    try:
+        async with asyncio.TaskGroup() as living:
+            alone = living.create_task(_require_sole_command(running))
+            living.create_task(_run(running, preparation, recording, database, alone))
+    except ExceptionGroup as failed:
+        raise failed.exceptions[0] from None
+
+
+async def _run(
+    running: Running, preparation: Preparation, recording: Recording, database: Database, alone: asyncio.Task[None]
+) -> None:
+    """Prepare the station, then run it; it only listens until it is known to be `alone`."""
 
     async def act(command: Command) -> None:
-        if preparation.controller is None:
+        if preparation.controller is None or not preparation.controller.commands:
             raise preparation.refusal()
         await preparation.controller.command(command)
 
@@ -103,7 +115,7 @@ async def _live(running: Running, preparation: Preparation, recording: Recording
         _beside(analyse(running.station.automaton, preparation, running.socket.parent)),
     ):
         async with _beside(_show_preparing(running, preparation, link)):
-            supervisor = await _prepared(running, preparation)
+            supervisor = await _prepared(preparation)
             if supervisor is None:
                 LOG.error("there is no supervisor", because=preparation.trouble)
                 await asyncio.Event().wait()
@@ -117,11 +129,19 @@ async def _live(running: Running, preparation: Preparation, recording: Recording
             controller = Controller(identity, running.station, supervisor, transport, database, known)
             keep_everything()  # a running station must not be held up
             preparation.give(controller)
-            async with contextlib.AsyncExitStack() as stack:
-                await stack.enter_async_context(_beside(_show(controller, link)))
-                await stack.enter_async_context(_beside(show_network(controller.devices.network, link)))
-                if running.start:
-                    await stack.enter_async_context(_beside(start_when_alone(controller, handle)))
+
+            async def command() -> None:
+                await asyncio.wait({alone})
+                if alone.exception() is None:  # otherwise all of this ends
+                    controller.take_command()
+                    if running.start:
+                        await start_when_alone(controller, handle)
+
+            async with (
+                _beside(_show(controller, link)),
+                _beside(show_network(controller.devices.network, link)),
+                _beside(command()),
+            ):
                 await controller.run()
         finally:
             transport.close()
@@ -161,24 +181,13 @@ async def _beside(life: Coroutine[None, None, None]) -> AsyncIterator[None]:
         await asyncio.wait({task})
 
 
-async def _prepared(running: Running, preparation: Preparation) -> Supervisor | None:
-    """The supervisor, computed while the network is asked whether somebody else commands the station's devices."""
+async def _prepared(preparation: Preparation) -> Supervisor | None:
+    """The supervisor."""
     began = time.monotonic()
-    try:
-        async with asyncio.TaskGroup() as both:
-            synthesis = both.create_task(_awaited(preparation.supervisor))
-            both.create_task(_require_sole_command(running))
-    except ExceptionGroup as failed:
-        raise failed.exceptions[0] from None
-    supervisor = synthesis.result()
+    supervisor = await asyncio.shield(preparation.supervisor)
     if supervisor is not None:
-        seconds = round(time.monotonic() - began, 2)
-        LOG.info("safe states computed", seconds=seconds)
+        LOG.info("safe states computed", seconds=round(time.monotonic() - began, 2))
     return supervisor
-
-
-async def _awaited(supervisor: asyncio.Future[Supervisor | None]) -> Supervisor | None:
-    return await asyncio.shield(supervisor)
 
 
 async def _require_sole_command(running: Running) -> None:
@@ -195,12 +204,11 @@ def what_is_known(database: Database, automaton: Automaton) -> Known:
     with database.reading() as connection:
         restored = beginning(connection, automaton, Moment.now())
         aside, beliefs = last(connection, ASIDE), last(connection, BELIEFS)
-    if restored is not None and restored.left_out:
-        LOG.warning("not all that was known fits the model", left_out=restored.left_out)
     return Known(
         restored.beginning if restored else None,
         {} if aside is None else aside_from(json.loads(aside.content)),
         {} if beliefs is None else beliefs_from(json.loads(beliefs.content)),
+        restored.left_out if restored else (),
     )
 
 

@@ -35,7 +35,7 @@ class TakenOver(Exception):
 
 
 class GroupCommit:
-    """Writes records behind `end`, in the order in which they are put.
+    """Writes records behind `end`, in the order in which they are put, from `begin` on.
 
     `tell` is called in the thread: the number up to which all is durable, and why no more is, or None.
     """
@@ -50,6 +50,10 @@ class GroupCommit:
         self._queue: deque[RunRecord] = deque()
         self._changed = threading.Condition()  # the queue, or `_until`
         self._until: float | None = None  # the moment of the monotonic clock after which nothing is tried any more
+        self._thread: threading.Thread | None = None
+
+    def begin(self) -> None:
+        """Begin to write."""
         self._thread = threading.Thread(target=self._work, name="journal", daemon=True)
         self._thread.start()
 
@@ -60,11 +64,15 @@ class GroupCommit:
             self._changed.notify()
 
     def close(self, patience: float) -> None:
-        """Write what waits, as long as that is possible within `patience` seconds. It waits for the thread."""
+        """Write what waits, as long as that is possible within `patience` seconds. It waits for the thread.
+
+        What was put is dropped if it was never begun.
+        """
         with self._changed:
             self._until = time.monotonic() + patience
             self._changed.notify()
-        self._thread.join(patience)
+        if self._thread is not None:
+            self._thread.join(patience)
 
     def _work(self) -> None:
         try:

@@ -29,7 +29,7 @@ _CLOSING: Final = 5.0  # seconds for what still waits at the end
 
 
 class RunWriter:
-    """Writes records, in order. It is used from one event loop, on which `told` is called after each change.
+    """Writes records, in order, from `begin` on. It is used from one event loop, on which `told` hears of each change.
 
     Raises `StorageError` if the database cannot be read.
     """
@@ -50,6 +50,10 @@ class RunWriter:
         self._end = end  # of what was given to write
         self._closed = False
         self._commits = GroupCommit(database, end, Checkpointing(database, signed), self._tell)
+
+    def begin(self) -> None:
+        """Begin to write, beginning with what has been given until now."""
+        self._commits.begin()
 
     @property
     def waiting(self) -> int:
@@ -73,7 +77,7 @@ class RunWriter:
         return number
 
     async def close(self) -> None:
-        """Write what waits, as long as that is possible within 5 s. Nothing can be written then."""
+        """Write what waits, as long as that is possible within 5 s, if it was begun. Nothing can be written then."""
         self._closed = True
         await asyncio.to_thread(self._commits.close, _CLOSING)
         if self.waiting:

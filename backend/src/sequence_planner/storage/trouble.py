@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sqlite3
 
-import psycopg
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
 from sequence_planner.storage.address import PostgresqlServer, SqliteFile
@@ -22,12 +21,13 @@ _SQLITE = (
     ("SQLITE_CORRUPT", "is damaged: move it away and put a copy in its place (docs/database.md)"),
     ("SQLITE_IOERR", "cannot be read or written, as the disk reports an error: see to the disk and the room on it"),
 )
-_POSTGRESQL: tuple[tuple[type[psycopg.Error], str], ...] = (
-    (psycopg.errors.LockNotAvailable, f"is kept from being written to for more than {PATIENCE:g} s by another program"),
-    (psycopg.errors.InsufficientPrivilege, "gives this user too few rights: let the user own the database"),
-    (psycopg.errors.DiskFull, "cannot be written to, as its disk is full: make room, then try again"),
-    (psycopg.errors.ReadOnlySqlTransaction, "cannot be written to: it is a copy that only reads"),
-)
+# By SQLSTATE, so that a station with a database of SQLite does not have to import the driver of PostgreSQL.
+_POSTGRESQL = {
+    "55P03": f"is kept from being written to for more than {PATIENCE:g} s by another program",  # lock_not_available
+    "42501": "gives this user too few rights: let the user own the database",  # insufficient_privilege
+    "53100": "cannot be written to, as its disk is full: make room, then try again",  # disk_full
+    "25006": "cannot be written to: it is a copy that only reads",  # read_only_sql_transaction
+}
 
 
 def storage_error(place: SqliteFile | PostgresqlServer, error: SQLAlchemyError) -> StorageError:
@@ -35,7 +35,7 @@ def storage_error(place: SqliteFile | PostgresqlServer, error: SQLAlchemyError) 
     cause = error.orig if isinstance(error, DBAPIError) else None
     if isinstance(cause, sqlite3.Error):
         return StorageError(f"{place} {_of_sqlite(cause)}")
-    if isinstance(cause, psycopg.Error):
+    if cause is not None and isinstance(place, PostgresqlServer):
         return StorageError(f"{place} {_of_postgresql(cause)}")
     return StorageError(f"{place} cannot be used: {error}")
 
@@ -45,11 +45,11 @@ def _of_sqlite(cause: sqlite3.Error) -> str:
     return next((words for start, words in _SQLITE if name.startswith(start)), f"cannot be used: {cause}")
 
 
-def _of_postgresql(cause: psycopg.Error) -> str:
-    for kind, words in _POSTGRESQL:
-        if isinstance(cause, kind):
-            return words
+def _of_postgresql(cause: BaseException) -> str:
+    state: str | None = getattr(cause, "sqlstate", None)
+    if state in _POSTGRESQL:
+        return _POSTGRESQL[state]
     first = str(cause).strip().partition("\n")[0]
-    if cause.sqlstate is None:  # as of all that goes wrong before there is a connection
+    if state is None:  # as of all that goes wrong before there is a connection
         return f"cannot be reached: {first.rpartition(' failed: ')[2].removeprefix('FATAL:').strip()}"
     return f"cannot be used: {first}"

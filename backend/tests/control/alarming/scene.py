@@ -22,6 +22,7 @@ from sequence_planner.control.alarming.alarms import Alarms
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.known import Known
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
 from sequence_planner.ros.memory import MemoryNetwork
@@ -53,16 +54,18 @@ def commander(station: ReadyStation) -> Commander:
     return asyncio.run(join())
 
 
-def alarms_of(execution: Execution, station: ReadyStation, told: Told | None = None) -> Alarms:
+def alarms_of(
+    execution: Execution, station: ReadyStation, told: Told | None = None, known: Known | None = None
+) -> Alarms:
     """The alarms of a station of which no device has been heard yet."""
     feeds = Feeds(station.pipelines, station.registry)
     network = NetworkWatch(station.pipelines, station.registry)
-    return Alarms(execution, Outside(execution), feeds, network, commander(station), told or Told())
+    return Alarms(execution, Outside(execution), feeds, network, commander(station), told or Told(), known)
 
 
-def alarms(rig: Rig) -> Alarms:
+def alarms(rig: Rig, known: Known | None = None) -> Alarms:
     """The alarms of the station of a rig."""
-    return alarms_of(rig.execution, rig.station)
+    return alarms_of(rig.execution, rig.station, known=known)
 
 
 def acknowledge(alarm: str, since: float) -> AlarmCommand:

@@ -8,6 +8,7 @@ from sequence_planner.control.alarm_view import AlarmState, Priority
 from sequence_planner.control.alarming.alarms import Alarms
 from sequence_planner.control.conduct import LastErrand, OutOfService
 from sequence_planner.control.heard import TickOutcome
+from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_view import QuestionView
@@ -119,6 +120,17 @@ def test_outputs_that_nobody_has_decided_on_are_an_alarm() -> None:
     told = shown.current(None, Moment(1000, 10))["undecided-outputs"]
     assert told.text.endswith("nutrunner.run_tool_forward, robot.target_pose")
     shown.undecided = ()
+    assert there(shown, Moment(1001, 11)) == set()
+
+
+def test_what_did_not_come_back_is_an_alarm_until_production_is_started() -> None:
+    rig = Rig()
+    left_out = ("speed was 3, and ranges over 0..2 now", "operation polish was completed, and is none")
+    shown = alarms(rig, Known(left_out=left_out))
+    told = shown.current(None, Moment(1000, 10))["not-restored"]
+    assert told.text.endswith("is known now: speed was 3, and ranges over 0..2 now, and 1 more")
+    assert tuple(told.parts) == left_out
+    rig.start_production()
     assert there(shown, Moment(1001, 11)) == set()
 
 

@@ -16,6 +16,7 @@ from sequence_planner.control.alarming.keeping import aside_from
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
@@ -50,6 +51,7 @@ class Network:
         self.devices = EmulatedDevices(self.station.automaton, pipelines, seed=1)
         self.feeds = Feeds(pipelines, registry, self.station.automaton.initial_valuation)
         self.network = NetworkWatch(pipelines, registry)
+        self.network.commands = True
         self.commander = Commander(pipelines.outgoing, registry, self)
         self.told = Told()
         self.alarms = Alarms(
@@ -295,7 +297,7 @@ def test_what_was_put_aside_is_so_after_the_controller_was_started_anew() -> Non
         after.network,
         after.commander,
         after.told,
-        aside_from(kept),
+        Known(aside=aside_from(kept)),
     )
     after.cut = before.cut
     after.start()

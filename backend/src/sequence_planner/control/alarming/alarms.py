@@ -16,7 +16,7 @@ from sequence_planner.control.alarm_commands import (
 )
 from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.alarming.folding import Folding
-from sequence_planner.control.alarming.keeping import KIND, PutAside, aside_to_keep
+from sequence_planner.control.alarming.keeping import KIND, aside_to_keep
 from sequence_planner.control.alarming.life import Aside, Life
 from sequence_planner.control.alarming.lives import Lives
 from sequence_planner.control.alarming.of_devices import DeviceAlarms
@@ -25,6 +25,7 @@ from sequence_planner.control.alarming.of_station import StationAlarms
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
@@ -37,7 +38,7 @@ KEEP_EVERY = 86400.0  # seconds after which what is aside is told again, so that
 class Alarms(StationAlarms):
     """The alarms of a station. `tell` hears what becomes of each, for the journal.
 
-    `aside` are those that were shelved or out of service before the controller was started.
+    `known` has those that were shelved or out of service before the controller was started.
     """
 
     def __init__(
@@ -48,9 +49,10 @@ class Alarms(StationAlarms):
         network: NetworkWatch,
         commander: Commander,
         tell: Tell,
-        aside: Mapping[str, PutAside] | None = None,
+        known: Known | None = None,
     ) -> None:
-        super().__init__(execution, outside)
+        known = known or Known()
+        super().__init__(execution, outside, known.left_out)
         self._devices = DeviceAlarms(execution, feeds, network, commander)
         self._plans = PlanAlarms(execution, feeds)
         self._folding = Folding()
@@ -58,7 +60,7 @@ class Alarms(StationAlarms):
         self._tell = tell
         self._kept: dict[str, Aside] = {}
         self._kept_at = float("-inf")
-        self._aside_before = aside or {}
+        self._aside_before = known.aside
 
     def look(self, planner_trouble: str | None, moment: Moment) -> None:
         """Take note of what is there now; often enough that nothing comes and goes unseen."""

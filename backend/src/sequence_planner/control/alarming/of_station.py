@@ -18,11 +18,15 @@ _UNJOURNALLED = "unjournalled"
 
 
 class StationAlarms:
-    """Looks at `execution` and `outside`; what only others know, they set."""
+    """Looks at `execution` and `outside`; what only others know, they set.
 
-    def __init__(self, execution: Execution, outside: Outside) -> None:
+    `left_out` says what was known before the controller was started and is not now.
+    """
+
+    def __init__(self, execution: Execution, outside: Outside, left_out: tuple[str, ...]) -> None:
         self._execution = execution
         self._outside = outside
+        self._left_out = left_out
         self._consequences = Consequences(execution)
         self._conflicts: set[tuple[str, str, str]] = set()
         self.restless: tuple[str, ...] = ()  # abilities that finish again and again although nothing new is measured
@@ -114,6 +118,17 @@ class StationAlarms:
                 self._consequences.of_values({each.variable for each in self.questions}),
                 f"Look at what {first.variable} stands for, and correct it or the device.",
                 parts=() if len(texts) == 1 else tuple(texts),
+            )
+        if self._left_out and self._execution.production is not Production.STARTED:
+            left_out, *others = self._left_out
+            more = f", and {len(others)} more" if others else ""
+            yield Cause(
+                "not-restored",
+                Priority.MEDIUM,
+                f"Not all that was known before the controller was started is known now: {left_out}{more}",
+                "The station begins there as its model says, which may not be so.",
+                "See how the station stands, and correct what is believed before production is started.",
+                parts=self._left_out if others else (),
             )
         if self.undecided:
             names = sorted(self.undecided)
