@@ -106,10 +106,10 @@ def wait_for(condition: Callable[[], bool]) -> None:
 
 def controller_socket(launcher: int) -> Path:
     """The socket of the controller that the launcher has started."""
-    asked = ["ps", "-ww", "--ppid", str(launcher), "-o", "args="]
+    asked = ["ps", "-ww", "--ppid", str(launcher), "--sort=start_time", "-o", "args="]
     listed = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
-    (line,) = [line for line in listed.splitlines() if " controller " in line]
-    words = line.split()
+    lines = [line for line in listed.splitlines() if " controller " in line]
+    words = lines[0].split()
     return Path(words[words.index("--socket") + 1])
 
 

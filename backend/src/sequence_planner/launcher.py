@@ -1,8 +1,10 @@
 """One command starts all processes of a station, and sees to it that they live.
 
-Controller and server are started again when they die. Emulated devices are not: like real ones they stay away until
-somebody brings them back. Production is started without a person only once; a controller that had to be started again
-waits for one. None of them outlives this process, even if it is killed: each holds a pipe from it (see `lifeline`).
+Controller and server are started again when they die. Of the controller a spare is kept, a process that has imported
+all that it needs and waits: half of what a start takes is over then. Emulated devices are not started again: like real
+ones they stay away until somebody brings them back. Production is started without a person only once; a controller that
+had to be started again waits for one. None of them outlives this process, even if it is killed: each holds a pipe from
+it (see `lifeline`).
 """
 
 from __future__ import annotations
@@ -21,7 +23,7 @@ from pathlib import Path
 
 from sequence_planner.announcement import announced, answers, first_start
 from sequence_planner.control.unix_socket import LONGEST_PATH
-from sequence_planner.lifeline import DEMONSTRATION_DATABASE
+from sequence_planner.lifeline import DEMONSTRATION_DATABASE, NEEDED
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.web.binding import check_demonstration, check_free
@@ -35,6 +37,8 @@ FIRST_PAUSE = 0.5  # seconds before a process is started again; doubled each tim
 LONGEST_PAUSE = 10.0
 STEADY = 60.0  # seconds after which a process that lives has recovered
 PATIENCE = 5.0  # seconds in which a process may end in good order
+SPARE_AFTER = 10.0  # seconds after which a process that lives gets a spare; until then its start is not held up
+SPARE = "--spare"  # of a command: it waits until it is needed
 
 
 @dataclass(frozen=True)
@@ -52,10 +56,18 @@ class Launch:
 
 
 class Part:
-    """A process of the station, which is started again when it dies; `more` are variables of its environment."""
+    """A process of the station, which is started again when it dies; `more` are variables of its environment.
 
-    def __init__(self, name: str, command: list[str], more: Mapping[str, str] | None = None) -> None:
+    One that `has_spare` is followed at once by another process that was started before.
+    """
+
+    def __init__(
+        self, name: str, command: list[str], more: Mapping[str, str] | None = None, has_spare: bool = False
+    ) -> None:
         self.name = name
+        self._has_spare = has_spare
+        self.spare: subprocess.Popen[bytes] | None = None
+        self._spare_due = 0.0
         self._environment = {**os.environ, **(more or {})}
         self.process: subprocess.Popen[bytes] | None = None
         self._command = command
@@ -71,11 +83,15 @@ class Part:
 
     def spawn(self, *more: str) -> None:
         """Start it; `more` arguments are for this time only."""
+        self.process = self._popen(*more)
+        self._begun = time.monotonic()
+        self._spare_due = self._begun + SPARE_AFTER
+
+    def _popen(self, *more: str) -> subprocess.Popen[bytes]:
         # A session of its own: an interrupt from the terminal reaches the launcher alone, which then ends the others.
-        self.process = subprocess.Popen(
+        return subprocess.Popen(
             [*self._command, *more], stdin=subprocess.PIPE, start_new_session=True, env=self._environment
         )
-        self._begun = time.monotonic()
 
     def look_after(self) -> int:
         """Start it again some time after it has died. The exit code when it could not be run from the first."""
@@ -86,17 +102,51 @@ class Part:
             return 0
         code = self.process.poll()
         if code is None:
+            self._look_after_spare(now)
             return 0
         if code == UNUSABLE and not self._again and not self.steady:
             return code
         if self.steady:
             self._pause = FIRST_PAUSE
         self._forget()
-        _say(f"the {self.name} ended with code {code} and is started again in {self._pause:g} s")
         self._again = True
+        if self._follow(now):
+            _say(f"the {self.name} ended with code {code}, and its spare goes on")
+            return 0
+        _say(f"the {self.name} ended with code {code} and is started again in {self._pause:g} s")
         self._due = now + self._pause
         self._pause = min(self._pause * 2, LONGEST_PAUSE)
         return 0
+
+    def _look_after_spare(self, now: float) -> None:
+        """Start a spare where there is none, some time after what it is for, or after one that has died."""
+        if self.spare is not None and self.spare.poll() is not None:
+            _close(self.spare)
+            self.spare, self._spare_due = None, now + LONGEST_PAUSE
+        if self._has_spare and self.spare is None and now >= self._spare_due:
+            self.spare = self._popen(SPARE)
+
+    def _follow(self, now: float) -> bool:
+        """Let the spare go on, if there is one."""
+        spare, self.spare = self.spare, None
+        if spare is None:
+            return False
+        try:
+            assert spare.stdin is not None
+            os.write(spare.stdin.fileno(), NEEDED)
+        except OSError:  # it has died just now
+            spare.wait()
+            _close(spare)
+            return False
+        self.process, self._begun = spare, now
+        self._spare_due = now + SPARE_AFTER
+        return True
+
+    def terminate(self) -> None:
+        """Ask it to end, and its spare."""
+        for process in (self.process, self.spare):
+            if process is not None:
+                process.terminate()
 
     def has_ended(self) -> int | None:
         """The exit code, once, of a process that is not started again."""
@@ -107,18 +157,20 @@ class Part:
 
     def end(self) -> None:
         """End it in good order, or kill it if that takes too long."""
-        if self.process is None:
-            return
-        try:
-            self.process.wait(timeout=PATIENCE)
-        except subprocess.TimeoutExpired:
-            self.process.kill()
-            self.process.wait()
-        self._forget()
+        for process in (self.process, self.spare):
+            if process is None:
+                continue
+            try:
+                process.wait(timeout=PATIENCE)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+            _close(process)
+        self.process = self.spare = None
 
     def _forget(self) -> None:
-        if self.process is not None and self.process.stdin is not None:
-            self.process.stdin.close()
+        if self.process is not None:
+            _close(self.process)
         self.process = None
 
 
@@ -157,7 +209,7 @@ class _Launcher:
         speed = ["--speed", str(request.emulator_speed)]
         # Not as an argument: the URL may hold a password, and everybody on this machine may read what `ps` shows.
         database = {DATABASE: url}
-        self._controller = Part("controller", _command("controller", *controller), database)
+        self._controller = Part("controller", _command("controller", *controller), database, has_spare=True)
         server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
         server += ["--demonstration"] if request.database is None else []
         self._server = Part("server", _command("server", *server, *_options(request.endpoint)), database)
@@ -180,8 +232,7 @@ class _Launcher:
             self._stop.set()
             parts = (self._server, self._controller, self._emulator)
             for part in parts:
-                if part.process is not None:
-                    part.process.terminate()
+                part.terminate()
             for part in parts:
                 part.end()
 
@@ -219,6 +270,12 @@ def _options(endpoint: Endpoint) -> list[str]:
 
 def _command(*arguments: str) -> list[str]:
     return [sys.executable, "-m", "sequence_planner.cli", *arguments, "--launched"]
+
+
+def _close(process: subprocess.Popen[bytes]) -> None:
+    """Let go of its lifeline."""
+    if process.stdin is not None:
+        process.stdin.close()
 
 
 def _say(text: str) -> None:

@@ -19,6 +19,7 @@ from pathlib import Path
 
 STANDARD_INPUT = 0
 DEMONSTRATION_DATABASE = "demonstration.sqlite"  # in the launcher's folder; nothing of it is kept
+NEEDED = b"\n"  # what a spare reads when it is needed
 LAST_WORDS = 5.0  # seconds in which a process may end in good order
 
 
@@ -43,6 +44,11 @@ def end_with_launcher(folder: Path | None = None) -> None:
         os._exit(1)
 
     _when(_closed, end)
+
+
+def is_needed() -> bool:
+    """Wait until the launcher needs this process, a spare; false when it has ended instead."""
+    return os.read(STANDARD_INPUT, len(NEEDED)) == NEEDED
 
 
 def end_without_parent() -> None:

@@ -79,6 +79,72 @@ def test_what_had_recovered_is_started_again_soon(monkeypatch: pytest.MonkeyPatc
     dying.end()
 
 
+WAITING = """
+import os, sys, time
+from sequence_planner.lifeline import is_needed
+if "--spare" in sys.argv and not is_needed():
+    raise SystemExit(0)
+time.sleep(60)
+"""
+
+
+def spared(monkeypatch: pytest.MonkeyPatch) -> tuple[Part, int, int]:
+    """A part with a spare, and the numbers of both processes."""
+    monkeypatch.setattr(launcher, "SPARE_AFTER", 0.0)
+    watched = Part("part", [sys.executable, "-c", WAITING], has_spare=True)
+    watched.spawn()
+    return watched, *pair(watched)
+
+
+def pair(watched: Part) -> tuple[int, int]:
+    """The process of a part and its spare, as soon as it has one."""
+    eventually(lambda: watched.look_after() == 0 and watched.spare is not None)
+    assert watched.process is not None
+    assert watched.spare is not None
+    return watched.process.pid, watched.spare.pid
+
+
+def end(watched: Part) -> None:
+    watched.terminate()
+    watched.end()
+
+
+def test_a_spare_follows_at_once_and_has_a_spare_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    watched, alive, spare = spared(monkeypatch)
+    for _ in range(3):
+        os.kill(alive, signal.SIGKILL)
+        killed, before = time.monotonic(), spare
+        while (now := pair(watched))[0] == alive:
+            assert time.monotonic() < killed + 0.4, "it takes as long as to start another"
+        alive, spare = now
+        assert alive == before
+    end(watched)
+    assert are_gone([alive, spare])
+
+
+def test_a_spare_that_has_died_too_does_no_harm(monkeypatch: pytest.MonkeyPatch) -> None:
+    watched, alive, spare = spared(monkeypatch)
+    for each in (spare, alive):
+        os.kill(each, signal.SIGKILL)
+    after = starts(watched, 1)
+    assert after
+    eventually(lambda: watched.look_after() == 0 and watched.process is not None)
+    assert watched.process is not None
+    assert watched.process.pid not in (alive, spare)
+    end(watched)
+
+
+def test_a_spare_ends_with_its_launcher(monkeypatch: pytest.MonkeyPatch) -> None:
+    watched, _, number = spared(monkeypatch)
+    spare = watched.spare
+    assert spare is not None
+    assert spare.stdin is not None
+    spare.stdin.close()  # as the end of the launcher does
+    assert spare.wait(20) == 0
+    end(watched)
+    assert are_gone([number])
+
+
 def test_what_cannot_run_as_asked_is_given_up_at_first_but_not_once_it_ran() -> None:
     """A port that somebody took while the server was down must not stop the production of the others."""
     program = f"import time; time.sleep(0.1); raise SystemExit({UNUSABLE})"

@@ -132,13 +132,21 @@ class RunningStation:
     def child(self, name: str) -> int:
         """The process id of the part that runs the command `name`."""
         listed = subprocess.run(
-            ["ps", "-ww", "--ppid", str(self.process.pid), "-o", "pid=,args="],  # -ww: whatever COLUMNS says
+            [
+                "ps",
+                "-ww",
+                "--ppid",
+                str(self.process.pid),
+                "--sort=start_time",
+                "-o",
+                "pid=,args=",
+            ],  # -ww: whatever COLUMNS says
             capture_output=True,
             text=True,
             check=True,
         )
-        (line,) = [line for line in listed.stdout.splitlines() if f"sequence_planner.cli {name} " in line]
-        return int(line.split()[0])
+        lines = [line for line in listed.stdout.splitlines() if f"sequence_planner.cli {name} " in line]
+        return int(lines[0].split()[0])  # a spare is younger than what it is for
 
 
 def free_port() -> int:

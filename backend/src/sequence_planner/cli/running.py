@@ -21,7 +21,7 @@ from sequence_planner.emulation.live import BY_HAND_TOPIC, FAULTS_TOPIC
 from sequence_planner.emulation.possible import emulation_findings
 from sequence_planner.emulation.process import Emulation, emulate
 from sequence_planner.expressions.resolution import suggestion
-from sequence_planner.lifeline import end_with_launcher
+from sequence_planner.lifeline import end_with_launcher, is_needed
 from sequence_planner.logs import configure_logs
 from sequence_planner.model.loading import load_station
 from sequence_planner.model.source import ModelError
@@ -125,11 +125,14 @@ def controller(
     start: Annotated[bool, typer.Option("--start")] = False,
     database: DatabaseOption = None,
     launched: Launched = False,
+    spare: Annotated[bool, typer.Option("--spare", hidden=True, help="Wait until the launcher says so.")] = False,
 ) -> None:
     """Run the controller alone; `run` does this."""
     # Each process imports what it runs: the controller no web server, the server no planner, `check` neither.
     from sequence_planner.control.process import Running, control  # noqa: PLC0415
 
+    if spare and not is_needed():
+        return
     begin(launched, socket.parent)
     station = prepare(model)
     network = _Network(station, transport, rosbridge)

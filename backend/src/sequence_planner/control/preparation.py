@@ -32,6 +32,7 @@ from sequence_planner.synthesis.guards import Guard
 LOG = structlog.get_logger(__name__)
 
 ANALYSIS_DEADLINE = 120.0  # seconds for all that synthesis finds
+PUT_OFF = 10.0  # seconds until what is not known from before is looked for: the station begins again first
 
 
 class Preparation:
@@ -164,6 +165,7 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
             preparation.take(document_of(automaton, known), known)
             if known.pending is None:
                 return
+            await asyncio.sleep(PUT_OFF)
         async with asyncio.timeout(ANALYSIS_DEADLINE), analysing(automaton) as finding:
             async for found in finding:
                 preparation.take(document_of(automaton, found), found)
