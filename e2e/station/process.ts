@@ -40,11 +40,12 @@ export class StationProcess {
 		signal(this.#tree, name);
 	}
 
-	/** Signals the one process among those it has started that was started with the argument `part`. */
+	/** Signals the process among those it has started that was started with the argument `part`: not its spare, which is younger. */
 	signalPart(part: string, name: NodeJS.Signals): void {
-		const [found, ...others] = this.#tree.slice(1).filter((each) => argumentsOf(each).includes(part));
-		if (found === undefined || others.length > 0) throw new Error(`not one process is the ${part}`);
-		signal([found], name);
+		const found = this.#tree.slice(1).filter((each) => argumentsOf(each).includes(part));
+		const [oldest] = found.sort((one, other) => Number(one.started) - Number(other.started));
+		if (oldest === undefined) throw new Error(`no process is the ${part}`);
+		signal([oldest], name);
 	}
 
 	/** Kills one of the processes that it has started. */

@@ -235,7 +235,7 @@ def test_beside_real_devices_nothing_is_emulated_and_nothing_starts_by_itself(tm
     assert heard == []
 
 
-def test_the_server_is_started_again_while_production_goes_on(tmp_path: Path) -> None:
+def test_the_server_is_started_again_while_production_goes_on_and_the_controller_has_a_spare(tmp_path: Path) -> None:
     with station(tmp_path, "--emulator", "--start", "--emulator-speed", "5") as running:
         running.work_on(1)
         os.kill(running.child("server"), signal.SIGKILL)
@@ -243,3 +243,8 @@ def test_the_server_is_started_again_while_production_goes_on(tmp_path: Path) ->
         eventually(running.up)
         assert running.get("production", "station") == "started"
         running.work_on(1)
+        eventually(lambda: len(running.children("controller")) == 2)
+        alive, spare = running.children("controller")
+        os.kill(alive, signal.SIGKILL)
+        eventually(lambda: running.browser.get("station").json().get("production") == "waiting")
+        assert running.child("controller") == spare

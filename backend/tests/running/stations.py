@@ -130,23 +130,20 @@ class RunningStation:
         return int(self.get("operations")[operation]["completed"])
 
     def child(self, name: str) -> int:
-        """The process id of the part that runs the command `name`."""
+        """The process id of the part that runs the command `name`. Raises ValueError when there is none."""
+        first, *_ = self.children(name)  # a spare is younger than what it is for
+        return first
+
+    def children(self, name: str) -> list[int]:
+        """The process ids of those that run the command `name`, the oldest first."""
+        of_launcher = ["--ppid", str(self.process.pid), "--sort=start_time"]
         listed = subprocess.run(
-            [
-                "ps",
-                "-ww",
-                "--ppid",
-                str(self.process.pid),
-                "--sort=start_time",
-                "-o",
-                "pid=,args=",
-            ],  # -ww: whatever COLUMNS says
+            ["ps", "-ww", *of_launcher, "-o", "pid=,args="],  # -ww: whatever COLUMNS says
             capture_output=True,
             text=True,
             check=True,
         )
-        lines = [line for line in listed.stdout.splitlines() if f"sequence_planner.cli {name} " in line]
-        return int(lines[0].split()[0])  # a spare is younger than what it is for
+        return [int(line.split()[0]) for line in listed.stdout.splitlines() if f"sequence_planner.cli {name} " in line]
 
 
 def free_port() -> int:
