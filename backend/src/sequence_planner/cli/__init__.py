@@ -60,7 +60,7 @@ COMMANDS = (
     PutOff("run", "serving:run", "Run a station: controller, server and page."),
     PutOff(
         "messages",
-        "running:messages",
+        "messages:messages",
         "Write the station's message definitions as packages that colcon builds, for ROS 2 with rclpy.",
     ),
     PutOff(
@@ -73,16 +73,16 @@ COMMANDS = (
         "attach:attach",
         "Turn a topic of the ROS network into variables of a model: enter it into a resource's document, and check.",
     ),
-    PutOff("emulate", "running:emulate_command", "Run emulated devices for a station, in place of real ones."),
-    PutOff("by-hand", "running:by_hand", "Move an emulated device by hand, as somebody might move a real one."),
-    PutOff("fault", "running:fault", "Let an emulated device have a fault, or end faults."),
+    PutOff("emulate", "emulating:emulate_command", "Run emulated devices for a station, in place of real ones."),
+    PutOff("by-hand", "emulating:by_hand", "Move an emulated device by hand, as somebody might move a real one."),
+    PutOff("fault", "emulating:fault", "Let an emulated device have a fault, or end faults."),
     PutOff("people", "people:people", "Add people who may sign in, and set passwords that were forgotten."),
     PutOff(
         "journal",
         "journal:journal",
         "Who did what, and what has happened. Without a command it is list, as in: journal MODEL --verify",
     ),
-    PutOff("controller", "running:controller", hidden=True),
+    PutOff("controller", "controlling:controller", hidden=True),
     PutOff("server", "serving:server", hidden=True),
 )
 

@@ -18,7 +18,7 @@ from sequence_planner.cli.findings import finding_lines
 from sequence_planner.cli.joining import Domain, Seconds, look
 from sequence_planner.cli.loading import load_model
 from sequence_planner.cli.options import UNUSABLE, AsJson, StationFolder, print_json
-from sequence_planner.cli.running import TransportOption
+from sequence_planner.cli.parts import TransportOption
 from sequence_planner.model.loading import load_station
 from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.pipelines.building import load_messages

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from sequence_planner.cli.options import DatabaseOption, StationFolder, database_url, refuse
-from sequence_planner.cli.running import (
+from sequence_planner.cli.parts import (
     Launched,
     RosbridgeOption,
     Socket,

@@ -10,7 +10,7 @@ import typer
 
 from sequence_planner.cli.joining import Domain, Seconds, look
 from sequence_planner.cli.options import AsJson, print_json, refuse
-from sequence_planner.cli.running import TransportOption
+from sequence_planner.cli.parts import TransportOption
 from sequence_planner.control.network_graph import network_view
 from sequence_planner.control.network_view import CallView, EndpointView, NetworkView
 from sequence_planner.ros.messages import MessageRegistry

@@ -17,7 +17,7 @@ from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.observing import Observing
 from sequence_planner.control.overrides import Overrides
 from sequence_planner.control.pipeline_view import FlowsView
-from sequence_planner.emulation.process import NODE as EMULATED_DEVICES
+from sequence_planner.emulation.node import NODE as EMULATED_DEVICES
 from sequence_planner.ros.service_graph import TellsServices
 from sequence_planner.ros.transport import QualityEvent, Sample, Transport
 from sequence_planner.station import ReadyStation

@@ -33,7 +33,7 @@ from sequence_planner.control.preparation import Preparation, analyse, preparing
 from sequence_planner.control.recording import Recording
 from sequence_planner.control.view import Production, StationIdentity
 from sequence_planner.control.view_part import View
-from sequence_planner.emulation.process import NODE as EMULATED_DEVICES
+from sequence_planner.emulation.node import NODE as EMULATED_DEVICES
 from sequence_planner.history.restoring import beginning
 from sequence_planner.journal.run_journal import last
 from sequence_planner.ros.exclusivity import require_sole_publisher

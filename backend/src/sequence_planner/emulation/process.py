@@ -16,6 +16,7 @@ from sequence_planner.emulation.fault_text import FaultReader
 from sequence_planner.emulation.faulty import FaultyDevices
 from sequence_planner.emulation.links import Links
 from sequence_planner.emulation.live import cause, listen
+from sequence_planner.emulation.node import NODE
 from sequence_planner.emulation.serving import serve_clients
 from sequence_planner.pipelines.running import RunningPipelines
 from sequence_planner.ros.actions import ActionNames
@@ -27,7 +28,6 @@ from sequence_planner.station import ReadyStation
 
 LOG = structlog.get_logger(__name__)
 
-NODE = "emulated_devices"  # its name on the network
 STEP = 0.02  # seconds between two looks at the clock
 REPORT_EVERY = 0.1  # seconds between two reports that say the same
 

@@ -1,0 +1,46 @@
+"""Running the controller."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+import typer
+
+from sequence_planner.analysis.process import SynthesisEndedError
+from sequence_planner.cli.options import DatabaseOption, StationFolder, database_url, refuse
+from sequence_planner.cli.parts import (
+    Launched,
+    Network,
+    RosbridgeOption,
+    Socket,
+    TransportOption,
+    begin,
+    prepare,
+    until_interrupted,
+)
+from sequence_planner.control.process import Running, control
+from sequence_planner.lifeline import is_needed
+
+
+def controller(
+    model: StationFolder,
+    socket: Socket,
+    transport: TransportOption = "auto",
+    rosbridge: RosbridgeOption = None,
+    emulated: Annotated[bool, typer.Option("--emulated")] = False,
+    start: Annotated[bool, typer.Option("--start")] = False,
+    database: DatabaseOption = None,
+    launched: Launched = False,
+    spare: Annotated[bool, typer.Option("--spare", hidden=True, help="Wait until the launcher says so.")] = False,
+) -> None:
+    """Run the controller alone; `run` does this."""
+    if spare and not is_needed():
+        return
+    begin(launched, socket.parent)
+    station = prepare(model)
+    network = Network(station, transport, rosbridge)
+    url = database_url(model, database)
+    try:
+        until_interrupted(lambda connect: control(Running(station, socket, connect, emulated, start, url)), network)
+    except SynthesisEndedError as error:
+        refuse(str(error))
