@@ -109,9 +109,9 @@ def until(happened: Callable[[], bool]) -> None:
 def is_gone(process: int) -> bool:
     try:
         os.kill(process, 0)
-    except ProcessLookupError:
+        return Path(f"/proc/{process}/stat").read_text(encoding="utf-8").split()[2] == "Z"
+    except (ProcessLookupError, FileNotFoundError):  # it may go while its file is read
         return True
-    return Path(f"/proc/{process}/stat").read_text(encoding="utf-8").split()[2] == "Z"
 
 
 def test_a_function_is_called_with_what_it_reads(folder: Path) -> None:
