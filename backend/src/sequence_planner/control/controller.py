@@ -157,7 +157,7 @@ class Controller:
         return self.devices.network.commands
 
     def take_command(self) -> None:
-        """Nobody else commands the station's devices, so this one does from now on."""
+        """Nobody else commands the station's devices, so this one does from now on. Raises `TransportError`."""
         self.devices.take_command()
         self._writer.begin()
         self._tick_again()

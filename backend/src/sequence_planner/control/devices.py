@@ -61,9 +61,12 @@ class Devices:
         return min((due for due in dues if due is not None), default=None)
 
     def take_command(self) -> None:
-        """Say on the network that this station commands its devices. Until then it only listens."""
-        self.network.commands = True
+        """Say on the network that this station commands its devices. Until then it only listens.
+
+        Raises `TransportError`.
+        """
         self.commander.advertise()
+        self.network.commands = True
 
     def publish(self, state: State, everything: bool) -> None:
         """Send the outputs of a state: all of them, or those that differ from what was sent before."""

@@ -84,16 +84,19 @@ async def _live(running: Running, preparation: Preparation, recording: Recording
     """Prepare the station and run it, while the network is asked whether somebody else commands its devices."""
     try:
         async with asyncio.TaskGroup() as living:
-            alone = living.create_task(_require_sole_command(running))
-            living.create_task(_run(running, preparation, recording, database, alone))
+            living.create_task(_run(running, preparation, recording, database, living))
     except ExceptionGroup as failed:
         raise failed.exceptions[0] from None
 
 
 async def _run(
-    running: Running, preparation: Preparation, recording: Recording, database: Database, alone: asyncio.Task[None]
+    running: Running, preparation: Preparation, recording: Recording, database: Database, living: asyncio.TaskGroup
 ) -> None:
-    """Prepare the station, then run it; it only listens until it is known to be `alone`."""
+    """Prepare the station, then run it; it only listens until it is known to be alone.
+
+    What fails at finding that out, or at taking command then, ends all that is `living`.
+    """
+    alone = living.create_task(_require_sole_command(running))
 
     async def act(command: Command) -> None:
         if preparation.controller is None or not preparation.controller.commands:
@@ -135,12 +138,13 @@ async def _run(
                 if alone.exception() is None:  # otherwise all of this ends
                     controller.take_command()
                     if running.start:
-                        await start_when_alone(controller, handle)
+                        async with _beside(start_when_alone(controller, handle)):
+                            await asyncio.Event().wait()
 
+            living.create_task(command())
             async with (
                 _beside(_show(controller, link)),
                 _beside(show_network(controller.devices.network, link)),
-                _beside(command()),
             ):
                 await controller.run()
         finally:
