@@ -1,0 +1,2 @@
+/** Signing in, and administration. */
+export const account = {};

@@ -1,0 +1,2 @@
+/** Alarms. */
+export const alarms = {};

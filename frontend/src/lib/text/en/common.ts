@@ -1,0 +1,20 @@
+/** What more than one room says. */
+export const common = {
+	product: 'Sequence Planner',
+	noStation: 'Nothing is known of the station yet.',
+	old: 'old',
+	live: 'live',
+	now: 'now',
+	cancel: 'Cancel',
+	close: 'Close',
+	sending: 'Sending',
+	reason: 'Reason',
+	unknown: 'unknown',
+	yes: 'yes',
+	no: 'no',
+	none: 'None',
+	takeControlFirst: 'Take control first.',
+	notLive: 'Not live: wait until the station is heard again.',
+	more: (n: number): string => `${n} more`,
+	language: 'Language'
+};

@@ -1,0 +1,2 @@
+/** Operate. */
+export const operate = {};

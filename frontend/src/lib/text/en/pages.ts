@@ -1,0 +1,15 @@
+/** What the pages are called. */
+export const pages = {
+	operate: 'Operate',
+	restart: 'Restart',
+	state: 'State',
+	alarms: 'Alarms',
+	history: 'History',
+	ros: 'ROS',
+	watch: 'Watch',
+	account: 'Account',
+	journal: 'Journal',
+	watches: 'Watches',
+	people: 'People',
+	keys: 'Keys'
+};

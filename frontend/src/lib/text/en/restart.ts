@@ -1,0 +1,2 @@
+/** Restart. */
+export const restart = {};

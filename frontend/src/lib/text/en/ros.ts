@@ -1,0 +1,2 @@
+/** The ROS graph. */
+export const ros = {};

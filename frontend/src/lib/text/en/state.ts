@@ -1,0 +1,2 @@
+/** State, and corrections of it. */
+export const state = {};

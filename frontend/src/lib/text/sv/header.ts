@@ -1,0 +1,3 @@
+import type { Text } from '../text.svelte.ts';
+
+export const header: Text['header'] = {};

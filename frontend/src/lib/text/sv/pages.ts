@@ -1,0 +1,16 @@
+import type { Text } from '../text.svelte.ts';
+
+export const pages: Text['pages'] = {
+	operate: 'Drift',
+	restart: 'Omstart',
+	state: 'Tillstånd',
+	alarms: 'Larm',
+	history: 'Historik',
+	ros: 'ROS',
+	watch: 'Klocka',
+	account: 'Konto',
+	journal: 'Journal',
+	watches: 'Klockor',
+	people: 'Personer',
+	keys: 'Nycklar'
+};

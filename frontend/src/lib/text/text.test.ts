@@ -1,0 +1,21 @@
+import { describe, expect, test } from 'vitest';
+import { en } from './en.ts';
+import { sv } from './sv.ts';
+
+/** Every text by where it stands; what takes arguments is there too. */
+function flat(texts: object, path = ''): [string, unknown][] {
+	return Object.entries(texts).flatMap(([key, value]: [string, unknown]) =>
+		typeof value === 'object' && value !== null ? flat(value, `${path}${key}.`) : [[path + key, value]]
+	);
+}
+
+describe('the Swedish catalogue', () => {
+	test('has the texts of the English one, and no others', () => {
+		const places = (texts: object): string[] => flat(texts).map(([place]) => place).sort();
+		expect(places(sv)).toEqual(places(en));
+	});
+
+	test('leaves nothing empty', () => {
+		for (const [place, text] of flat(sv)) if (typeof text === 'string') expect(text.trim(), place).not.toBe('');
+	});
+});
