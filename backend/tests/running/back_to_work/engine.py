@@ -11,6 +11,7 @@ from sequence_planner.emulation.truck_station.poses import PAIRS
 from stations.hall import Hall, controlled, hall
 
 SPEED = 4.0
+KEY = "operator.takes_over"
 # The node behind each resource, by whose loss it is gone.
 NODE_OF = {
     "robot": "ur10",
@@ -31,6 +32,7 @@ class HallHands:
     def __init__(self, place: Hall) -> None:
         self._place = place
         self.known: dict[str, object] = {}
+        self._stands = False  # a device that was jammed, until somebody has set it free
 
     def trip(self) -> None:
         """The robot stops where it is, and goes on only with a new command."""
@@ -39,17 +41,23 @@ class HallHands:
     def jam(self, resource: str) -> None:
         """A device stands still until somebody has looked at it."""
         self._place.ask({"world": {"jammed": [DEVICE_OF[resource]]}})
+        self._stands = True
 
     def kill(self, resource: str) -> None:
         """The computer of a device is gone until somebody starts it again."""
         self._place.kill(NODE_OF[resource])
 
+    def can_bring(self, changes: Mapping[str, object]) -> bool:
+        """Nobody carries tools or brings the robot to a pose, but what stands still does so when it is set free."""
+        return self._stands or not changes.keys() - {KEY}
+
     def bring(self, changes: Mapping[str, object]) -> None:
         """The key of the robot is turned; what stood still is set free, and does what it should have done."""
-        if isinstance(key := changes.get("operator.takes_over"), bool):
+        if isinstance(key := changes.get(KEY), bool):
             self._place.ask({"world": {"takes_over": key}})
-        if changes.keys() - {"operator.takes_over"}:
+        if changes.keys() - {KEY}:
             self._place.ask({"world": {"jammed": []}})
+            self._stands = False
 
     def online(self, resource: str) -> None:
         if self._place.nodes[NODE_OF[resource]].poll() is not None:  # else it is only being started

@@ -28,6 +28,9 @@ class Hands(Protocol):
 
     known: dict[str, object]  # estimates that are otherwise than the station believes
 
+    def can_bring(self, changes: Mapping[str, object]) -> bool:
+        """Whether hands reach that."""
+
     def bring(self, changes: Mapping[str, object]) -> None:
         """Give measured variables these values, at their devices."""
 
@@ -214,8 +217,9 @@ class Person:
             raise StuckError(f"{values}: {answer.text}")
 
     def _chosen(self, advice: Document, prefers: str) -> Document:
-        """The first offer, but what is preferred before it, and what needs no hand at the product."""
-        offers = [offer for offer in advice["offers"] if not offer["left_out"]]
+        """The first that hands are able to, but what is preferred before it, and what needs none at the product."""
+        able = [offer for offer in advice["offers"] if self.hands.can_bring(brought(offer))]
+        offers = [offer for offer in able if not offer["left_out"]]
         if not offers:
             raise StuckError(f"no way back is offered: {advice}, {self.get('alarms')}")
         first = [offer for offer in offers if offer["kind"] == "replan"]
@@ -232,7 +236,7 @@ class Person:
             for name in offer["in_service"]:
                 self.do("PUT", f"service/ability/{name}", {"in_service": True, "reason": "it was looked after"})
             if offer["physical"]:
-                self.hands.bring({change["name"]: change["then"] for change in offer["physical"]})
+                self.hands.bring(brought(offer))
             self.seen["physical changes"] += 1
             return
         for change in offer["corrections"]:
@@ -280,6 +284,11 @@ class Person:
             if self.take(answer.json()):
                 return True
         return False
+
+
+def brought(offer: Document) -> dict[str, object]:
+    """What somebody does at devices for an offer: measured variables and their values."""
+    return {change["name"]: change["then"] for change in offer["physical"]}
 
 
 def problem(answer: httpx.Response) -> str:

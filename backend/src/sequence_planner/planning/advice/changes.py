@@ -59,10 +59,21 @@ def kind_of(acts: Iterable[Act]) -> OfferKind:
     return OfferKind.CORRECTION if True in estimates else OfferKind.PHYSICAL
 
 
+def returns(acts: Iterable[Act]) -> bool:
+    """Whether a resource comes back."""
+    return any(act.kind is ActKind.RETURN for act in acts)
+
+
 def sets(acts: Sequence[Act], size: int) -> Iterator[Acts]:
-    """All sets of so many acts that do not get in each other's way, the most plausible first."""
+    """All sets of so many acts that do not get in each other's way, the most plausible first: those by which a resource
+    comes back, since that one is known to be away.
+    """
+
+    def plausible(each: Acts) -> tuple[bool, int]:
+        return not returns(each), sum(act.rank for act in each)
+
     chosen = combinations(acts, size)
-    for each in sorted(chosen, key=lambda each: sum(act.rank for act in each)) if size > 1 else chosen:
+    for each in sorted(chosen, key=plausible) if size > 1 else chosen:
         names = [name for act in each for name, _ in act.values]
         if len(set(names)) == len(names) and len({(act.kind, act.name) for act in each}) == size:
             yield each

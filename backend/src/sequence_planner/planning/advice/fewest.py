@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import islice
 
 from sequence_planner.immutable import Immutable
-from sequence_planner.planning.advice.changes import MOST_ACTS, Acts, Changes, is_possible, kind_of, sets
+from sequence_planner.planning.advice.changes import MOST_ACTS, Acts, Changes, is_possible, kind_of, returns, sets
 from sequence_planner.planning.advice.consultation import Consultation
 from sequence_planner.planning.advice.offer import Offer, OfferKind
 from sequence_planner.planning.advice.options import LIKELY, Act, ActKind
@@ -27,10 +27,24 @@ class _Changed(Immutable):
     kind: OfferKind
     after: Situation
 
+    @property
+    def way(self) -> _Way:
+        return _way(self.acts)
+
+
+# What is looked for until some of it is found. That a resource comes back is a way of its own: it repairs what is
+# wrong, where an act elsewhere may only help over the next step.
+_Way = tuple[OfferKind, bool]
+
+
+def _way(acts: Acts) -> _Way:
+    return kind_of(acts), returns(acts)
+
 
 class FewestActs:
     """Looks for offers by acts, in the order of their number. Corrections alone, acts at devices alone and both
-    together are each looked for until some are found; those that only say what the goals ask for do not count.
+    together, each with and without a resource that comes back, are looked for until some are found; those that only
+    say what the goals ask for do not count.
     """
 
     def __init__(
@@ -47,9 +61,9 @@ class FewestActs:
         self._impossible = impossible
         self._most = most
         self._awaited = awaited
-        self._enough: set[OfferKind] = set()
+        self._enough: set[_Way] = set()
         self._found: list[frozenset[Act]] = []
-        self._number: Counter[OfferKind] = Counter()
+        self._number: Counter[_Way] = Counter()
 
     def likely(self, acts: list[Act]) -> Iterator[Offer]:
         """Offers by the most plausible acts, one at a time."""
@@ -65,7 +79,7 @@ class FewestActs:
             while some := list(islice(changed, _AT_A_TIME)):
                 yield from self._tried(some, dead, late)
             yield from self._tried(late, dead, None)
-            self._enough.update(kind for kind, number in self._number.items() if number)
+            self._enough.update(way for way, number in self._number.items() if number)
             yield from self._combined(dead)
 
     def _changed(self, acts: list[Act], size: int) -> Iterator[_Changed]:
@@ -73,7 +87,7 @@ class FewestActs:
         consultation = self._consultation
         for each in sets(acts, size):
             kind = kind_of(each)
-            needless = kind in self._enough or (kind is OfferKind.COMBINED and consultation.helped)
+            needless = _way(each) in self._enough or (kind is OfferKind.COMBINED and consultation.helped)
             if needless or any(found.issubset(each) for found in self._found):
                 continue
             consultation.budget.require()
@@ -97,7 +111,7 @@ class FewestActs:
             else:
                 planned.append(each)
         for each in planned:
-            if each.kind in self._enough or self._is_given(each):
+            if each.way in self._enough or self._is_given(each):
                 continue
             share, last, helped = (_SECOND if late is None else _FIRST), late is None, self._helps(each)
             finding = consultation.find(each.after.production(), share, last=last, helped=helped)
@@ -118,9 +132,9 @@ class FewestActs:
         offer = self._consultation.making.offer(each.kind, each.after, plan, each.acts)
         if not offer.effort.restates:
             self._consultation.helped = True
-            self._number[each.kind] += 1
-            if self._number[each.kind] >= self._most:
-                self._enough.add(each.kind)
+            self._number[each.way] += 1
+            if self._number[each.way] >= self._most:
+                self._enough.add(each.way)
         return offer
 
     def _is_given(self, each: _Changed) -> bool:

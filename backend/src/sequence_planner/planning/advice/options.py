@@ -9,7 +9,7 @@ from collections.abc import Iterator, Mapping
 from enum import StrEnum
 
 from sequence_planner.automaton.structure import Automaton, Effect, Kind, State, target
-from sequence_planner.automaton.tick import effect_writes
+from sequence_planner.automaton.tick import effect_writes, writes
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import Constant, Variable
 from sequence_planner.expressions.types import Value
@@ -76,8 +76,8 @@ class Options:
                 continue
             for value in self._others(here.state, name):
                 together: dict[frozenset[tuple[str, Value]], int] = {}
-                for effect, writes in self._effects:
-                    if name in writes and writes.isdisjoint(fixed) and not self._touches(writes, offline):
+                for effect, changed in self._effects:
+                    if name in changed and changed.isdisjoint(fixed) and not self._touches(changed, offline):
                         self._add(together, effect, name, value, here.state)
                 alone = frozenset({(name, value)})
                 together.setdefault(alone, _INITIAL if value == declared.initial and not together else _UNLIKELY)
@@ -137,8 +137,18 @@ class Options:
             known = tuple((name, last[name]) for name in unknown if name in last and name not in fixed)
             if resource in here.circumstances.offline or known:
                 yield Act(ActKind.RETURN, resource, known, _EXPECTED)
+                for values, rank in self._meanwhile({**state, **dict(known)}, frozenset(unknown) - fixed):
+                    yield Act(ActKind.RETURN, resource, tuple({**dict(known), **values}.items()), rank)
         for ability in sorted(here.circumstances.barred):
             yield Act(ActKind.SERVICE, ability, (), _EXPECTED)
+
+    def _meanwhile(self, state: State, names: frozenset[str]) -> Iterator[tuple[dict[str, Value], int]]:
+        """What an effect on nothing but `names`, or a hand, may have brought about while nobody heard of it."""
+        for effect, changed in self._effects:
+            written = writes(effect.actions, state) if changed <= names else None
+            if written is not None and any(state[name] != value for name, value in written.items()):
+                follows = any(isinstance(action.value, Variable) for action in effect.actions)
+                yield written, _EXPECTED if follows else _CAN_BE
 
     def _is_of(self, name: str, resource: str) -> bool:
         return self._automaton.variables[name].resource == resource

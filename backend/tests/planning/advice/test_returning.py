@@ -1,0 +1,59 @@
+"""A device that is away is the reason why a station stands, so its return is offered, whatever else would help too."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sequence_planner.automaton.structure import Kind
+from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.advice.advisor import Advisor
+from sequence_planner.planning.advice.offer import OfferKind
+from sequence_planner.planning.advice.request import AdviceRequest
+from sequence_planner.planning.plan import Circumstances, goals_of
+from sequence_planner.station import prepare_station
+from sequence_planner.synthesis.supervision import synthesise
+
+from .carrying_out import Stopped, carried_out
+
+MODEL = Path(__file__).parents[4] / "models" / "truck_engine_station"
+
+
+def test_a_robot_in_whose_place_somebody_works_comes_back_for_what_only_it_can_do() -> None:
+    """It was pushed home meanwhile, where it had been told to be, and did not say so."""
+    station = prepare_station(MODEL).automaton
+    supervisor = synthesise(station)
+    own = [name for name in station.names(Kind.MEASURED) if station.variables[name].resource == "robot"]
+    bolts = [name for name in station.names(Kind.ESTIMATED) if name.startswith("bolts[")]
+    state: dict[str, Value | None] = {
+        **initial_state(station),
+        **dict.fromkeys(own),
+        **dict.fromkeys(bolts, "tightened"),
+        "ladder_frame": "on_engine",
+        "engine.engine_in_place": True,
+        "engine.tag_is_read": True,
+        "nutrunner.activate_lift": False,
+        "nutrunner.lift_state": "floats",
+        "scene.attached": "ATLASTOOL",
+        "scene.wanted": "ATLASTOOL",
+        "operator.takes_over": True,
+    }
+    goals = goals_of(station, ["take_filter_tool"])
+    away = Circumstances(offline=frozenset({"robot"}))
+    request = AdviceRequest(
+        synchronise(station, state),
+        goals,
+        away,
+        last={"robot.pose": "AtBoltPair1TCPPose", "robot.previous_pose": "AtBoltPair1TCPPose", "robot.moving": False},
+        deadline=60,
+    )
+    offers = Advisor(station, supervisor).advise(request).offers
+    for offer in offers:
+        carried_out(Stopped(station, supervisor, request.state, goals, away), offer)
+    back = [offer for offer in offers if offer.kind is OfferKind.PHYSICAL and offer.online == ("robot",)]
+    assert [(change.name, change.new) for change in back[0].physical] == [("operator.takes_over", False)]
+    assert {change.name: change.new for change in back[0].assumed} == {
+        "robot.pose": "HomeJOINTPose",
+        "robot.previous_pose": "HomeJOINTPose",
+        "robot.moving": False,
+    }
