@@ -17,7 +17,9 @@ unexport PYTHONDONTWRITEBYTECODE
 
 # A Node of our own, where the machine has none that is recent enough.
 export PATH := $(CURDIR)/.node/bin:$(PATH)
+ifndef SIDE_BY_SIDE
 .NOTPARALLEL:
+endif
 .DELETE_ON_ERROR:
 
 help: ## Say what there is
@@ -32,7 +34,11 @@ emulator: install ## Start the emulated devices again
 hall: install ## The eight nodes of the truck engine station and the world they stand in, for `run` without --emulator
 	$(BIN)/python -m sequence_planner.emulation.truck_station all --messages models/truck_engine_station/messages
 
-test: lint typecheck pytest svelte-check vitest e2e ## Run every check
+test: static pytest e2e ## Run every check
+
+# What needs no station uses one core for each of two checks at a time.
+static: install-test frontend/node_modules/done.stamp e2e/node_modules/done.stamp
+	$(MAKE) -j2 --output-sync=target SIDE_BY_SIDE=yes lint typecheck svelte-check vitest page types-of-e2e
 
 lint: install-test
 	cd backend && .venv/bin/ruff check && .venv/bin/ruff format --check
@@ -54,8 +60,14 @@ svelte-check: frontend/node_modules/done.stamp
 vitest: frontend/node_modules/done.stamp
 	cd frontend && npm test -- --reporter=default --reporter=junit --outputFile.junit=../.ci/results/vitest.xml
 
+types-of-e2e: e2e/node_modules/done.stamp
+	cd e2e && npm run check
+
 e2e: install page e2e/node_modules/done.stamp chromium
 	cd e2e && PLAYWRIGHT_JUNIT_OUTPUT_FILE=../.ci/results/playwright.xml npx playwright test --reporter=list,junit
+
+figures: install page e2e/node_modules/done.stamp chromium ## Measure the pages in Chromium beside a busy station
+	cd e2e && npx playwright test --config figures/figures.config.ts
 
 bench: install-bench ## Measure
 	cd backend && for each in benchmarks/*.py; do echo "$$each" && .venv/bin/python "$$each" || exit 1; done
@@ -151,4 +163,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator hall test lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium
+.PHONY: help run emulator hall test static types-of-e2e figures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium

@@ -53,6 +53,10 @@ export interface Options {
 	readonly people: readonly Person[];
 	/** Where the output of all processes is kept. */
 	readonly logs: string;
+	/** The folder of another model than the usual one. */
+	readonly model?: string;
+	/** A program that is started beside the station, on its network. */
+	readonly beside?: readonly [command: string, args: readonly string[]];
 }
 
 let stations = 0;
@@ -73,6 +77,7 @@ export class Station {
 	/** Where the database of a station is that is no demonstration. */
 	readonly #folder = mkdtempSync(join(tmpdir(), 'station-'));
 	readonly #demonstration: boolean;
+	readonly #model: string;
 	#cookie: string | null = null;
 	readonly server: StationProcess;
 
@@ -84,9 +89,11 @@ export class Station {
 		this.#env = { ...process.env, ROS_DOMAIN_ID: String(nextDomain()), ...database };
 		this.#logs = options.logs;
 		this.#demonstration = options.byItself;
+		this.#model = options.model ?? MODEL;
 		const devices = options.byItself || options.devices ? ['--emulator', '--emulator-speed', '4'] : [];
 		const alone = options.byItself ? ['--start', '--demonstration'] : [];
-		this.server = this.#start('server', ['run', MODEL, '--port', String(port), ...devices, ...alone]);
+		this.server = this.#start('server', ['run', this.#model, '--port', String(port), ...devices, ...alone]);
+		if (options.beside) this.#start('beside', [...options.beside[1]], options.beside[0]);
 	}
 
 	/** Starts a station and waits until it answers. */
@@ -108,7 +115,7 @@ export class Station {
 
 	/** Makes somebody who can sign in, as who sits at the machine does, and has them choose their own password. */
 	async add({ name, role, password }: Person): Promise<void> {
-		const args = ['people', 'add', name, '--role', role, MODEL];
+		const args = ['people', 'add', name, '--role', role, this.#model];
 		const input = `${given(password)}\n`;
 		const ended = spawnSync(EXECUTABLE, args, { cwd: ROOT, env: this.#env, input, encoding: 'utf8' });
 		if (ended.status !== 0) throw new Error(`${args.join(' ')}: ${ended.stderr}`);
@@ -118,7 +125,7 @@ export class Station {
 
 	/** The first-start link, as it is shown to who sits at the machine. */
 	link(): string {
-		const args = ['people', 'link', MODEL, '--url', this.url];
+		const args = ['people', 'link', this.#model, '--url', this.url];
 		const ended = spawnSync(EXECUTABLE, args, { cwd: ROOT, env: this.#env, encoding: 'utf8' });
 		const [link] = /https?:\S+#\S+/.exec(ended.stdout) ?? [];
 		if (link === undefined) throw new Error(`${args.join(' ')}: ${ended.stdout}${ended.stderr}`);
@@ -149,7 +156,7 @@ export class Station {
 
 	/** Starts emulated devices in a process of their own. */
 	emulate(): StationProcess {
-		return this.#start('emulator', ['emulate', MODEL]);
+		return this.#start('emulator', ['emulate', this.#model]);
 	}
 
 	/** The values of all variables as the server knows them, in the words of the page. */
@@ -177,9 +184,9 @@ export class Station {
 		if (failed) throw failed.reason;
 	}
 
-	#start(name: string, args: string[]): StationProcess {
+	#start(name: string, args: string[], command = EXECUTABLE): StationProcess {
 		const log = join(this.#logs, `${name}.log`);
-		const started = new StationProcess(EXECUTABLE, args, { cwd: ROOT, env: this.#env, log });
+		const started = new StationProcess(command, args, { cwd: ROOT, env: this.#env, log });
 		this.#started.push(started);
 		return started;
 	}

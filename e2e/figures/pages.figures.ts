@@ -1,0 +1,137 @@
+/**
+ * What interface figures there are: how fast a page is there, how much script it brings, and whether it stays smooth and
+ * small beside a station of 5000 variables of which 500 change ten times a second.
+ *
+ * `MINUTES` is how long each busy page is watched (10 unless it says otherwise). The report goes to `docs/campaigns/pages.md`.
+ */
+import type { Browser, Page } from '@playwright/test';
+import { execFileSync } from 'node:child_process';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { cpus, tmpdir } from 'node:os';
+import { join, resolve } from 'node:path';
+import { EVA, Station } from '../station/station.ts';
+import { expect, test } from '../station/test.ts';
+import { framesOf, heapOf } from './frames.ts';
+import { scriptsOf } from './size.ts';
+
+const ROOT = resolve(import.meta.dirname, '../..');
+const PYTHON = join(ROOT, 'backend/.venv/bin/python');
+const BUSY = join(import.meta.dirname, 'busy_station.py');
+const MINUTES = Number(process.env['MINUTES'] ?? '10');
+const VISITS = 7;
+const REPORT = join(ROOT, 'docs/campaigns/pages.md');
+
+const rows: string[] = [];
+const lines: string[] = [];
+
+/** A page in a browser context of its own. */
+async function signedIn(browser: Browser, station: Station): Promise<Page> {
+	const context = await browser.newContext({ viewport: { width: 1440, height: 900 } });
+	await context.addCookies([{ ...(await station.signIn(EVA)), url: station.url }]);
+	return context.newPage();
+}
+
+/** Milliseconds from the call of an address until the page shows the station live. */
+async function firstView(browser: Browser, station: Station, address: string): Promise<number> {
+	const page = await signedIn(browser, station);
+	const began = performance.now();
+	await page.goto(`${station.url}${address}`, { waitUntil: 'commit' });
+	await page.getByTestId('live-age').getByText('live').waitFor();
+	const took = performance.now() - began;
+	await page.context().close();
+	return took;
+}
+
+function median(numbers: readonly number[]): number {
+	return [...numbers].sort((a, b) => a - b)[Math.floor(numbers.length / 2)] ?? NaN;
+}
+
+test('the pages of a station at work', async ({ browser }) => {
+	const station = await Station.start({ byItself: true, devices: false, people: [], logs: join(ROOT, 'e2e/artefacts/logs/figures') });
+	try {
+		const context = await browser.newContext({ viewport: { width: 1440, height: 900 } });
+		const page = await context.newPage();
+		for (const address of ['/', '/restart', '/state', '/alarms', '/history', '/ros', '/watch']) {
+			const fresh = await browser.newContext();
+			const visited = await fresh.newPage();
+			const kilobytes = await scriptsOf(visited, async () => {
+				await visited.goto(`${station.url}${address}`);
+				await visited.waitForLoadState('networkidle', { timeout: 5000 }).catch(() => undefined);
+			});
+			await fresh.close();
+			lines.push(`| \`${address}\` | ${kilobytes.toFixed(0)} kB |`);
+		}
+		await page.goto(station.url);
+		await expect(page.getByTestId('live-age')).toContainText('live');
+		const views: number[] = [];
+		for (let visit = 0; visit < VISITS; visit += 1) {
+			const again = await browser.newContext({ viewport: { width: 1440, height: 900 } });
+			const shown = await again.newPage();
+			const began = performance.now();
+			await shown.goto(station.url, { waitUntil: 'commit' });
+			await shown.getByTestId('live-age').getByText('live').waitFor();
+			views.push(performance.now() - began);
+			await again.close();
+		}
+		lines.push('', `Operate shows the station live ${(median(views) / 1000).toFixed(2)} s after its address was called, in a browser that has seen nothing of it (median of ${VISITS}; at most ${(Math.max(...views) / 1000).toFixed(2)} s).`);
+	} finally {
+		await station.stop();
+	}
+});
+
+test('the pages of a station of 5000 variables of which 500 change ten times a second', async ({ browser }) => {
+	const folder = mkdtempSync(join(tmpdir(), 'busy-'));
+	execFileSync(PYTHON, [BUSY, 'model', join(folder, 'model')]);
+	const station = await Station.start({
+		byItself: false,
+		devices: false,
+		people: [EVA],
+		model: join(folder, 'model'),
+		beside: [PYTHON, [BUSY, 'speak', join(folder, 'model')]],
+		logs: join(ROOT, 'e2e/artefacts/logs/figures')
+	});
+	try {
+		for (const address of ['/', '/state']) {
+			const first = await firstView(browser, station, address);
+			const page = await signedIn(browser, station);
+			const session = await page.context().newCDPSession(page);
+			await page.goto(`${station.url}${address}`);
+			await expect(page.getByTestId('live-age')).toContainText('live');
+			await page.waitForTimeout(15_000); // what is kept for a while fills up first
+			const heap = await heapOf(session);
+			const frames = await framesOf(page, MINUTES * 60);
+			const after = await heapOf(session);
+			rows.push(
+				`| \`${address}\` | ${(first / 1000).toFixed(2)} s | ${frames.mean.toFixed(1)} | ${frames.worst} | ${heap.toFixed(1)} MB | ${after.toFixed(1)} MB |`
+			);
+			await page.context().close();
+		}
+	} finally {
+		await station.stop();
+		rmSync(folder, { recursive: true });
+	}
+});
+
+test.afterAll(() => {
+	const commit = execFileSync('git', ['describe', '--always', '--dirty'], { cwd: ROOT, encoding: 'utf8' }).trim();
+	const text = [
+		'# The pages in Chromium',
+		'',
+		`Made by \`make figures\` at commit ${commit} on ${cpus().length} cores, beside all processes of the station; a page is watched for ${MINUTES} minutes.`,
+		'',
+		'Scripts that a page loads, compressed with gzip:',
+		'',
+		'| page | scripts |',
+		'|---|---|',
+		...lines,
+		'',
+		'Beside a station of 5000 variables of which 500 change ten times a second:',
+		'',
+		'| page | live after | frames a second | in the worst second | memory in use | at the end |',
+		'|---|---|---|---|---|---|',
+		...rows,
+		''
+	].join('\n');
+	writeFileSync(REPORT, text);
+	console.log(text);
+});
