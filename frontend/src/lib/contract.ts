@@ -31,6 +31,12 @@ export type OutOfService = Schemas['ServiceView'];
 export type Errand = Schemas['ErrandView'];
 export type LastErrand = Schemas['LastErrandView'];
 export type Question = Schemas['QuestionView'];
+export type LastCorrection = Schemas['LastCorrectionView'];
+export type CorrectionPreview = Schemas['CorrectionPreview'];
+export type PlanPreview = Schemas['PlanPreviewView'];
+export type WhyNot = Schemas['WhyNotView'];
+export type Changer = Schemas['ChangerView'];
+export type VariableKind = Schemas['VariableKind'];
 export type UndecidedOutput = Schemas['UndecidedOutputView'];
 export type Value = NonNullable<Variable['value']>;
 

@@ -54,6 +54,25 @@ export function confirmEstimates(values: Readonly<Record<string, Value>>, reason
 	return command('POST', '/api/v1/corrections/confirm', { body: { values, reason } });
 }
 
+/** Gives estimates other values, all at once, as was looked at on `revision`. 409: the state is another by now. */
+export function correctEstimates(
+	values: Readonly<Record<string, Value>>,
+	revision: number,
+	reason: string
+): Promise<Refusal | null> {
+	return command('POST', '/api/v1/corrections', { body: { values, revision, reason } });
+}
+
+/** Takes back the correction that was made on `revision`. 409: it is not the last one any more. */
+export function undoCorrection(revision: number, reason: string): Promise<Refusal | null> {
+	return command('POST', '/api/v1/corrections/undo', { body: { revision, reason } });
+}
+
+/** Lets a measured variable or an output have a value for so many seconds. */
+export function forceVariable(name: string, value: Value, seconds: number, reason: string): Promise<Refusal | null> {
+	return command('PUT', `/api/v1/forces/${encodeURIComponent(name)}`, { body: { value, seconds, reason } });
+}
+
 /** Lets a forced variable be as it comes. */
 export function releaseForce(name: string): Promise<Refusal | null> {
 	return command('DELETE', `/api/v1/forces/${encodeURIComponent(name)}`);

@@ -9,6 +9,7 @@ import { connect } from './connection.ts';
 import { SILENCE, clockDifference, hear, type Hearing } from './hearing.ts';
 import { judge, type Liveness } from './liveness.ts';
 import { NOTHING, receive, type Stream } from './receive.ts';
+import { Recorder } from './recorder.ts';
 
 /** Milliseconds between two looks at the clock. */
 const REFRESH = 150;
@@ -20,6 +21,14 @@ export class Station {
 	#hearing = $state.raw<Hearing>(SILENCE);
 	#open = $state(false);
 	#now = $state(0);
+	#names = $state.raw<readonly string[]>([]);
+
+	/** What the variables were during the last minute. It is no state: who shows it looks again from time to time. */
+	readonly recorder = new Recorder();
+	/** The names of all variables. They are others only when the station is another. */
+	get names(): readonly string[] {
+		return this.#names;
+	}
 
 	/** The last document, live or not; null before the first. */
 	readonly view: StationView | null = $derived(this.#stream.view);
@@ -48,6 +57,8 @@ export class Station {
 			heard: (message) => {
 				const before = this.#stream;
 				this.#stream = receive(before, message);
+				if (this.#stream.view !== before.view && this.recorder.hear(message))
+					this.#names = Object.keys(this.#stream.view?.variables ?? {});
 				look();
 				if (this.#stream.gap && this.#now - asked > ASK_AGAIN) {
 					asked = this.#now;

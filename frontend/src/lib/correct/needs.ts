@@ -1,0 +1,12 @@
+/** What has to be so before anything can be corrected; the server has the last word. */
+import type { StationView } from '#lib/contract.ts';
+
+/** Restart mode has to be entered first. */
+export function needsRestart({ mode, production }: Pick<StationView, 'mode' | 'production'>): boolean {
+	return mode !== 'restart' && production === 'started';
+}
+
+/** Something is in the way of any correction. */
+export function isHindered(view: Pick<StationView, 'mode' | 'production' | 'errand'>): boolean {
+	return view.errand !== null || needsRestart(view);
+}

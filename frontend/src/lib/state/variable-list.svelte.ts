@@ -1,0 +1,141 @@
+/**
+ * The list of all variables: which are shown, in which order, and which are ticked.
+ *
+ * Values, ages and standings are looked at anew once a second, however fast the station is; and never so that a row moves
+ * under the pointer or away from the focus. Each row that is in sight shows its own value as it comes.
+ */
+import { createContext, untrack } from 'svelte';
+import { SvelteSet } from 'svelte/reactivity';
+import type { Question, StationView, Value, Variable } from '#lib/contract.ts';
+import { Correction } from '#lib/correct/correction.svelte.ts';
+import type { Station } from '#lib/stream/station.svelte.ts';
+import { arrange, entriesOf, followsValues, type Entry } from './arrange.ts';
+import { EVERYTHING, type Criteria } from './criteria.ts';
+import { countsOf, doubtsOf, type Standing } from './standing.ts';
+import { said } from './words.ts';
+
+const EVERY = 1000;
+
+/** What is being done with variables in a dialog. */
+export type Task =
+	| { readonly what: 'details' | 'force'; readonly name: string }
+	| { readonly what: 'correct'; readonly correction: Correction }
+	/** With the values that were seen as it was opened. */
+	| { readonly what: 'confirm'; readonly values: Readonly<Record<string, Value>> };
+
+export class VariableList {
+	readonly #station: Station;
+	/** The view of the last second. */
+	#seen = $state.raw<StationView | null>(null);
+	/** The view that the order goes by: that of the last second in which nobody pointed at a row. */
+	#arranged = $state.raw<StationView | null>(null);
+
+	criteria = $state.raw<Criteria>(EVERYTHING);
+	readonly ticked = new SvelteSet<string>();
+	task = $state.raw<Task | null>(null);
+	pointed = $state(false);
+	focused = $state(false);
+	/** Seconds on the controller's clock when it was last looked; null before that. */
+	#looked = $state<number | null>(null);
+
+	/** Rows stay where they are. */
+	readonly held: boolean = $derived(this.pointed || this.focused || this.task !== null);
+	/** Made anew when there are other variables, and not when their values change. */
+	readonly #entries: readonly Entry[] = $derived.by(() => {
+		const view = this.#station.names.length > 0 ? this.#now() : null;
+		return view === null ? [] : entriesOf(view);
+	});
+	/** Seconds on the controller's clock, as of the last second. */
+	readonly time: number = $derived.by(() => this.#looked ?? (this.#station.names && (this.#now()?.time ?? 0)));
+	readonly all: number = $derived(this.#entries.length);
+	readonly #follows: boolean = $derived(followsValues(this.criteria));
+	/** The names of those that are shown. */
+	readonly names: readonly string[] = $derived(this.#in(this.#follows ? this.#arranged : null));
+	/** The order would be another if it did not wait. */
+	readonly late: boolean = $derived.by(() => {
+		if (!this.held || !this.#follows) return false;
+		const now = this.#in(this.#seen);
+		return now.length !== this.names.length || now.some((name, place) => name !== this.names[place]);
+	});
+	readonly counts: Record<Standing, number> = $derived.by(() =>
+		countsOf(this.#seen ?? { variables: {}, forces: {}, questions: [] })
+	);
+	readonly #questions: readonly Question[] = $derived.by(() => this.#station.view?.questions ?? []);
+	/** The questions, by the estimates that are in doubt. */
+	readonly doubts: ReadonlyMap<string, Question> = $derived(doubtsOf(this.#questions));
+
+	constructor(station: Station) {
+		this.#station = station;
+	}
+
+	/** A variable as it is now. */
+	variable(name: string): Variable | undefined {
+		return this.#station.view?.variables[name];
+	}
+
+	/** Opens the correction of estimates, all at once. */
+	correct(names: readonly string[]): void {
+		this.task = { what: 'correct', correction: new Correction(this.#station, names) };
+	}
+
+	/** Opens the undoing of the last correction. */
+	undo(): void {
+		const last = this.#station.view?.last_correction;
+		if (!last) return;
+		this.task = { what: 'correct', correction: new Correction(this.#station, Object.keys(last.values), last) };
+	}
+
+	/** Opens the confirmation of estimates, as they are believed now. */
+	confirm(names: readonly string[]): void {
+		const believed = names.flatMap((name): [string, Value][] => {
+			const value = this.variable(name)?.value ?? null;
+			return value === null ? [] : [[name, value]];
+		});
+		this.task = { what: 'confirm', values: Object.fromEntries(believed) };
+	}
+
+	/** Shows what other criteria ask for, as things are now. */
+	narrow(criteria: Criteria): void {
+		this.criteria = criteria;
+		this.arrangeNow();
+	}
+
+	/** Sorts by what is so now, whoever points at it. */
+	arrangeNow(): void {
+		this.#look();
+		this.#arranged = this.#seen;
+	}
+
+	/** Looks once a second; the result ends that. */
+	start(): () => void {
+		this.arrangeNow();
+		const timer = setInterval(() => {
+			this.#look();
+			if (!this.held) this.#arranged = this.#seen;
+		}, EVERY);
+		return () => clearInterval(timer);
+	}
+
+	#look(): void {
+		this.#seen = this.#station.view;
+		this.#looked = this.#seen === null ? null : this.#station.time;
+	}
+
+	/** The view of this moment, for what is not to be done anew with each that comes. */
+	#now(): StationView | null {
+		return untrack(() => this.#station.view);
+	}
+
+	#in(view: StationView | null): readonly string[] {
+		const judged = view ?? this.#now();
+		return judged === null ? [] : arrange(this.#entries, this.criteria, judged, said);
+	}
+}
+
+const [useVariables, setVariables] = createContext<VariableList>();
+export { useVariables };
+
+/** Makes the list for all components below. */
+export function provideVariables(station: Station): VariableList {
+	return setVariables(new VariableList(station));
+}
