@@ -121,7 +121,7 @@ export const state = {
 		now: 'Now',
 		then: 'Correct to',
 		asIs: 'leave it as it is',
-		written: (writer: string, at: string): string => `last written by ${writer}, ${at}`,
+		written: (writer: string, at: string): string => `last written by ${writer}${at && `, ${at}`}`,
 		from: (evidence: string): string => `from ${evidence}`,
 		doubt: (values: string): string => `In doubt; with what is measured would fit: ${values}`,
 		look: 'Show what follows',

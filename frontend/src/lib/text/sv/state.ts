@@ -121,7 +121,7 @@ export const state: Text['state'] = {
 		now: 'Nu',
 		then: 'Rätta till',
 		asIs: 'lämna som den är',
-		written: (writer, at) => `senast skriven av ${writer}, ${at}`,
+		written: (writer, at) => `senast skriven av ${writer}${at && `, ${at}`}`,
 		from: (evidence) => `utifrån ${evidence}`,
 		doubt: (values) => `Ifrågasatt; till det som mäts skulle passa: ${values}`,
 		look: 'Visa vad som följer',
