@@ -32,7 +32,7 @@ export function wordsOf(search: string): string[] {
 }
 
 /** What an address asks for; what it says otherwise counts for nothing. */
-export function criteriaOf(query: URLSearchParams): Criteria {
+export function criteriaOf(query: Pick<URLSearchParams, 'get'>): Criteria {
 	const sort = query.get('sort') ?? '';
 	const by = sort.replace(/^-/, '');
 	const only = (query.get('only') ?? '').split(',');
