@@ -31,7 +31,7 @@ export function aboutOf(key: string, station: Known): About {
 	});
 	switch (kind) {
 		case 'silent':
-			return about([rest], troubled(station, (topic) => topic.resource === rest && !topic.fresh));
+			return about([rest], troubled(station, (topic) => topic.resource === rest && topic.direction === 'in' && !topic.fresh));
 		case 'network':
 			return about([rest], troubled(station, (topic) => topic.resource === rest && topic.trouble !== null));
 		case 'still':

@@ -25,7 +25,7 @@ export const ros = {
 		absent: 'silent',
 		mismatch: 'not agreed',
 		trouble: 'trouble',
-		met: 'agreed',
+		met: 'connected',
 		unmet: 'nobody listens',
 		foreign: 'not of the station'
 	},
@@ -130,9 +130,9 @@ export const ros = {
 		picture: 'Who speaks to whom'
 	},
 	picture: {
-		publishers: 'publish',
-		topics: 'topics',
-		subscribers: 'subscribe',
+		publishers: 'Publishers',
+		topics: 'Topics',
+		subscribers: 'Subscribers',
 		same: 'The tables on this page say the same.'
 	},
 	quality: {

@@ -25,7 +25,7 @@ export const ros: Text['ros'] = {
 		absent: 'tyst',
 		mismatch: 'inte överens',
 		trouble: 'fel',
-		met: 'överens',
+		met: 'ansluten',
 		unmet: 'ingen lyssnar',
 		foreign: 'inte stationens'
 	},
@@ -127,9 +127,9 @@ export const ros: Text['ros'] = {
 		picture: 'Vem talar med vem'
 	},
 	picture: {
-		publishers: 'sänder',
-		topics: 'topics',
-		subscribers: 'tar emot',
+		publishers: 'Sändare',
+		topics: 'Topics',
+		subscribers: 'Mottagare',
 		same: 'Tabellerna på sidan säger detsamma.'
 	},
 	quality: {
