@@ -176,6 +176,12 @@ export class Station {
 		if (code !== 0) throw new Error(`${change} by hand ended with ${code}; see ${this.#logs}`);
 	}
 
+	/** Lets an emulated device have a fault, `robot silent`, or ends faults: `clear`. */
+	async fault(line: string): Promise<void> {
+		const code = await this.#start('fault', ['fault', line]).ended();
+		if (code !== 0) throw new Error(`the fault ${line} ended with ${code}; see ${this.#logs}`);
+	}
+
 	/** Stops all that was started; an error when a process had to be forced. */
 	async stop(): Promise<void> {
 		const ends = await Promise.allSettled(this.#started.map((running) => running.stop()));

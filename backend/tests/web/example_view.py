@@ -157,6 +157,7 @@ def example_view(**changes: object) -> StationView:
                 resource="robot",
                 last=999.9,
                 messages=12,
+                deadline=0.5,
                 fresh=True,
                 peers=1,
                 trouble=None,

@@ -3672,9 +3672,11 @@ export interface components {
         };
         /**
          * TopicView
-         * @description A ROS 2 topic of the station.
+         * @description A ROS 2 topic of the station. Without a message for `deadline` seconds it is fresh no longer; null: never.
          */
         TopicView: {
+            /** Deadline */
+            deadline: number | null;
             /** Direction */
             direction: string;
             /** Fresh */

@@ -66,6 +66,15 @@ export type Actor = Schemas['Actor'];
 export type AuditRecord = Schemas['Record'];
 export type AuditAnswer = Schemas['AuditAnswer'];
 export type Outcome = Schemas['Outcome'];
+export type RunRecord = Schemas['RunRecordView'];
+export type History = Schemas['HistoryAnswer'];
+
+export type Network = Schemas['NetworkView'];
+export type GraphTopic = Schemas['GraphTopicView'];
+export type Endpoint = Schemas['EndpointView'];
+export type Quality = Schemas['QualityView'];
+export type Mismatch = Schemas['MismatchView'];
+export type Call = Schemas['CallView'];
 
 /** Written as a record, so that the compiler misses the name of a map that is not here. */
 const MERGED: Record<keyof Schemas['StationRemoval'], true> = {

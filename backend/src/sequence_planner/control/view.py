@@ -219,13 +219,14 @@ class TaskView(View):
 
 
 class TopicView(View):
-    """A ROS 2 topic of the station."""
+    """A ROS 2 topic of the station. Without a message for `deadline` seconds it is fresh no longer; null: never."""
 
     type: str
     direction: str  # "in" or "out"
     resource: str
     last: float | None
     messages: int
+    deadline: float | None
     fresh: bool
     peers: int  # matched publishers or subscribers
     trouble: str | None

@@ -1,22 +1,17 @@
 /**
- * Alarm priorities and states after ISA-18.2: each priority has a number and a word here, and a shape and a colour of
- * its own where it is drawn.
+ * Alarm priorities and states after ISA-18.2: each priority has a number here, a word in the catalogue, and a shape and a
+ * colour of its own where it is drawn.
  */
 import type { Alarm, AlarmState, Priority } from '#lib/contract.ts';
 
-export const PRIORITY: Record<Priority, { readonly number: number; readonly word: string }> = {
-	high: { number: 1, word: 'High' },
-	medium: { number: 2, word: 'Medium' },
-	low: { number: 3, word: 'Low' }
-};
+/** The number of a priority; 1 is the most urgent. */
+export const NUMBER: Record<Priority, number> = { high: 1, medium: 2, low: 3 };
 
-export const ALARM_STATE: Record<AlarmState, string> = {
-	unacknowledged: 'not acknowledged',
-	returned: 'over, not acknowledged',
-	acknowledged: 'acknowledged',
-	shelved: 'shelved',
-	'out-of-service': 'out of service'
-};
+/** All priorities, the most urgent first. */
+export const PRIORITIES: readonly Priority[] = ['high', 'medium', 'low'];
+
+/** All states: of alarms that people are told of, then of those that are set aside. */
+export const STATES: readonly AlarmState[] = ['unacknowledged', 'returned', 'acknowledged', 'shelved', 'out-of-service'];
 
 /** Whether it is over or not, nobody has said yet that they have seen it. */
 export function isNew(alarm: Alarm): boolean {
@@ -24,27 +19,27 @@ export function isNew(alarm: Alarm): boolean {
 }
 
 /** Whether people are told of it at all. */
-function isTold(alarm: Alarm): boolean {
+export function isTold(alarm: Alarm): boolean {
 	return alarm.state !== 'shelved' && alarm.state !== 'out-of-service';
 }
 
-type Alarms = Readonly<Record<string, Alarm>>;
+export type Alarms = Readonly<Record<string, Alarm>>;
+/** An alarm with its key. */
+export type Keyed = [key: string, alarm: Alarm];
 
 /** Those that people are told of, the most urgent first; of equals those that nobody has seen, then the newest. */
-export function byUrgency(alarms: Alarms): [string, Alarm][] {
+export function byUrgency(alarms: Alarms): Keyed[] {
 	return sorted(Object.entries(alarms).filter(([, alarm]) => isTold(alarm)));
 }
 
 /** Those that people are not told of, because somebody wanted that. */
-export function setAside(alarms: Alarms): [string, Alarm][] {
+export function setAside(alarms: Alarms): Keyed[] {
 	return sorted(Object.entries(alarms).filter(([, alarm]) => !isTold(alarm)));
 }
 
-function sorted(alarms: [string, Alarm][]): [string, Alarm][] {
+function sorted(alarms: Keyed[]): Keyed[] {
 	return alarms.sort(
 		([, a], [, b]) =>
-			PRIORITY[a.priority].number - PRIORITY[b.priority].number ||
-			Number(isNew(b)) - Number(isNew(a)) ||
-			b.since - a.since
+			NUMBER[a.priority] - NUMBER[b.priority] || Number(isNew(b)) - Number(isNew(a)) || b.since - a.since
 	);
 }

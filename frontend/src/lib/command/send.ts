@@ -38,6 +38,26 @@ export function acknowledgeAlarm(key: string, alarm: Alarm): Promise<Refusal | n
 	return command('POST', '/api/v1/alarms/acknowledge', { body: { alarm: key, since: alarm.since } });
 }
 
+/** Has nobody told of the alarm `key` for so many seconds. 409: it is too urgent, or gone. */
+export function shelveAlarm(key: string, seconds: number, reason: string): Promise<Refusal | null> {
+	return command('POST', '/api/v1/alarms/shelve', { body: { alarm: key, seconds, reason } });
+}
+
+/** Has people told of a shelved alarm again. */
+export function unshelveAlarm(key: string): Promise<Refusal | null> {
+	return command('POST', '/api/v1/alarms/unshelve', { body: { alarm: key } });
+}
+
+/** Takes the alarm `key` out of service. 409: it is too urgent, or gone. */
+export function suppressAlarm(key: string, reason: string): Promise<Refusal | null> {
+	return command('POST', '/api/v1/alarms/suppress', { body: { alarm: key, reason } });
+}
+
+/** Puts an alarm back in service. */
+export function restoreAlarm(key: string): Promise<Refusal | null> {
+	return command('POST', '/api/v1/alarms/restore', { body: { alarm: key } });
+}
+
 /** Puts back into service what was taken out of it. */
 export function putBack({ of, name }: OutOfService, reason: string): Promise<Refusal | null> {
 	const path = `/api/v1/service/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;

@@ -1,2 +1,120 @@
 /** Alarms. */
-export const alarms = {};
+export const alarms = {
+	title: 'Alarms',
+	about: 'What wants a person’s attention: what is wrong, what comes of it, and what to do.',
+	priority: { high: 'High', medium: 'Medium', low: 'Low' },
+	priorityOf: { high: 'High priority', medium: 'Medium priority', low: 'Low priority' },
+	state: {
+		unacknowledged: 'not acknowledged',
+		returned: 'over, not acknowledged',
+		acknowledged: 'acknowledged',
+		shelved: 'shelved',
+		'out-of-service': 'out of service'
+	},
+	lasts: (duration: string): string => `for ${duration}`,
+	lasted: (duration: string, end: string): string => `lasted ${duration}, until ${end}`,
+	since: (when: string): string => `since ${when}`,
+	came: (times: number): string => `came ${times} times`,
+	by: (name: string): string => `by ${name}`,
+	until: (when: string): string => `until ${when}`,
+	causeOver: 'its cause is over',
+	parts: (n: number): string => `${n} more from the same cause`,
+	none: 'None',
+	noneWhenHeard: 'None when last heard',
+	noneOfThese: 'None of these',
+	aside: (n: number): string => `${n} shelved or out of service`,
+	moreOnPage: (n: number): string => (n === 1 ? '1 more alarm' : `${n} more alarms`),
+	toPage: 'All about alarms',
+	said: {
+		alarm: (priority: string, text: string): string => `${priority} alarm: ${text}`,
+		live: 'Live',
+		old: 'Not live: what is shown is old',
+		mode: (mode: string): string => `Mode: ${mode}`,
+		task: (title: string): string => `For you: ${title}`
+	},
+	standing: 'Standing',
+	setAside: 'Shelved and out of service',
+	asideAbout: 'People are not told of these, because somebody wanted that.',
+	acknowledge: 'Acknowledge',
+	all: {
+		button: (n: number): string => `Acknowledge all ${n} shown`,
+		title: (n: number): string => (n === 1 ? 'Acknowledge 1 alarm?' : `Acknowledge ${n} alarms?`),
+		means: 'You say that you know of these. Their causes stay as they are. One that comes again meanwhile is not acknowledged.',
+		word: 'Acknowledge these',
+		refused: (n: number): string =>
+			n === 1 ? '1 of them was not acknowledged:' : `${n} of them were not acknowledged:`,
+		moved: 'It came again after this list was made: it stays.',
+		gone: 'It is gone or acknowledged by now.'
+	},
+	shelve: {
+		button: 'Shelve',
+		title: 'Shelve this alarm?',
+		means: 'Nobody is told of it for that long. Its cause stays as it is. If it becomes high, it is told at once.',
+		how: 'For how long',
+		span: (minutes: number): string =>
+			minutes < 60 ? `${minutes} minutes` : minutes === 60 ? '1 hour' : `${minutes / 60} hours`,
+		until: (when: string): string => `until about ${when}`,
+		back: 'Tell it again'
+	},
+	suppress: {
+		button: 'Take out of service',
+		title: 'Take this alarm out of service?',
+		means: 'Nobody is told of it until an engineer puts it back. Its cause stays as it is.',
+		back: 'Put back in service'
+	},
+	changed: 'It has changed since this was opened:',
+	goneNow: 'The alarm is gone.',
+	links: {
+		resource: (title: string): string => `State of ${title}`,
+		topics: (n: number): string => `All ${n} topics`,
+		topic: (name: string): string => `Topic ${name}`,
+		restart: 'Go to Restart',
+		label: 'Where to look'
+	},
+	filter: {
+		label: 'Which alarms are shown',
+		state: 'State',
+		priority: 'Priority',
+		resource: 'Resource',
+		any: 'all',
+		option: (word: string, n: number): string => `${word} (${n})`,
+		clear: 'Show all',
+		shown: (shown: number, all: number): string => `${shown} of ${all} are shown.`
+	},
+	figures: {
+		title: 'Figures',
+		standing: 'Standing',
+		fresh: 'Not acknowledged',
+		aside: 'Set aside',
+		tenMinutes: 'Came in the last 10 minutes',
+		hour: 'Came in the last hour',
+		atLeast: (n: number): string => `at least ${n}`,
+		flood: 'More than 10 in 10 minutes is a flood: more than one person can follow.',
+		frequent: 'Most frequent in the last hour',
+		times: (n: number): string => (n === 1 ? 'once' : `${n} times`),
+		notKnown: 'not known'
+	},
+	earlier: {
+		title: 'Earlier',
+		about: 'Alarms that are over, and of which people took note, the newest first.',
+		caption: 'Alarms that are over, the newest first',
+		alarm: 'Alarm',
+		came: 'Came',
+		ended: 'Ended',
+		lasted: 'Lasted',
+		seen: 'Acknowledged by',
+		none: 'None so far',
+		older: 'Older',
+		reading: 'Reading',
+		noOlder: 'There is nothing older.',
+		operators: 'Operators may read what was earlier, and how often alarms came.'
+	},
+	tone: {
+		title: 'Sound',
+		label: 'A short tone for each new alarm of high priority',
+		about: 'In this browser alone, as long as a page of the station is open and live. Do not rely on it: a device may be muted, and a browser asleep.',
+		hear: 'Hear it',
+		waiting: 'No sound yet: the browser allows it once something has been pressed on this page.',
+		missing: 'This browser cannot sound.'
+	}
+};

@@ -1,3 +1,120 @@
 import type { Text } from '../text.svelte.ts';
 
-export const alarms: Text['alarms'] = {};
+export const alarms: Text['alarms'] = {
+	title: 'Larm',
+	about: 'Det som kräver en människas uppmärksamhet: vad som är fel, vad det leder till och vad man gör åt det.',
+	priority: { high: 'Hög', medium: 'Medel', low: 'Låg' },
+	priorityOf: { high: 'Hög prioritet', medium: 'Medelhög prioritet', low: 'Låg prioritet' },
+	state: {
+		unacknowledged: 'inte kvitterat',
+		returned: 'över, inte kvitterat',
+		acknowledged: 'kvitterat',
+		shelved: 'lagt åt sidan',
+		'out-of-service': 'ur drift'
+	},
+	lasts: (duration) => `i ${duration}`,
+	lasted: (duration, end) => `varade ${duration}, till ${end}`,
+	since: (when) => `sedan ${when}`,
+	came: (times) => `kom ${times} gånger`,
+	by: (name) => `av ${name}`,
+	until: (when) => `till ${when}`,
+	causeOver: 'orsaken är över',
+	parts: (n) => `${n} till av samma orsak`,
+	none: 'Inga',
+	noneWhenHeard: 'Inga när stationen senast hördes',
+	noneOfThese: 'Inga av dessa',
+	aside: (n) => `${n} åt sidan eller ur drift`,
+	moreOnPage: (n) => `${n} larm till`,
+	toPage: 'Allt om larm',
+	said: {
+		alarm: (priority, text) => `Larm, prioritet ${priority.toLowerCase()}: ${text}`,
+		live: 'Direkt',
+		old: 'Inte direkt: det som visas är gammalt',
+		mode: (mode) => `Läge: ${mode}`,
+		task: (title) => `Till dig: ${title}`
+	},
+	standing: 'Aktuella',
+	setAside: 'Lagda åt sidan och ur drift',
+	asideAbout: 'Om dessa får ingen veta något, eftersom någon ville det.',
+	acknowledge: 'Kvittera',
+	all: {
+		button: (n) => `Kvittera alla ${n} som visas`,
+		title: (n) => `Kvittera ${n} larm?`,
+		means: 'Du säger att du känner till dem. Orsakerna är kvar. Ett som kommer igen under tiden blir inte kvitterat.',
+		word: 'Kvittera dessa',
+		refused: (n) => (n === 1 ? '1 av dem blev inte kvitterat:' : `${n} av dem blev inte kvitterade:`),
+		moved: 'Det kom igen efter att listan gjordes: det är kvar.',
+		gone: 'Det är borta eller kvitterat vid det här laget.'
+	},
+	shelve: {
+		button: 'Lägg åt sidan',
+		title: 'Lägga larmet åt sidan?',
+		means: 'Ingen får veta av det under den tiden. Orsaken är kvar. Blir prioriteten hög visas det genast.',
+		how: 'Hur länge',
+		span: (minutes) =>
+			minutes < 60 ? `${minutes} minuter` : minutes === 60 ? '1 timme' : `${minutes / 60} timmar`,
+		until: (when) => `till ungefär ${when}`,
+		back: 'Ta fram igen'
+	},
+	suppress: {
+		button: 'Ta ur drift',
+		title: 'Ta larmet ur drift?',
+		means: 'Ingen får veta av det förrän en ingenjör sätter det i drift igen. Orsaken är kvar.',
+		back: 'Sätt i drift igen'
+	},
+	changed: 'Det har ändrats sedan rutan öppnades:',
+	goneNow: 'Larmet är borta.',
+	links: {
+		resource: (title) => `Tillstånd för ${title}`,
+		topics: (n) => `Alla ${n} topics`,
+		topic: (name) => `Topic ${name}`,
+		restart: 'Till Omstart',
+		label: 'Var man kan titta'
+	},
+	filter: {
+		label: 'Vilka larm som visas',
+		state: 'Tillstånd',
+		priority: 'Prioritet',
+		resource: 'Resurs',
+		any: 'alla',
+		option: (word, n) => `${word} (${n})`,
+		clear: 'Visa alla',
+		shown: (shown, all) => `${shown} av ${all} visas.`
+	},
+	figures: {
+		title: 'Siffror',
+		standing: 'Aktuella',
+		fresh: 'Inte kvitterade',
+		aside: 'Åt sidan',
+		tenMinutes: 'Kom de senaste 10 minuterna',
+		hour: 'Kom den senaste timmen',
+		atLeast: (n) => `minst ${n}`,
+		flood: 'Fler än 10 på 10 minuter är en larmflod: fler än en människa hinner följa.',
+		frequent: 'Vanligast den senaste timmen',
+		times: (n) => (n === 1 ? 'en gång' : `${n} gånger`),
+		notKnown: 'inte känt'
+	},
+	earlier: {
+		title: 'Tidigare',
+		about: 'Larm som är över och som människor har tagit del av, det senaste först.',
+		caption: 'Larm som är över, det senaste först',
+		alarm: 'Larm',
+		came: 'Kom',
+		ended: 'Upphörde',
+		lasted: 'Varade',
+		seen: 'Kvitterat av',
+		none: 'Inga än',
+		older: 'Äldre',
+		reading: 'Läser',
+		noOlder: 'Det finns inget äldre.',
+		operators: 'Operatörer får läsa tidigare larm och hur ofta larm har kommit.'
+	},
+	tone: {
+		title: 'Ljud',
+		label: 'En kort ton för varje nytt larm med hög prioritet',
+		about: 'Bara i den här webbläsaren, så länge en av stationens sidor är öppen och direkt. Lita inte på den: enheten kan vara tystad och webbläsaren kan sova.',
+		hear: 'Lyssna',
+		waiting: 'Inget ljud än: webbläsaren tillåter det när något har tryckts på den här sidan.',
+		missing: 'Den här webbläsaren kan inte låta.'
+	}
+};
