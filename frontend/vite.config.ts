@@ -32,5 +32,5 @@ export default defineConfig({
 		})
 	],
 	server: { proxy: { '/api': { target: server, ws: true, changeOrigin: true } } },
-	test: { include: ['src/**/*.test.ts'] }
+	test: { include: ['src/**/*.test.ts'], setupFiles: ['src/lib/testing/texts.ts'] }
 });
