@@ -15,7 +15,10 @@ const server = process.env['STATION_SERVER'] ?? 'http://127.0.0.1:8000';
 export default defineConfig({
 	plugins: [
 		sveltekit({
-			adapter: adapter({ fallback: '404.html' }),
+			// The server sends what is compressed here to whoever takes it.
+			adapter: adapter({ fallback: '404.html', precompress: true }),
+			// The watch alone has a worker, and registers it.
+			serviceWorker: { register: false },
 			csp: {
 				mode: 'hash',
 				directives: {
@@ -32,5 +35,5 @@ export default defineConfig({
 		})
 	],
 	server: { proxy: { '/api': { target: server, ws: true, changeOrigin: true } } },
-	test: { include: ['src/**/*.test.ts'] }
+	test: { include: ['src/**/*.test.ts'], setupFiles: ['src/lib/testing/texts.ts'] }
 });

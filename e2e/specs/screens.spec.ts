@@ -1,4 +1,4 @@
-import { overflow } from '../station/barriers.ts';
+import { outsideCircle, overflow } from '../station/barriers.ts';
 import { picture, restsOnPerson } from '../station/seen.ts';
 import { expect, test } from '../station/test.ts';
 
@@ -17,19 +17,7 @@ test('the pages fit their screens @theme', async ({ operate, watch }) => {
 	}
 
 	// On a round face the button and the words must lie within the circle.
-	const outside = await watch.evaluate(() => {
-		const range = document.createRange();
-		const boxes = [...document.querySelectorAll('main h1, main p')].flatMap((element) => {
-			range.selectNodeContents(element);
-			return [...range.getClientRects()].map((box) => ({ text: element.textContent, box }));
-		});
-		const corner = (x: number, y: number): boolean =>
-			Math.hypot(x - innerWidth / 2, y - innerHeight / 2) > innerWidth / 2;
-		return boxes
-			.filter(({ box }) => [box.left, box.right].some((x) => [box.top, box.bottom].some((y) => corner(x, y))))
-			.map(({ text }) => text);
-	});
-	expect(outside).toEqual([]);
+	expect(await outsideCircle(watch)).toEqual([]);
 });
 
 test('mode, age, alarms and Pause stay in sight wherever the page is scrolled to', async ({ operate, watch }) => {

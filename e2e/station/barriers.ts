@@ -33,6 +33,22 @@ export async function overflow(page: Page): Promise<number> {
 	return page.evaluate(() => Math.max(0, document.documentElement.scrollWidth - window.innerWidth));
 }
 
+/** The words on a round face that its circle cuts: all that are shown before it is scrolled, on buttons too. */
+export async function outsideCircle(watch: Page): Promise<string[]> {
+	return watch.evaluate(() => {
+		const range = document.createRange();
+		const boxes = [...document.querySelectorAll('main :is(h1, p, button)')].flatMap((element) => {
+			range.selectNodeContents(element);
+			return [...range.getClientRects()].map((box) => ({ text: element.textContent, box }));
+		});
+		const corner = (x: number, y: number): boolean =>
+			Math.hypot(x - innerWidth / 2, y - innerHeight / 2) > innerWidth / 2;
+		return boxes
+			.filter(({ box }) => [box.left, box.right].some((x) => [box.top, box.bottom].some((y) => corner(x, y))))
+			.map(({ text }) => text);
+	});
+}
+
 /** Looks at a page as it is now, on all screens and in both themes, and keeps pictures. */
 export async function examine(page: Page, name: string): Promise<void> {
 	for (const [width, height] of SCREENS.toReversed()) {

@@ -26,10 +26,10 @@ interface Given {
 	complaints: string[];
 }
 
-type Screen = Pick<BrowserContextOptions, 'viewport' | 'deviceScaleFactor' | 'hasTouch'>;
+type Screen = Pick<BrowserContextOptions, 'viewport' | 'deviceScaleFactor' | 'hasTouch' | 'locale'>;
 type Theme = 'light' | 'dark';
 
-const DESK: Screen = { viewport: { width: 1440, height: 900 } };
+export const DESK: Screen = { viewport: { width: 1440, height: 900 } };
 /** A round watch of 192 dp. */
 export const WRIST: Screen = { viewport: { width: 192, height: 192 }, deviceScaleFactor: 2, hasTouch: true };
 

@@ -27,7 +27,14 @@ from sequence_planner.storage.database import Database
 from .bench import Bench, bench
 
 TASK = TaskView(
-    revision=1, resource="operator", ability="operator.place", title="Place", text="", created=0.0, next_moves=[]
+    revision=1,
+    resource="operator",
+    ability="operator.place",
+    title="Place",
+    text="",
+    created=0.0,
+    next_moves=[],
+    problem=None,
 )
 
 

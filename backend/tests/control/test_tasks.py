@@ -8,7 +8,7 @@ from control.rig import PAIRS, Rig, never, truck_engine
 from sequence_planner.automaton.structure import State
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.tasks import Task, TaskDesk
+from sequence_planner.control.tasks import Task, TaskDesk, TaskProblem
 from sequence_planner.control.view import Mode
 
 PLACE_1, PLACE_2 = (f"operator.place_bolt_pair({pair})" for pair in PAIRS[:2])
@@ -95,6 +95,43 @@ def test_a_watch_that_speaks_on_a_topic_is_heard_beside_the_page() -> None:
     assert tasks.measured() == {}
     tasks.acknowledge(only(tasks).id, 1)
     assert tasks.measured() == {ACKNOWLEDGED: True}
+
+
+def told(tasks: TaskDesk, task: Task, why: str = "", revision: int = 1, by: str = "Eva", at: float = 6.0) -> None:
+    tasks.report(task.id, revision, TaskProblem(by, at, why))
+
+
+def test_a_problem_lasts_until_it_is_solved_or_its_task_is_over_and_says_nothing_is_done() -> None:
+    tasks = desk()
+    tasks.update(executing(PLACE_1), (), (), 5.0)
+    task = only(tasks)
+    told(tasks, task)
+    told(tasks, task, "no bolts", by="Adam", at=7.0)  # by another, or once more
+    assert tasks.problems == {task.id: TaskProblem("Adam", 6.0, "no bolts")}
+    assert tasks.measured() == {ACKNOWLEDGED: False}
+    for _ in range(2):
+        tasks.solve(task.id, 1)
+        assert tasks.problems == {}
+    told(tasks, task)
+    tasks.update(executing(), (PLACE_1,), (PLACE_1,), 8.0)
+    assert tasks.problems == {}
+
+
+def test_a_late_problem_is_not_one_of_another_task() -> None:
+    tasks = desk()
+    tasks.update(executing(PLACE_1), (), (), 5.0)
+    first = only(tasks)
+    tasks.update(executing(PLACE_1), (PLACE_1,), (PLACE_1,), 6.0)
+    with pytest.raises(CommandRefused) as refused:
+        told(tasks, first)
+    assert refused.value.slug == "task-gone"
+    with pytest.raises(CommandRefused) as refused:
+        tasks.solve(first.id, 1)
+    assert refused.value.slug == "task-gone"
+    with pytest.raises(CommandRefused) as refused:
+        told(tasks, only(tasks), revision=2)
+    assert refused.value.slug == "task-changed"
+    assert tasks.problems == {}
 
 
 def test_a_task_acknowledged_twice_completes_one() -> None:

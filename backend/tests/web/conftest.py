@@ -10,7 +10,7 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.web.settings import Settings, StreamLimits
 
 from .running import Controller, Loop, Server, free_port, until
-from .watching import Device, station
+from .watching import FOREIGN, Device, station
 
 
 @pytest.fixture
@@ -76,6 +76,7 @@ def administrator(server: Server) -> Iterator[httpx.Client]:
 def device(server: Server, controller: Controller) -> Iterator[Device]:
     """A watch, at a station with tasks for two people."""
     controller.show(station())
+    until(lambda: FOREIGN in server.app.state.controller.view.tasks)
     with Device(server) as device:
         yield device
 

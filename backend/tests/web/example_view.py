@@ -148,6 +148,7 @@ def example_view(**changes: object) -> StationView:
                 text="Place it on the cover plate",
                 created=995.0,
                 next_moves=["Robot moves above the engine"],
+                problem=None,
             )
         },
         topics={

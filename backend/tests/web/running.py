@@ -19,8 +19,9 @@ from websockets.sync.client import ClientConnection, connect
 
 from identity.cheap import cheap_passwords
 from sequence_planner.actor import SYSTEM, ActorKind
-from sequence_planner.control.commands import AcknowledgeTask, Command, CommandRefused
+from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.link import ControllerLink
+from sequence_planner.control.task_commands import TaskCommand
 from sequence_planner.control.view import StationView
 from sequence_planner.identity import people
 from sequence_planner.identity.people import Person
@@ -83,7 +84,7 @@ class Controller:
         self._task: asyncio.Task[None] | None = None
 
     async def handle(self, command: Command) -> None:
-        if isinstance(command, AcknowledgeTask):
+        if isinstance(command, TaskCommand):
             task = self.view.tasks.get(command.task)
             if task is None or task.revision != command.revision:
                 raise CommandRefused("task-gone", "The task is gone", "Look at what is asked for now.")

@@ -81,6 +81,8 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "PUT /api/v1/forces/{name}": ("engineer", None),
     "DELETE /api/v1/forces/{name}": ("engineer", None),
     "POST /api/v1/tasks/{task}/acknowledgement": ("operator", None),
+    "POST /api/v1/tasks/{task}/problem": ("operator", None),
+    "POST /api/v1/tasks/{task}/problem/solved": ("operator", None),
     "PUT /api/v1/overrides/{name}": ("operator", None),
     "DELETE /api/v1/overrides/{name}": ("operator", None),
     "POST /api/v1/alarms/acknowledge": ("operator", None),
@@ -116,7 +118,13 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "POST /api/v1/keys": ("administrator", None),
     "DELETE /api/v1/keys/{key}": ("administrator", None),
 }
-FOR_WATCHES = {"POST /api/v1/tasks/{task}/acknowledgement", "WS /api/v1/watches/stream", "GET /api/v1/watches/self"}
+FOR_WATCHES = {
+    "POST /api/v1/tasks/{task}/acknowledgement",
+    "POST /api/v1/tasks/{task}/problem",
+    "POST /api/v1/tasks/{task}/problem/solved",
+    "WS /api/v1/watches/stream",
+    "GET /api/v1/watches/self",
+}
 FOR_WAITING_WATCHES = {"GET /api/v1/watches/self"}
 UNREADY = {"DELETE /api/v1/session", "PUT /api/v1/session/password"}
 # The session ends by the first, so it is tried last.

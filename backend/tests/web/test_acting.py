@@ -17,6 +17,7 @@ from sequence_planner.control.commands import (
     ReleaseControl,
     TakeControl,
 )
+from sequence_planner.control.task_commands import ReportProblem, SolveProblem
 from sequence_planner.identity.roles import Role
 
 from .example_view import example_view
@@ -58,7 +59,22 @@ def test_a_refusal_comes_in_the_controllers_words(client: httpx.Client, controll
     for task, revision in (("7", 2), ("8", 3)):
         answer = client.post(f"/api/v1/tasks/{task}/acknowledgement", json={"revision": revision})
         assert problem(answer, 409, "task-gone")["detail"] == "Look at what is asked for now."
+    for path in ("problem", "problem/solved"):
+        problem(client.post(f"/api/v1/tasks/7/{path}", json={"revision": 2}), 409, "task-gone")
     assert controller.commands == []
+
+
+def test_a_person_says_what_is_in_the_way_of_a_task_and_that_it_is_solved(
+    client: httpx.Client, controller: Controller
+) -> None:
+    told = {"revision": 3, "reason": "the bolts are used up"}
+    assert client.post("/api/v1/tasks/7/problem", json=told).status_code == 204
+    assert client.post("/api/v1/tasks/7/problem/solved", json={"revision": 3}).status_code == 204
+    actor = controller.commands[0].actor
+    assert controller.commands == [
+        ReportProblem(actor=actor, task="7", revision=3, reason="the bolts are used up"),
+        SolveProblem(actor=actor, task="7", revision=3),
+    ]
 
 
 def test_a_fault_of_the_controller_is_a_problem_and_it_goes_on(client: httpx.Client, controller: Controller) -> None:

@@ -48,6 +48,36 @@ def test_a_file_that_did_not_change_is_not_sent_again(built: Server, client: htt
     assert client.get("/theme.js", headers={"If-None-Match": etag}).status_code == 304
 
 
+@pytest.mark.parametrize(
+    ("accepted", "coding"),
+    [
+        ("gzip, deflate, br, zstd", "br"),
+        ("gzip", "gzip"),
+        ("br;q=0, gzip;q=0.5", "gzip"),
+        ("BR; q=0.1", "br"),
+        ("identity", None),
+        ("", None),
+    ],
+)
+def test_what_the_build_has_compressed_is_sent_so_to_whoever_takes_it(
+    built: Server, client: httpx.Client, accepted: str, coding: str | None
+) -> None:
+    script = built.settings.page / "_app" / "immutable" / "start.abc.js"
+    for suffix in (".br", ".gz"):
+        script.with_name(script.name + suffix).write_bytes(suffix.encode())
+    with client.stream("GET", "/_app/immutable/start.abc.js", headers={"Accept-Encoding": accepted}) as answer:
+        sent = b"".join(answer.iter_raw())
+    assert sent == {"br": b".br", "gzip": b".gz", None: b"2"}[coding]
+    assert answer.headers.get("content-encoding") == coding
+    assert answer.headers["content-type"].startswith("text/javascript")
+    assert answer.headers["vary"] == "Accept-Encoding"
+    assert "immutable" in answer.headers["cache-control"]
+
+
+def test_what_is_not_compressed_is_sent_as_it_is(built: Server, client: httpx.Client) -> None:
+    assert "content-encoding" not in client.get("/theme.js", headers={"Accept-Encoding": "br, gzip"}).headers
+
+
 @pytest.mark.parametrize("path", ["/nothing", "/secret.html", "/..%2fsecret.html", "/%2e%2e/secret", "/_app", "/a%00b"])
 def test_nothing_else_is_served(built: Server, client: httpx.Client, path: str) -> None:
     problem(client.get(path), 404, "not-found")

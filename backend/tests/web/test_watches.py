@@ -11,7 +11,7 @@ import pytest
 from websockets.exceptions import InvalidStatus
 
 from sequence_planner.actor import ActorKind
-from sequence_planner.control.commands import AcknowledgeTask
+from sequence_planner.control.task_commands import AcknowledgeTask, ReportProblem, SolveProblem
 
 from .running import Controller, Server
 from .test_acting import problem
@@ -65,6 +65,22 @@ def test_a_watch_acknowledges_its_own_tasks_alone_and_by_its_own_name(
     assert (command.task, command.revision) == (OWN, 3)
     assert (command.actor.kind, command.actor.id, command.actor.name) == (ActorKind.WATCH, watch, "Watch 1")
     assert command.actor.address == "127.0.0.1"
+
+
+@pytest.mark.parametrize("solved", [False, True])
+def test_a_watch_tells_problems_of_its_own_tasks_alone_and_by_its_own_name(
+    client: httpx.Client, device: Device, controller: Controller, solved: bool
+) -> None:
+    watch = active(client, device)
+    problem(device.report(FOREIGN, solved=solved), 403, "not-your-task")
+    problem(device.report("9", solved=solved), 409, "task-gone")
+    problem(device.report(OWN, revision=2, solved=solved), 409, "task-changed")
+    assert controller.commands == []
+    assert device.report(OWN, solved=solved).status_code == 204
+    (command,) = controller.commands
+    assert isinstance(command, SolveProblem if solved else ReportProblem)
+    assert (command.task, command.revision) == (OWN, 3)
+    assert (command.actor.kind, command.actor.id, command.actor.name) == (ActorKind.WATCH, watch, "Watch 1")
 
 
 def test_a_watch_acknowledges_nothing_while_it_is_not_known_whose_task_it_is(

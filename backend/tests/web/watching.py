@@ -56,6 +56,10 @@ class Device(httpx.Client):
     def acknowledge(self, task: str, revision: int = 3) -> httpx.Response:
         return self.post(f"/api/v1/tasks/{task}/acknowledgement", json={"revision": revision})
 
+    def report(self, task: str, revision: int = 3, *, solved: bool = False) -> httpx.Response:
+        path = "problem/solved" if solved else "problem"
+        return self.post(f"/api/v1/tasks/{task}/{path}", json={"revision": revision})
+
     def listen(self, place: str = f"{WATCHES}/stream") -> ClientConnection:
         cookies = "; ".join(f"{name}={value}" for name, value in self.cookies.items())
         address = f"ws://127.0.0.1:{self.server.settings.port}{place}"

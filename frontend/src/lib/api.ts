@@ -1178,6 +1178,49 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/tasks/{task}/problem": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Report Problem
+         * @description Say that a task cannot be done as things are; refused as an acknowledgement is.
+         *
+         *     It raises an alarm until the task is over or the problem solved, and changes nothing else. Said again, it is told
+         *     with the last reason.
+         */
+        post: operations["report_problem_api_v1_tasks__task__problem_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/tasks/{task}/problem/solved": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Solve Problem
+         * @description Say that a task can be done after all; refused as an acknowledgement is.
+         */
+        post: operations["solve_problem_api_v1_tasks__task__problem_solved_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/topics": {
         parameters: {
             query?: never;
@@ -1454,7 +1497,7 @@ export interface components {
         };
         /**
          * AcknowledgementBody
-         * @description The revision of the task that the person saw, so that no other is acknowledged by mistake.
+         * @description The task is done.
          */
         AcknowledgementBody: {
             /** Revision */
@@ -2993,6 +3036,16 @@ export interface components {
             type: string;
         };
         /**
+         * ProblemBody
+         * @description The task cannot be done as things are; the reason may say what is in the way.
+         */
+        ProblemBody: {
+            /** Reason */
+            reason?: string | null;
+            /** Revision */
+            revision: number;
+        };
+        /**
          * Production
          * @description Whether outputs may be published: nothing is, until a person has started production.
          * @enum {string}
@@ -3266,6 +3319,14 @@ export interface components {
             /** Sequence */
             sequence: number;
             view: components["schemas"]["StationView"];
+        };
+        /**
+         * SolvedBody
+         * @description The task can be done after all.
+         */
+        SolvedBody: {
+            /** Revision */
+            revision: number;
         };
         /**
          * SpecificationView
@@ -3629,6 +3690,18 @@ export interface components {
             reason: string;
         };
         /**
+         * TaskProblemView
+         * @description What keeps somebody from doing a task; `why` may be empty.
+         */
+        TaskProblemView: {
+            /** By */
+            by: string;
+            /** Since */
+            since: number;
+            /** Why */
+            why: string;
+        };
+        /**
          * TaskView
          * @description A task that waits for a person. An acknowledgement must carry its id and revision.
          */
@@ -3639,6 +3712,7 @@ export interface components {
             created: number;
             /** Next Moves */
             next_moves: string[];
+            problem: components["schemas"]["TaskProblemView"] | null;
             /** Resource */
             resource: string;
             /** Revision */
@@ -6469,6 +6543,92 @@ export interface operations {
         requestBody: {
             content: {
                 "application/json": components["schemas"]["AcknowledgementBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    report_problem_api_v1_tasks__task__problem_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                task: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ProblemBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    solve_problem_api_v1_tasks__task__problem_solved_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                task: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["SolvedBody"];
             };
         };
         responses: {

@@ -12,7 +12,6 @@ from sequence_planner.actor import ActorKind
 from sequence_planner.control.alarm_commands import AlarmCommand
 from sequence_planner.control.alarming.alarms import Alarms
 from sequence_planner.control.commands import (
-    AcknowledgeTask,
     ClearOverride,
     Command,
     CommandRefused,
@@ -38,6 +37,7 @@ from sequence_planner.control.restart_commands import (
     TakeErrand,
     UndoCorrection,
 )
+from sequence_planner.control.task_commands import TaskCommand
 from sequence_planner.control.tasks import TaskDesk
 
 
@@ -62,8 +62,8 @@ class CommandDesk:
         match command:
             case StartProduction():
                 self.start_production()
-            case AcknowledgeTask(task=task, revision=revision):
-                self.tasks.acknowledge(task, revision)
+            case TaskCommand():
+                self.tasks.carry_out(command, moment.epoch)
             case SetOverride(name=name, fields=fields, actor=actor):
                 self.overrides.set(name, fields, actor.name, moment.monotonic)
             case ClearOverride(name=name):

@@ -34,21 +34,9 @@ from sequence_planner.control.restart_commands import (
     TakeErrand,
     UndoCorrection,
 )
+from sequence_planner.control.task_commands import AcknowledgeTask, ReportProblem, SolveProblem
 
-__all__ = ["COMMAND", "Command", "CommandBase", "CommandRefused", "SetMode", "StartProduction"]
-
-
-class AcknowledgeTask(CommandBase):
-    """A person says that the task is done; refused when the task or its revision is gone."""
-
-    kind: Literal["acknowledge-task"] = "acknowledge-task"
-    task: str
-    revision: int
-
-    @property
-    def subject(self) -> str:
-        """The task."""
-        return f"task {self.task}"
+__all__ = ["COMMAND", "AcknowledgeTask", "Command", "CommandBase", "CommandRefused", "SetMode", "StartProduction"]
 
 
 class SetOverride(CommandBase):
@@ -124,6 +112,8 @@ Command = Annotated[
     | SuppressAlarm
     | RestoreAlarm
     | AcknowledgeTask
+    | ReportProblem
+    | SolveProblem
     | SetOverride
     | ClearOverride
     | TakeControl

@@ -275,6 +275,7 @@ class Controller:
     def _look_after_alarms(self, moment: Moment) -> None:
         self._alarms.unjournalled = self._unjournalled()
         self._alarms.undecided, self._alarms.questions = self._doubting.undecided, self._doubting.questions
+        self._alarms.problems = {id_: (self.desk.open[id_].ability, each) for id_, each in self.desk.problems.items()}
         self._alarms.look(self._questions.trouble, moment)
 
     def _obstacles(self) -> tuple[str, ...]:

@@ -15,7 +15,8 @@ from concurrent.futures import ThreadPoolExecutor
 import structlog
 from sqlalchemy.exc import SQLAlchemyError
 
-from sequence_planner.control.commands import AcknowledgeTask, Command, CommandRefused
+from sequence_planner.control.commands import Command, CommandRefused
+from sequence_planner.control.task_commands import TaskCommand
 from sequence_planner.control.view import TaskView
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
@@ -46,7 +47,7 @@ class Recording:
     ) -> None:
         """Record the command, let `act` carry it out, and record what became of it.
 
-        `tasks` are the open ones, for what an acknowledgement is about. Raises what `act` raises, and `CommandRefused`
+        `tasks` are the open ones, for what a command about one is about. Raises what `act` raises, and `CommandRefused`
         when the command cannot be recorded, or somebody has paused the station before it was.
         """
         entry, pauses = _entry(command, tasks), self._pauses
@@ -97,7 +98,7 @@ class Recording:
 
 def _entry(command: Command, tasks: Callable[[], dict[str, TaskView]]) -> Entry:
     details = command.model_dump(mode="json", exclude={"actor", "reason", "kind"})
-    if isinstance(command, AcknowledgeTask) and (task := tasks().get(command.task)) is not None:
+    if isinstance(command, TaskCommand) and (task := tasks().get(command.task)) is not None:
         details |= {"ability": task.ability, "title": task.title}
     return Entry(
         actor=command.actor,

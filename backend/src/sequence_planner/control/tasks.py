@@ -1,18 +1,20 @@
-"""Tasks for people, and their acknowledgements as measured variables.
+"""Tasks for people, their acknowledgements as measured variables, and what keeps people from doing them.
 
 A task is open as long as a human ability is executing. An acknowledgement names the task and its revision, so a late or
 repeated one never completes another task, be it one of a controller that has been started again since. It makes the
-ability's variable true until the ability has finished.
+ability's variable true until the ability has finished. A problem is told of a task in the same way; it changes nothing
+but that people are told of it, until the task is over or somebody says that it is solved.
 """
 
 from __future__ import annotations
 
 import secrets
 from collections.abc import Collection, Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.control.commands import CommandRefused
+from sequence_planner.control.command_base import CommandRefused
+from sequence_planner.control.task_commands import AcknowledgeTask, ReportProblem, SolveProblem, TaskCommand
 from sequence_planner.expressions.types import Value
 
 
@@ -28,6 +30,15 @@ class Task:
     created: float
 
 
+@dataclass(frozen=True)
+class TaskProblem:
+    """What keeps somebody from doing a task: who says so, since when (seconds since the epoch), and why, if told."""
+
+    by: str
+    since: float
+    why: str
+
+
 class TaskDesk:
     """The open tasks of a station; `fed` are the variables that topics feed, such as those of a real watch."""
 
@@ -39,6 +50,7 @@ class TaskDesk:
         self._life = secrets.token_hex(4)
         self._numbers = 0
         self.open: dict[str, Task] = {}
+        self.problems: dict[str, TaskProblem] = {}  # by task
 
     def measured(self) -> dict[str, Value | None]:
         """The acknowledgement variables; of those that topics feed, the ones that were acknowledged here."""
@@ -60,9 +72,40 @@ class TaskDesk:
             self._numbers += 1
             id_ = f"{self._life}-{self._numbers}"
             self.open[id_] = Task(id_, 1, name, self._humans[name].title, human.text, now)
+        self.problems = {id_: problem for id_, problem in self.problems.items() if id_ in self.open}
+
+    def carry_out(self, command: TaskCommand, now: float) -> None:
+        """Do what a person asks for. Raises `CommandRefused`; nothing has changed then."""
+        match command:
+            case AcknowledgeTask(task=task, revision=revision):
+                self.acknowledge(task, revision)
+            case ReportProblem(task=task, revision=revision, actor=actor, reason=reason):
+                self.report(task, revision, TaskProblem(actor.name, now, reason or ""))
+            case SolveProblem(task=task, revision=revision):
+                self.solve(task, revision)
 
     def acknowledge(self, id_: str, revision: int) -> Task:
         """A person says the task is done. Raises `CommandRefused` when that task is not open in that revision."""
+        task = self._find(id_, revision)
+        human = self._humans[task.ability].human
+        assert human is not None
+        self._given[human.acknowledgement] = task.ability
+        return task
+
+    def report(self, id_: str, revision: int, problem: TaskProblem) -> None:
+        """A person cannot do the task. Of a problem that is known already, what was said last is told."""
+        self._find(id_, revision)
+        known = self.problems.get(id_)
+        since = problem.since if known is None else known.since
+        self.problems[id_] = replace(problem, since=since)
+
+    def solve(self, id_: str, revision: int) -> None:
+        """The task can be done after all."""
+        self._find(id_, revision)
+        self.problems.pop(id_, None)
+
+    def _find(self, id_: str, revision: int) -> Task:
+        """The task as it was seen. Raises `CommandRefused` when it is not open in that revision."""
         task = self.open.get(id_)
         if task is None:
             raise CommandRefused(
@@ -74,9 +117,6 @@ class TaskDesk:
             raise CommandRefused(
                 "task-changed",
                 "This task has changed",
-                f"Task {id_} is at revision {task.revision}, and revision {revision} was acknowledged. Read it again.",
+                f"Task {id_} is at revision {task.revision}, and revision {revision} was seen. Read it again.",
             )
-        human = self._humans[task.ability].human
-        assert human is not None
-        self._given[human.acknowledgement] = task.ability
         return task

@@ -206,6 +206,14 @@ class PlanView(View):
     why: DiagnosisView | None  # as soon as it is known why there is no plan at all
 
 
+class TaskProblemView(View):
+    """What keeps somebody from doing a task; `why` may be empty."""
+
+    by: str
+    since: float
+    why: str
+
+
 class TaskView(View):
     """A task that waits for a person. An acknowledgement must carry its id and revision."""
 
@@ -216,6 +224,7 @@ class TaskView(View):
     text: str
     created: float
     next_moves: list[str]  # titles of what moves once it is acknowledged
+    problem: TaskProblemView | None
 
 
 class TopicView(View):

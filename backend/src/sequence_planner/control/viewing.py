@@ -19,7 +19,7 @@ from sequence_planner.control.outside import Outside
 from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import LastCorrectionView, QuestionView, UndecidedOutputView
 from sequence_planner.control.start_order import Step
-from sequence_planner.control.tasks import TaskDesk
+from sequence_planner.control.tasks import TaskDesk, TaskProblem
 from sequence_planner.control.view import (
     AbilityView,
     ControlView,
@@ -33,6 +33,7 @@ from sequence_planner.control.view import (
     StationIdentity,
     StationView,
     StepStatus,
+    TaskProblemView,
     TaskView,
     TopicView,
     VariableKind,
@@ -261,6 +262,7 @@ class Viewing:
                 text=task.text,
                 created=task.created,
                 next_moves=moves[:_NEXT_MOVES],
+                problem=_problem(desk.problems.get(id_)),
             )
             for id_, task in desk.open.items()
         }
@@ -309,6 +311,10 @@ def _contract(plan: Plan | None) -> Contract | None:
     if plan is None:
         return None
     return Contract.MINIMAL if plan.minimal_ticks and plan.minimal_starts else Contract.FAST
+
+
+def _problem(problem: TaskProblem | None) -> TaskProblemView | None:
+    return None if problem is None else TaskProblemView(by=problem.by, since=problem.since, why=problem.why)
 
 
 def _epoch(moment: Moment | None) -> float | None:

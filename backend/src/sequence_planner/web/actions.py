@@ -1,4 +1,4 @@
-"""What a person may do for the work at hand: acknowledge a task, set an override.
+"""What a person may do for the work at hand: acknowledge a task or say what is wrong with it, set an override.
 
 Each endpoint makes one command with its actor and waits for the controller's word. 204 means that it was done; a
 refusal is a problem whose `type` ends in the controller's own slug. A body may say why, which is recorded.
@@ -11,8 +11,9 @@ from typing import Annotated
 from fastapi import APIRouter, Path, Request
 from pydantic import Field, StrictInt
 
-from sequence_planner.control.commands import AcknowledgeTask, ClearOverride, SetOverride
+from sequence_planner.control.commands import ClearOverride, SetOverride
 from sequence_planner.control.override_view import FieldValue
+from sequence_planner.control.task_commands import AcknowledgeTask, ReportProblem, SolveProblem
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.watches import Watch
 from sequence_planner.web.access import allowed
@@ -26,12 +27,27 @@ OPERATOR = allowed(Role.OPERATOR)
 router = APIRouter(tags=["actions"], dependencies=[JSON_ONLY], responses=refused(409, 504))
 bodiless = APIRouter(tags=["actions"], responses=refused(409, 504))
 Name = Annotated[str, Path(max_length=200)]
+DOER = allowed(Role.OPERATOR, watch=True)
 
 
-class AcknowledgementBody(Body):
-    """The revision of the task that the person saw, so that no other is acknowledged by mistake."""
+class TaskBody(Body):
+    """The revision of the task that the person saw, so that no other is meant by mistake."""
 
     revision: Annotated[StrictInt, Field(ge=0, le=LARGEST_REVISION)]
+
+
+class AcknowledgementBody(TaskBody):
+    """The task is done."""
+
+
+class ProblemBody(TaskBody):
+    """The task cannot be done as things are; the reason may say what is in the way."""
+
+    reason: Reason = None
+
+
+class SolvedBody(TaskBody):
+    """The task can be done after all."""
 
 
 class OverrideBody(Body):
@@ -41,22 +57,37 @@ class OverrideBody(Body):
     reason: Reason = None
 
 
-@router.post("/tasks/{task}/acknowledgement", status_code=204, dependencies=[allowed(Role.OPERATOR, watch=True)])
+@router.post("/tasks/{task}/acknowledgement", status_code=204, dependencies=[DOER])
 async def acknowledge(
-    task: Annotated[str, Path(max_length=200)],
-    body: AcknowledgementBody,
-    request: Request,
-    client: Controller,
-    actor: Actor,
+    task: Name, body: AcknowledgementBody, request: Request, client: Controller, actor: Actor
 ) -> None:
     """Say that a task is done; refused when the task or its revision is gone, or a watch is not for its resource."""
-    if request.state.watch is not None:
-        await _check_own(request.state.watch, task, body.revision, client)
+    await _check_own(request.state.watch, task, body.revision, client)
     await client.send(AcknowledgeTask(actor=actor, task=task, revision=body.revision))
 
 
-async def _check_own(watch: Watch, task: str, revision: int, client: Controller) -> None:
+@router.post("/tasks/{task}/problem", status_code=204, dependencies=[DOER])
+async def report_problem(task: Name, body: ProblemBody, request: Request, client: Controller, actor: Actor) -> None:
+    """Say that a task cannot be done as things are; refused as an acknowledgement is.
+
+    It raises an alarm until the task is over or the problem solved, and changes nothing else. Said again, it is told
+    with the last reason.
+    """
+    await _check_own(request.state.watch, task, body.revision, client)
+    await client.send(ReportProblem(actor=actor, task=task, revision=body.revision, reason=body.reason))
+
+
+@router.post("/tasks/{task}/problem/solved", status_code=204, dependencies=[DOER])
+async def solve_problem(task: Name, body: SolvedBody, request: Request, client: Controller, actor: Actor) -> None:
+    """Say that a task can be done after all; refused as an acknowledgement is."""
+    await _check_own(request.state.watch, task, body.revision, client)
+    await client.send(SolveProblem(actor=actor, task=task, revision=body.revision))
+
+
+async def _check_own(watch: Watch | None, task: str, revision: int, client: Controller) -> None:
     """Refuse what is not asked of this watch now. A watch cannot fill the journal with what is refused."""
+    if watch is None:
+        return
     found = (await live_view(client)).tasks.get(task)
     if found is None:
         raise ProblemFound(409, "task-gone", "The task is gone", "Look at what is asked for now.")

@@ -1,13 +1,15 @@
 """The built page: files of one folder, at the addresses that SvelteKit's static adapter gives them.
 
 Files below `_app/immutable/` carry a hash of their content in their names and may be kept for ever; everything else
-is asked for again each time, so that a new build is seen at once. Without a build, a page says how to make one.
+is asked for again each time, so that a new build is seen at once. The build has compressed its files beforehand; who
+takes them so gets them so. Without a build, a page says how to make one.
 """
 
 from __future__ import annotations
 
 from pathlib import Path
 
+from starlette.datastructures import Headers
 from starlette.exceptions import HTTPException
 from starlette.responses import HTMLResponse, Response
 from starlette.staticfiles import StaticFiles
@@ -17,6 +19,7 @@ from sequence_planner.web.security_headers import document_policy
 
 IMMUTABLE = "_app/immutable/"
 FOR_EVER = "public, max-age=31536000, immutable"
+COMPRESSED = {"br": ".br", "gzip": ".gz"}  # how the build names what it has compressed so, the smallest first
 NOT_BUILT = """<!doctype html>
 <html lang="en">
 <head><meta charset="utf-8"><meta name="viewport" content="width=device-width"><title>Sequence Planner</title></head>
@@ -50,12 +53,32 @@ class PageFiles:
             path = "index.html"
         elif not _is_file(self.folder / path):
             path += ".html"  # `/watch` is `watch.html`
-        response = await self._files.get_response(path, scope)
+        coding, suffix = self._compressed(path, Headers(scope=scope).get("accept-encoding", ""))
+        response = await self._files.get_response(path + suffix, scope)
+        if suffix:
+            response.headers["Content-Encoding"] = coding
+        response.headers["Vary"] = "Accept-Encoding"
         kept = path.startswith(IMMUTABLE) and response.status_code in (200, 206, 304)
         response.headers["Cache-Control"] = FOR_EVER if kept else "no-cache"
         if path.endswith(".html"):  # also when it has not changed: a browser then takes the new headers
             response.headers["Content-Security-Policy"] = document_policy(self.folder / path)
         return response
+
+    def _compressed(self, path: str, accepted: str) -> tuple[str, str]:
+        """Which coding of a file to send, and what its name ends in; nothing where it is sent as it is."""
+        for coding, suffix in COMPRESSED.items():
+            if _takes(accepted, coding) and _is_file(self.folder / (path + suffix)):
+                return coding, suffix
+        return "", ""
+
+
+def _takes(accepted: str, coding: str) -> bool:
+    """Whether `Accept-Encoding` names it, and does not say that it is not taken (RFC 9110, section 12.5.3)."""
+    for each in accepted.split(","):
+        name, _, weight = each.partition(";")
+        if name.strip().lower() == coding:
+            return weight.replace(" ", "").rstrip("0.").lower() != "q="
+    return False
 
 
 def _is_file(path: Path) -> bool:

@@ -12,6 +12,7 @@ from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_view import QuestionView
+from sequence_planner.control.tasks import TaskProblem
 from sequence_planner.control.view import Mode
 from sequence_planner.immutable import replace
 
@@ -192,3 +193,18 @@ def test_an_errand_that_the_station_has_stopped_is_an_alarm_until_it_works_again
 
 def rig_now(rig: Rig) -> Moment:
     return Moment(rig.now, rig.now)
+
+
+def test_a_problem_with_a_task_is_told_with_who_has_it_and_what_waits_for_it() -> None:
+    rig = Rig(acknowledges=never)
+    rig.start_production()
+    assert rig.run(10, until=lambda: bool(rig.desk.open))
+    (task,) = rig.desk.open.values()
+    shown, now = alarms(rig), Moment(rig.now, rig.now)
+    shown.problems = {task.id: (task.ability, TaskProblem("Eva", rig.now, "no bolts"))}
+    alarm = shown.current(None, now)[f"problem:{task.id}"]
+    assert (alarm.priority, alarm.state) == (Priority.MEDIUM, AlarmState.UNACKNOWLEDGED)
+    assert alarm.text == f"Eva has a problem with “{task.title}”: no bolts"
+    assert alarm.consequence.endswith("wait.") or alarm.consequence.endswith("waits.")
+    shown.problems = {}
+    assert f"problem:{task.id}" not in there(shown, now)

@@ -1,5 +1,6 @@
 /** Who holds control, as who is signed in here sees it. */
 import type { Control } from '#lib/contract.ts';
+import { say } from '#lib/text/text.svelte.ts';
 
 export type Holder = 'nobody' | 'you' | 'you-elsewhere' | 'another';
 
@@ -14,11 +15,11 @@ export function holderOf(control: Control | null, session: string | null, person
 export function holderText(control: Control | null, holder: Holder): string {
 	switch (holder) {
 		case 'nobody':
-			return 'nobody';
+			return say().account.control.nobody;
 		case 'you':
-			return 'you';
+			return say().account.control.you;
 		case 'you-elsewhere':
-			return 'you, in another browser';
+			return say().account.control.elsewhere;
 		case 'another':
 			return control?.name ?? '';
 	}

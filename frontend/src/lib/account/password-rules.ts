@@ -3,22 +3,24 @@
  *
  * The server decides; these are its rules, so that a person learns of a mistake while typing and not after sending.
  */
+import { say } from '#lib/text/text.svelte.ts';
 
 export const SHORTEST = 12;
 export const LONGEST = 256;
 
-export const RULES =
-	`At least ${SHORTEST} characters, any characters; a few words are well. ` +
-	'It must not contain the name, nor be one character over and over.';
+/** The rules in words. */
+export function passwordRules(): string {
+	return say().door.password.rules(SHORTEST);
+}
 
 /** What is wrong with `password` for somebody called `name`, in words; null when nothing is. */
 export function passwordTrouble(password: string, name: string): string | null {
 	const length = [...password].length;
-	if (length < SHORTEST) return `The password has ${length} characters; it needs at least ${SHORTEST}.`;
-	if (length > LONGEST) return `The password has ${length} characters; at most ${LONGEST} are kept.`;
+	if (length < SHORTEST) return say().door.password.short(length, SHORTEST);
+	if (length > LONGEST) return say().door.password.long(length, LONGEST);
 	const own = folded(name);
-	if (own !== '' && folded(password).includes(own)) return 'The password contains the name.';
-	if (new Set(password).size === 1) return 'The password is one character over and over.';
+	if (own !== '' && folded(password).includes(own)) return say().door.password.named;
+	if (new Set(password).size === 1) return say().door.password.repeated;
 	return null;
 }
 

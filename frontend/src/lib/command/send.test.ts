@@ -1,6 +1,15 @@
 import { afterEach, describe, expect, test, vi } from 'vitest';
 import { alarm } from '#lib/testing/view.ts';
-import { acknowledge, acknowledgeAlarm, decideOutputs, putBack, setMode, takeControl } from './send.ts';
+import {
+	acknowledge,
+	acknowledgeAlarm,
+	decideOutputs,
+	putBack,
+	reportProblem,
+	setMode,
+	solveProblem,
+	takeControl
+} from './send.ts';
 
 afterEach(() => vi.unstubAllGlobals());
 
@@ -44,10 +53,16 @@ test('what an act is about stands in its address or body, names of the model as 
 	const fetch = accepting();
 	await putBack({ of: 'ability', name: 'robot.move(a/b)', title: '', since: 0, by: null, why: '' }, 'oiled');
 	await acknowledgeAlarm('silent /ur10/state', alarm({ since: 12.5 }));
+	await reportProblem('a/b', 3, ' no bolts ');
+	await reportProblem('a/b', 3, ' ');
+	await solveProblem('a/b', 3);
 	await decideOutputs({ 'robot.go': false }, 'looked');
 	expect(fetch.mock.calls.map(([path, { method, body }]) => [method, path, body])).toEqual([
 		['PUT', '/api/v1/service/ability/robot.move(a%2Fb)', '{"in_service":true,"reason":"oiled"}'],
 		['POST', '/api/v1/alarms/acknowledge', '{"alarm":"silent /ur10/state","since":12.5}'],
+		['POST', '/api/v1/tasks/a%2Fb/problem', '{"revision":3,"reason":"no bolts"}'],
+		['POST', '/api/v1/tasks/a%2Fb/problem', '{"revision":3}'],
+		['POST', '/api/v1/tasks/a%2Fb/problem/solved', '{"revision":3}'],
 		['PUT', '/api/v1/outputs', '{"values":{"robot.go":false},"reason":"looked"}']
 	]);
 });

@@ -103,6 +103,18 @@ export function acknowledge(id: string, revision: number): Promise<Refusal | nul
 	return command('POST', `/api/v1/tasks/${encodeURIComponent(id)}/acknowledgement`, { body: { revision } });
 }
 
+/** Says that the task `id` cannot be done as it was shown in `revision`. 404 or 409: it is gone. */
+export function reportProblem(id: string, revision: number, reason: string): Promise<Refusal | null> {
+	const why = reason.trim();
+	const body = why === '' ? { revision } : { revision, reason: why };
+	return command('POST', `/api/v1/tasks/${encodeURIComponent(id)}/problem`, { body });
+}
+
+/** Says that it can be done after all. */
+export function solveProblem(id: string, revision: number): Promise<Refusal | null> {
+	return command('POST', `/api/v1/tasks/${encodeURIComponent(id)}/problem/solved`, { body: { revision } });
+}
+
 /** Takes control over from the session `over`, null when nobody is believed to hold it. 409: another holds it by now. */
 export function takeControl(over: string | null, reason: string): Promise<Refusal | null> {
 	const why = reason.trim();

@@ -1,10 +1,5 @@
-/** How far a key has come, and what its scopes let its bearer do. */
+/** How far a key has come, and how it is used. */
 import type { Key, KeyScope } from '#lib/contract.ts';
-
-export const SCOPES: Record<KeyScope, string> = {
-	read: 'reads the station, as a viewer does',
-	audit: 'reads the journal'
-};
 
 export type Standing = 'valid' | 'expired' | 'revoked';
 

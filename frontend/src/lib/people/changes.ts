@@ -1,5 +1,6 @@
 /** What an administrator changes about a person, upon what was seen, when others may be changing it too. */
 import type { Person, Role } from '#lib/contract.ts';
+import { say } from '#lib/text/text.svelte.ts';
 
 /** What was chosen; null: stays as it is. */
 export interface Choice {
@@ -17,17 +18,19 @@ export function changeOf(person: Person, choice: Choice): Partial<Pick<Person, '
 
 /** How it is said whether a person may sign in. */
 export function signInText(disabled: boolean): string {
-	return disabled ? 'disabled' : 'may sign in';
+	const { people } = say().account;
+	return disabled ? people.disabled : people.mayText;
 }
 
 /** What differs between a person as seen `before` and as found `after`, for a person to read. */
 export function differences(before: Person, after: Person): string[] {
+	const { people, roles, name } = say().account;
 	const said: string[] = [];
-	if (before.role !== after.role) said.push(`Role: ${before.role} → ${after.role}`);
+	if (before.role !== after.role) said.push(people.differs(people.role, roles[before.role].name, roles[after.role].name));
 	if (before.disabled !== after.disabled)
-		said.push(`Access: ${signInText(before.disabled)} → ${signInText(after.disabled)}`);
-	if (before.name !== after.name) said.push(`Name: ${before.name} → ${after.name}`);
+		said.push(people.differs(people.access, signInText(before.disabled), signInText(after.disabled)));
+	if (before.name !== after.name) said.push(people.differs(name, before.name, after.name));
 	if (before.must_change_password !== after.must_change_password)
-		said.push(after.must_change_password ? 'A temporary password was given' : 'The temporary password was changed');
+		said.push(after.must_change_password ? people.wasGiven : people.wasChanged);
 	return said;
 }

@@ -1,5 +1,6 @@
 /** Why the server did not do what was asked, in words for a person (RFC 9457). */
 import type { Problem } from '#lib/contract.ts';
+import { say } from '#lib/text/text.svelte.ts';
 
 export interface Refusal {
 	readonly title: string;
@@ -18,14 +19,14 @@ const LONGEST_WAIT = 24 * 60 * 60;
 const NO_ANSWER = { status: null, kind: null, retryAfter: null };
 
 /** Nothing came back from an act: whether it was done is not known. */
-export const UNREACHED: Refusal = {
-	title: 'Not sent',
-	detail: 'The server cannot be reached. Nothing may have been done; look at the station before you try again.',
-	...NO_ANSWER
-};
+export function unreached(): Refusal {
+	return { title: say().door.refusal.notSent, detail: say().door.refusal.notSentWhy, ...NO_ANSWER };
+}
 
 /** Nothing came back from a question, which changes nothing. */
-export const UNREAD: Refusal = { title: 'Not read', detail: 'The server cannot be reached.', ...NO_ANSWER };
+export function unread(): Refusal {
+	return { title: say().door.refusal.notRead, detail: say().door.refusal.notReached, ...NO_ANSWER };
+}
 
 /** The seconds that a `Retry-After` header stands for; null when it says none. */
 function secondsOf(header: string | null): number | null {
@@ -42,8 +43,8 @@ export function refusalOf(status: number, body: string, retryAfter: string | nul
 	} catch {
 		// Not a problem document: something between us and the station answered, and its status must do.
 	}
-	const title = typeof problem.title === 'string' ? problem.title : 'Refused';
-	const detail = typeof problem.detail === 'string' ? problem.detail : `The server answered with status ${status}.`;
+	const title = typeof problem.title === 'string' ? problem.title : say().door.refusal.refused;
+	const detail = typeof problem.detail === 'string' ? problem.detail : say().door.refusal.status(status);
 	const type = typeof problem.type === 'string' ? problem.type : '';
 	const kind = type.startsWith(PROBLEMS) ? type.slice(PROBLEMS.length) : null;
 	return { title, detail, status, kind, retryAfter: secondsOf(retryAfter) };

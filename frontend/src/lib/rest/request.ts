@@ -4,7 +4,7 @@
  * The session is a cookie that this page cannot read; the browser sends it. Whoever wants to know that the server has
  * found it ended listens with `whenSignedOut`.
  */
-import { UNREACHED, UNREAD, refusalOf, type Refusal } from './refusal.ts';
+import { refusalOf, unreached, unread, type Refusal } from './refusal.ts';
 
 type Method = 'GET' | 'POST' | 'PUT' | 'PATCH' | 'DELETE';
 
@@ -67,7 +67,7 @@ export async function request<Value = undefined>(
 		if (refusal.kind === 'signed-out') for (const listener of listeners) listener();
 		return { ok: false, refusal };
 	} catch {
-		return { ok: false, refusal: method === 'GET' ? UNREAD : UNREACHED };
+		return { ok: false, refusal: method === 'GET' ? unread() : unreached() };
 	}
 }
 

@@ -5,6 +5,11 @@ export function buzz(): void {
 	if ('vibrate' in navigator && navigator.userActivation.hasBeenActive) navigator.vibrate([150, 80, 150]);
 }
 
+/** A key that is held down presses once. */
+export function once(event: KeyboardEvent): void {
+	if (event.repeat) event.preventDefault();
+}
+
 /** Keeps the screen on while the page is in front; the result gives it back. */
 export function keepAwake(): () => void {
 	let lock: WakeLockSentinel | null = null;

@@ -1,6 +1,7 @@
 /** Whether this device is a watch of the station, and what each answer of the server makes of that. */
 import type { WatchSelf } from '#lib/contract.ts';
 import type { Answer } from '#lib/rest/request.ts';
+import { say } from '#lib/text/text.svelte.ts';
 
 /** Why a device is a watch no longer: in few words for a small face, and in full. */
 export interface Lost {
@@ -16,11 +17,11 @@ export type Wearing =
 	| { readonly kind: 'active'; readonly self: WatchSelf };
 
 function ended(name: string): Lost {
-	return { title: 'Revoked or expired', detail: `This device is no longer the watch ${name}. Pair it again.` };
+	return { title: say().watch.pairing.ended, detail: say().watch.pairing.endedWhy(name) };
 }
 
 function unconfirmed(name: string): Lost {
-	return { title: 'Not confirmed', detail: `${name} was refused, or two minutes went by. Ask for a new code.` };
+	return { title: say().watch.pairing.unconfirmed, detail: say().watch.pairing.unconfirmedWhy(name) };
 }
 
 /** What a watch is that the server tells of; `before` names the watch that this device was when it was last used. */

@@ -34,7 +34,7 @@ export function step(ability: string, resource: string, tick: number, rest: Part
 
 export function task(created: number): Task {
 	const place = { ability: 'operator.place', resource: 'operator', title: 'Place', text: 'Place it' };
-	return { revision: 1, ...place, created, next_moves: [] };
+	return { revision: 1, ...place, created, next_moves: [], problem: null };
 }
 
 export function alarm(rest: Partial<Alarm> = {}): Alarm {

@@ -4,8 +4,12 @@
  * `say()` has all texts; whoever reads it in a template or a derivation gets the others as soon as the language changes.
  * English is the catalogue that the others are typed by: a text that one of them lacks is a type error. What comes from
  * the station (titles of the model, sentences of the controller) is shown as it comes.
+ *
+ * The watch and the pages before the sign-in read only the rooms of the *front* catalogue; the station's pages `furnish`
+ * all the others. That nothing at the front says more than is there is a test.
  */
-import { en } from './en.ts';
+import { front } from './en-front.ts';
+import type { en } from './en.ts';
 import { keepLanguage, keptLanguage, type Language } from './languages.ts';
 
 type Said<T> = T extends string
@@ -15,13 +19,20 @@ type Said<T> = T extends string
 		: { readonly [Key in keyof T]: Said<T[Key]> };
 
 export type Text = Said<typeof en>;
+export type Front = Said<typeof front>;
 
-let texts = $state.raw<Text>(en);
+/** Where the texts of each language are read from. */
+export type Sources = Readonly<Record<Language, () => Front | Promise<Front>>>;
+
+let sources: Sources = { en: () => front, sv: async () => (await import('./sv-front.ts')).front };
+let texts = $state.raw<Front>(front);
 let chosen = $state<Language>('en');
+/** Numbers what was asked to be shown, so that texts that were overtaken are not shown. */
+let asked = 0;
 
 /** All texts in the language of the page. */
 export function say(): Text {
-	return texts;
+	return texts as Text;
 }
 
 /** The language of the page. */
@@ -31,15 +42,24 @@ export function language(): Language {
 
 /** Shows the pages in `wanted`, which is read from the server where it is not English. */
 async function show(wanted: Language): Promise<void> {
-	texts = wanted === 'sv' ? (await import('./sv.ts')).sv : en;
+	const number = ++asked;
+	const found = await sources[wanted]();
+	if (number !== asked) return;
+	texts = found;
 	chosen = wanted;
 	document.documentElement.lang = wanted;
 }
 
 /** Shows the pages in the language that was kept. Where it cannot be read they stay in English. */
 export async function showKept(): Promise<void> {
-	const kept = keptLanguage();
-	if (kept !== 'en') await show(kept).catch(() => undefined);
+	const number = asked + 1;
+	await show(keptLanguage()).catch(() => (number === asked ? show('en') : undefined));
+}
+
+/** From now on all rooms are there. */
+export async function furnish(all: Readonly<Record<Language, () => Text | Promise<Text>>>): Promise<void> {
+	sources = all;
+	await showKept();
 }
 
 /** Shows the pages in `wanted`, from now on. */

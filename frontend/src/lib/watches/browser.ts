@@ -1,4 +1,5 @@
 /** What a device is called that shows only what its browser calls itself. */
+import { say } from '#lib/text/text.svelte.ts';
 
 /** The first that fits wins: what is built upon another names both. */
 const BROWSERS: readonly (readonly [RegExp, string])[] = [
@@ -28,6 +29,6 @@ export function browserText(agent: string): string {
 		return version === undefined ? null : `${name} ${version}`;
 	}).find((found) => found !== null);
 	const system = SYSTEMS.find(([pattern]) => pattern.test(agent))?.[1];
-	if (browser === undefined) return agent.trim() === '' ? 'a browser that does not name itself' : agent;
-	return system === undefined ? browser : `${browser} on ${system}`;
+	if (browser === undefined) return agent.trim() === '' ? say().account.watches.nameless : agent;
+	return system === undefined ? browser : say().account.watches.browserOn(browser, system);
 }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 
 from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.alarming.cause import Cause
@@ -11,6 +11,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.restart_view import QuestionView
+from sequence_planner.control.tasks import TaskProblem
 from sequence_planner.control.view import Mode, Production
 from sequence_planner.expressions.printing import print_value
 
@@ -35,6 +36,7 @@ class StationAlarms:
         self.failures: dict[str, str] = {}  # what of the controller's own work fails, and how
         self.undecided: Collection[str] = ()  # outputs on which a person must decide
         self.questions: Sequence[QuestionView] = ()  # where belief and measurement do not go together
+        self.problems: Mapping[str, tuple[str, TaskProblem]] = {}  # by task, each with the ability that waits for it
 
     def note(self, outcome: TickOutcome) -> None:
         """After a tick: a conflict is gone in the next one, and what came of it lasts until one of the two goes on."""
@@ -49,6 +51,7 @@ class StationAlarms:
         yield from self._belief()
         yield from self._errand()
         yield from self._forces()
+        yield from self._problems()
 
     def _controller(self) -> Iterator[Cause]:
         for what, how in self.failures.items():
@@ -164,4 +167,18 @@ class StationAlarms:
                 if self._execution.production is Production.STARTED
                 else "It is so also when production is started.",
                 "It ends by itself; it can be released before.",
+            )
+
+    def _problems(self) -> Iterator[Cause]:
+        """One of each task that somebody cannot do."""
+        for task, (name, problem) in self.problems.items():
+            ability = self._execution.automaton.abilities[name]
+            why = f": {problem.why}" if problem.why else ""
+            waiting = self._consequences.waiting(self._consequences.held_up({ability.resource}))
+            yield Cause(
+                f"problem:{task}",
+                Priority.MEDIUM,
+                f"{problem.by} has a problem with “{ability.title}”{why}",
+                f"The task is not done. {waiting}",
+                "Go there and help. It ends when the task is done or withdrawn, or somebody says that it is solved.",
             )

@@ -1,2 +1,46 @@
-/** The watch. */
-export const watch = {};
+/** The watch, and tasks wherever they are shown. */
+export const watch = {
+	forYou: 'For you',
+	nothingToDo: 'Nothing to do',
+	nothingWhenHeard: 'Nothing when last heard',
+	nothingKnown: 'Nothing is known of your tasks',
+	operatorSays: 'An operator says when it is done.',
+	done: 'Done',
+	sent: 'Sent',
+	gone: 'This task is gone.',
+	movesNext: 'Moves next:',
+	moreAfter: (n: number): string => `${n} more after this`,
+	waits: (duration: string): string => `waits ${duration}`,
+	problem: 'Problem',
+	solved: 'Solved',
+	told: 'The station is told.',
+	problemOf: (name: string): string => `${name} has a problem with it`,
+	why: 'Why? (if you like)',
+	whyTitle: (task: string): string => `What keeps you from “${task}”?`,
+	whyMeans: 'It raises an alarm, so that somebody comes. Nothing is stopped by it, and the task stays.',
+	tell: 'Tell the station',
+	notLive: 'Not live',
+	causes: {
+		connecting: 'Connecting to the station.',
+		closed: 'The connection to the server is lost. Trying again.',
+		controller: 'The server does not hear the controller.',
+		gap: 'A message was lost on the way.',
+		silent: 'Nothing new has come from the server.'
+	},
+	soundOn: 'Sound on',
+	soundOff: 'Sound off',
+	signIn: 'Sign in',
+	pairing: {
+		title: 'Pair this watch',
+		code: (digits: number): string => `Code of ${digits} digits`,
+		pair: 'Pair',
+		where: 'The code is on the page Watches.',
+		waiting: 'Waiting',
+		confirmBefore: 'Confirm',
+		confirmAfter: 'on the station’s page.',
+		ended: 'Revoked or expired',
+		endedWhy: (name: string): string => `This device is no longer the watch ${name}. Pair it again.`,
+		unconfirmed: 'Not confirmed',
+		unconfirmedWhy: (name: string): string => `${name} was refused, or two minutes went by. Ask for a new code.`
+	}
+};

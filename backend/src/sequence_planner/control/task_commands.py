@@ -1,0 +1,37 @@
+"""What a person may say about a task that waits. A command names the task and the revision that was seen."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+from sequence_planner.control.command_base import CommandBase
+
+
+class TaskCommand(CommandBase):
+    """Refused when the task or its revision is gone, so that a late or repeated one is never about another task."""
+
+    task: str
+    revision: int
+
+    @property
+    def subject(self) -> str:
+        """The task."""
+        return f"task {self.task}"
+
+
+class AcknowledgeTask(TaskCommand):
+    """A person says that the task is done."""
+
+    kind: Literal["acknowledge-task"] = "acknowledge-task"
+
+
+class ReportProblem(TaskCommand):
+    """A person says that the task cannot be done as things are; the reason may say what is in the way."""
+
+    kind: Literal["report-problem"] = "report-problem"
+
+
+class SolveProblem(TaskCommand):
+    """A person says that the task can be done after all."""
+
+    kind: Literal["solve-problem"] = "solve-problem"

@@ -1,0 +1,135 @@
+import { findings, outsideCircle, overflow, smallTargets } from '../station/barriers.ts';
+import { done, picture, restsOnPerson } from '../station/seen.ts';
+import { EVA } from '../station/station.ts';
+import { DESK, expect, test, WRIST } from '../station/test.ts';
+import type { Page } from '@playwright/test';
+
+const PHONE = { viewport: { width: 390, height: 844 }, hasTouch: true };
+
+/** Counts from now on how often the device vibrates and how often a tone begins. */
+async function listen(watch: Page): Promise<() => Promise<readonly [buzzes: number, tones: number]>> {
+	const counted = await watch.evaluateHandle(() => {
+		const counts = { buzzes: 0, tones: 0 };
+		navigator.vibrate = () => ++counts.buzzes > 0;
+		const start = OscillatorNode.prototype.start;
+		OscillatorNode.prototype.start = function (...when): void {
+			counts.tones++;
+			start.apply(this, when);
+		};
+		return counts;
+	});
+	return async () => {
+		const { buzzes, tones } = await counted.jsonValue();
+		return [buzzes, tones];
+	};
+}
+
+test('a problem told on the watch is an alarm until it is solved, and the next task is heard and felt @theme', async ({
+	operate,
+	watch
+}) => {
+	await restsOnPerson(operate, watch);
+	const alarm = operate.locator('[data-alarm]').filter({ hasText: 'has a problem with' });
+	const problem = watch.locator('button[data-problem]');
+	await problem.tap();
+	await expect(alarm).toHaveAttribute('data-state', 'unacknowledged');
+	await expect(watch.getByTestId('problem')).toBeVisible();
+	await expect(operate.getByTestId('problem')).toContainText('has a problem with it');
+	expect(await outsideCircle(watch)).toEqual([]);
+	expect(await findings(watch)).toEqual([]);
+	await picture(watch, 'watch-problem');
+	await problem.tap();
+	await expect(watch.getByTestId('problem')).toHaveCount(0);
+	await expect(alarm).toHaveAttribute('data-state', 'returned');
+	await alarm.getByRole('button', { name: 'Acknowledge' }).click();
+	await expect(alarm).toHaveCount(0);
+
+	// The wearer's own page on a phone, where text is larger.
+	await watch.setViewportSize(PHONE.viewport);
+	await watch.evaluate(() => (document.documentElement.style.fontSize = '200%'));
+	expect(await overflow(watch)).toBe(0);
+	expect(await smallTargets(watch)).toEqual([]);
+	await picture(watch, 'watch-phone');
+
+	const heard = await listen(watch);
+	const before = await done(watch).getAttribute('data-task');
+	await done(watch).tap();
+	await expect(done(watch)).not.toHaveAttribute('data-task', before ?? '', { timeout: 60_000 });
+	await expect.poll(heard).toEqual([1, 2]);
+});
+
+test('the watch can be installed, opens without the server, and what it sends late completes no other task', async ({
+	browse,
+	operate
+}) => {
+	const watch = await browse(null, '/watch', WRIST);
+	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
+	// A watch has a slow radio: all the page's scripts, as they are sent.
+	const sent = await watch.evaluate(() =>
+		(performance.getEntriesByType('resource') as PerformanceResourceTiming[])
+			.filter(({ name }) => name.endsWith('.js'))
+			.reduce((sum, { encodedBodySize }) => sum + encodedBodySize, 0)
+	);
+	expect(sent).toBeGreaterThan(10_000);
+	expect(sent).toBeLessThan(60_000);
+
+	const devtools = await watch.context().newCDPSession(watch);
+	const { installabilityErrors } = await devtools.send('Page.getInstallabilityErrors');
+	// A test's browser keeps nothing, as a private window, where nothing is installed.
+	expect(installabilityErrors.map(({ errorId }) => errorId).filter((id) => id !== 'in-incognito')).toEqual([]);
+	await watch.evaluate(() => navigator.serviceWorker.ready.then(() => undefined));
+
+	await watch.context().setOffline(true);
+	await watch.reload();
+	await expect(watch.getByRole('status')).toContainText('Not live');
+	await watch.context().setOffline(false);
+	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 30_000 });
+
+	// What was sent hangs on the way; somebody else says that the task is done, and the next one comes.
+	const task = (await done(watch).getAttribute('data-task')) ?? '';
+	let release = (): void => undefined;
+	const held = new Promise<void>((resolve) => (release = resolve));
+	await watch.route('**/acknowledgement', async (route) => {
+		await held;
+		await route.continue();
+	});
+	await done(watch).tap();
+	await operate.locator(`button[data-task="${task}"]`).click();
+	await expect(operate.locator(`button[data-task="${task}"]`)).toHaveCount(0);
+	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
+	const next = (await done(watch).getAttribute('data-task')) ?? '';
+	expect(next).not.toBe(task);
+	const late = watch.waitForResponse(/acknowledgement/);
+	release();
+	expect((await late).status()).toBe(409);
+	await watch.waitForTimeout(500);
+	await expect(done(watch)).toHaveAttribute('data-task', next);
+	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false');
+});
+
+test.describe('whose browser reads Swedish', () => {
+	test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody' });
+
+	test('reads the watch and the sign-in so, and the language that is chosen is kept', async ({ browse }) => {
+		const watch = await browse(null, '/watch', { ...WRIST, locale: 'sv-SE' });
+		await expect(watch.getByRole('heading', { name: 'Para ihop klockan' })).toBeVisible();
+		expect(await outsideCircle(watch)).toEqual([]);
+		await picture(watch, 'watch-swedish');
+
+		const eva = await browse(null, '/sign-in', { ...DESK, locale: 'sv-SE' });
+		await expect(eva.getByRole('heading', { name: 'Logga in' })).toBeVisible();
+		await expect(eva.locator('html')).toHaveAttribute('lang', 'sv');
+		await eva.getByLabel('Namn').fill(EVA.name);
+		await eva.getByLabel('Lösenord', { exact: true }).fill(EVA.password);
+		await eva.getByRole('button', { name: 'Logga in' }).click();
+		await expect(eva.getByTestId('who')).toContainText('operatör');
+		await eva.goto('/account');
+		await expect(eva.getByRole('heading', { name: 'Roll' })).toBeVisible();
+		await eva.getByTestId('who').click();
+		await eva.getByRole('button', { name: 'English' }).click();
+		await expect(eva.getByRole('heading', { name: 'Role' })).toBeVisible();
+		await eva.reload();
+		await expect(eva.getByRole('heading', { name: 'Role' })).toBeVisible();
+		await expect(eva.locator('html')).toHaveAttribute('lang', 'en');
+	});
+});

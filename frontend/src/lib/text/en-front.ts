@@ -1,0 +1,19 @@
+/**
+ * The texts in English that are read with every page: what the watch and the pages before the sign-in say, and
+ * nothing of the station's own pages.
+ */
+import { common } from './en/common.ts';
+import { door } from './en/door.ts';
+import { header } from './en/header.ts';
+import { pages } from './en/pages.ts';
+import { watch } from './en/watch.ts';
+
+export const front = {
+	/** For numbers and dates. */
+	locale: 'en-GB',
+	common,
+	door,
+	header,
+	pages,
+	watch
+};

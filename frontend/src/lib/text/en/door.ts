@@ -1,0 +1,59 @@
+/** What is said before anybody is let in, and wherever the server refuses or is not reached. */
+export const door = {
+	connecting: 'Connecting',
+	notLive: 'Not live.',
+	tryingAgain: 'Trying again.',
+	toStation: 'To the station',
+	notFound: {
+		title: 'Not found',
+		noPage: 'There is no such page',
+		failed: 'This page failed'
+	},
+	signIn: {
+		title: 'Sign in',
+		under: 'Signing in',
+		missing: 'Name and password are both needed.',
+		help: 'No name yet, or the password forgotten? An administrator of this station can help.',
+		pair: 'Pair a watch'
+	},
+	name: { label: 'Name', missing: 'Enter your name.' },
+	password: {
+		label: 'Password',
+		missing: 'Enter your password.',
+		show: 'Show',
+		hide: 'Hide',
+		capsLock: 'Caps Lock is on.',
+		missingAbove: 'Something is missing above.',
+		rules: (shortest: number): string =>
+			`At least ${shortest} characters, any characters; a few words are well. It must not contain the name, nor be one character over and over.`,
+		short: (length: number, shortest: number): string =>
+			`The password has ${length} characters; it needs at least ${shortest}.`,
+		long: (length: number, longest: number): string =>
+			`The password has ${length} characters; at most ${longest} are kept.`,
+		named: 'The password contains the name.',
+		repeated: 'The password is one character over and over.'
+	},
+	demonstration: {
+		about: 'This is a demonstration on emulated devices, which can be used without a name.',
+		open: 'Open the demonstration'
+	},
+	first: {
+		title: 'First start',
+		over: 'This station has an administrator already, so no link makes another one.',
+		become: 'You become the first administrator of this station, who decides who else may do what.',
+		make: 'Make the administrator',
+		nobody: 'Nobody can sign in yet: this station has no administrator.',
+		openLink: 'Open the link that the station showed on its terminal as it started. It works once and for 15 minutes; after that',
+		showsNew: 'with the station’s folder shows a new one. If you have loaded this page anew, open the link again.'
+	},
+	refusal: {
+		notSent: 'Not sent',
+		notSentWhy: 'The server cannot be reached. Nothing may have been done; look at the station before you try again.',
+		notRead: 'Not read',
+		notReached: 'The server cannot be reached.',
+		refused: 'Refused',
+		status: (status: number): string => `The server answered with status ${status}.`,
+		again: (wait: string): string => `Try again in ${wait}.`,
+		againNow: 'You can try again now.'
+	}
+};

@@ -1,0 +1,58 @@
+import type { Text } from '../text.svelte.ts';
+
+export const door: Text['door'] = {
+	connecting: 'Ansluter',
+	notLive: 'Inte direkt.',
+	tryingAgain: 'Försöker igen.',
+	toStation: 'Till stationen',
+	notFound: {
+		title: 'Finns inte',
+		noPage: 'Det finns ingen sådan sida',
+		failed: 'Sidan kunde inte visas'
+	},
+	signIn: {
+		title: 'Logga in',
+		under: 'Loggar in',
+		missing: 'Både namn och lösenord behövs.',
+		help: 'Inget namn än, eller glömt lösenordet? En administratör för stationen kan hjälpa.',
+		pair: 'Para ihop en klocka'
+	},
+	name: { label: 'Namn', missing: 'Skriv ditt namn.' },
+	password: {
+		label: 'Lösenord',
+		missing: 'Skriv ditt lösenord.',
+		show: 'Visa',
+		hide: 'Dölj',
+		capsLock: 'Caps Lock är på.',
+		missingAbove: 'Något saknas ovan.',
+		rules: (shortest) =>
+			`Minst ${shortest} tecken, vilka som helst; några ord går bra. Det får inte innehålla namnet, och inte vara ett och samma tecken.`,
+		short: (length, shortest) => `Lösenordet har ${length} tecken; det behöver minst ${shortest}.`,
+		long: (length, longest) => `Lösenordet har ${length} tecken; högst ${longest} ryms.`,
+		named: 'Lösenordet innehåller namnet.',
+		repeated: 'Lösenordet är ett och samma tecken.'
+	},
+	demonstration: {
+		about: 'Detta är en demonstration med emulerade enheter, som kan användas utan namn.',
+		open: 'Öppna demonstrationen'
+	},
+	first: {
+		title: 'Första starten',
+		over: 'Stationen har redan en administratör, så ingen länk skapar en till.',
+		become: 'Du blir stationens första administratör, som bestämmer vad andra får göra.',
+		make: 'Skapa administratören',
+		nobody: 'Ingen kan logga in än: stationen har ingen administratör.',
+		openLink: 'Öppna länken som stationen visade i sin terminal när den startade. Den fungerar en gång och i 15 minuter; därefter visar',
+		showsNew: 'med stationens mapp en ny. Har du laddat om sidan, så öppna länken igen.'
+	},
+	refusal: {
+		notSent: 'Inte skickat',
+		notSentWhy: 'Servern nås inte. Kanske är inget gjort; se på stationen innan du försöker igen.',
+		notRead: 'Inte läst',
+		notReached: 'Servern nås inte.',
+		refused: 'Nekat',
+		status: (status) => `Servern svarade med status ${status}.`,
+		again: (wait) => `Försök igen om ${wait}.`,
+		againNow: 'Du kan försöka igen nu.'
+	}
+};
