@@ -66,6 +66,9 @@ types-of-e2e: e2e/node_modules/done.stamp
 e2e: install page e2e/node_modules/done.stamp chromium
 	cd e2e && PLAYWRIGHT_JUNIT_OUTPUT_FILE=../.ci/results/playwright.xml npx playwright test --reporter=list,junit
 
+pictures: install page e2e/node_modules/done.stamp chromium ## Take the pictures of the screens that the documentation shows
+	cd e2e && npx playwright test --config pictures/pictures.config.ts
+
 figures: install page e2e/node_modules/done.stamp chromium ## Measure the pages in Chromium beside a busy station
 	cd e2e && npx playwright test --config figures/figures.config.ts
 
@@ -163,4 +166,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator hall test static types-of-e2e figures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium
+.PHONY: help run emulator hall test static types-of-e2e figures pictures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium
