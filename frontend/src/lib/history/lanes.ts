@@ -35,13 +35,19 @@ export interface Lane {
 const MODE_KINDS = new Set(['production-started', 'called-off', 'stepping-changed', 'step-taken', 'errand-taken', 'errand-stopped']);
 const HAND_KINDS = new Set(['corrected', 'confirmed', 'forced', 'force-released', 'service-changed']);
 
-/** The lanes of a line, with the acts of people in it, in a window; `resources` have one each, in their order. */
+/** What is drawn, and how: `resources` have a lane each, in their order; what goes on is drawn up to `until`. */
+export interface Drawing {
+	readonly window: Window;
+	readonly until: number;
+	readonly resources: readonly string[];
+	readonly names: Names;
+}
+
+/** The lanes of a line, with the acts of people in it. */
 export function lanesOf(
 	line: TimeLine,
 	acts: readonly Act[],
-	window: Window,
-	resources: readonly string[],
-	names: Names
+	{ window, until, resources, names }: Drawing
 ): Lane[] {
 	const words = say().history.line;
 	const spots = (kinds: ReadonlySet<string>): Spot[] =>
@@ -55,7 +61,7 @@ export function lanesOf(
 		const label = planWords(mark.content);
 		return label === null ? [] : [{ time: mark.time, label, number: mark.number, act: null, refused: false }];
 	});
-	const runs = line.whole ? runsOf(line, window) : new Map<string, Bar[]>();
+	const runs = line.whole ? runsOf(line, window, until) : new Map<string, Bar[]>();
 	const byResource = new Map<string, Bar[]>(resources.map((id) => [id, []]));
 	for (const [ability, bars] of runs) {
 		const of = names.resourceOf(ability);
@@ -64,7 +70,7 @@ export function lanesOf(
 	}
 	return [
 		{ id: 'people', title: words.people, bars: [], spots: acts.map(actSpot) },
-		{ id: 'mode', title: words.mode, bars: modesOf(line, window), spots: spots(MODE_KINDS) },
+		{ id: 'mode', title: words.mode, bars: modesOf(line, window, until), spots: spots(MODE_KINDS) },
 		{ id: 'plan', title: words.plan, bars: [], spots: plans },
 		...[...byResource].map(([id, bars]) => ({ id: `of ${id}`, title: names.resource(id), bars, spots: [] })),
 		{ id: 'hand', title: words.hand, bars: [], spots: spots(HAND_KINDS) },
@@ -81,8 +87,8 @@ function actSpot(act: Act): Spot {
 	return { time, label, number: null, act, refused };
 }
 
-/** When each ability ran. What had been started before the window begins with it, what did not end ends with it. */
-export function runsOf(line: TimeLine, window: Window): Map<string, Bar[]> {
+/** When each ability ran. What had been started before the window begins with it, what did not end goes on. */
+export function runsOf(line: TimeLine, window: Window, until: number): Map<string, Bar[]> {
 	const runs = new Map<string, Bar[]>();
 	const open = new Map<string, { from: number; number: number | null }>();
 	const close = (ability: string, to: number, stays: boolean): void => {
@@ -104,16 +110,16 @@ export function runsOf(line: TimeLine, window: Window): Map<string, Bar[]> {
 			open.set(ability, { from: time, number });
 		}
 	}
-	const end = Math.min(window.to, Math.max(line.last.time, window.from));
+	const end = Math.min(window.to, Math.max(until, window.from));
 	for (const ability of [...open.keys()]) close(ability, end, true);
 	return runs;
 }
 
 /** The modes one after the other. */
-function modesOf(line: TimeLine, window: Window): Bar[] {
+function modesOf(line: TimeLine, window: Window, until: number): Bar[] {
 	const bars: Bar[] = [];
 	let last = line.mode === null ? null : { from: window.from, mode: line.mode, number: null as number | null };
-	const end = Math.min(window.to, Math.max(line.last.time, window.from));
+	const end = Math.min(window.to, Math.max(until, window.from));
 	const close = (to: number): void => {
 		if (last !== null && to > last.from) bars.push({ from: last.from, to, label: modeText(last.mode), number: last.number, open: false });
 	};

@@ -12,11 +12,11 @@ export const USUAL = 600;
 /** `window`, kept within the journal from `first` to `last`, with a little room on both sides. */
 export function within(window: Window, first: number, last: number): Window {
 	const whole = Math.max(last - first, SHORTEST);
-	const room = Math.max(whole * 0.02, 1);
-	const length = Math.min(Math.max(window.to - window.from, SHORTEST), whole + 2 * room);
-	const from = Math.min(Math.max(window.from, first - room), last + room - length);
-	const begin = Math.max(from, Math.min(first - room, last + room - length));
-	return { from: begin, to: begin + length };
+	const length = Math.min(Math.max(window.to - window.from, SHORTEST), whole * 1.04 + 2);
+	const room = Math.min(Math.max(whole * 0.02, 1), length / 2);
+	const latest = Math.max(last + room - length, first - room);
+	const from = Math.min(Math.max(window.from, first - room), latest);
+	return { from, to: from + length };
 }
 
 /** `window`, `factor` times as long, with the moment `at` where it was. */
