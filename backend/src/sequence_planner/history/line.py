@@ -18,7 +18,7 @@ from sequence_planner.history.view import LineView, MarkView, PlaceView
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.run_journal import Place, RunRecord
 
-MOST_READ: Final = 20_000  # records that are read one by one
+MOST_READ: Final = 10_000  # records that are read one by one
 MOST_MARKS: Final = 3000
 BINS: Final = 60
 ALARM: Final = "alarm"

@@ -9,6 +9,19 @@ import { USUAL, showing, within, type Window } from './window.ts';
 /** Milliseconds for a look back: the first one also prepares the station. */
 const PATIENCE = 70_000;
 
+/** What a person wants to see: a record by its number, or the one at a time. */
+interface Wish {
+	readonly number: number | null;
+	readonly time: number | null;
+	readonly act: Act | null;
+}
+
+function placeOf(answer: HistoryAnswer | Place): Place | null {
+	if (!('records' in answer)) return answer;
+	const [record] = answer.records;
+	return record === undefined ? null : { number: record.number, time: record.time };
+}
+
 export class History {
 	window = $state.raw<Window>({ from: Date.now() / 1000 - USUAL, to: Date.now() / 1000 });
 	/** What happened in `lineWindow`; null before it is known. */
@@ -30,7 +43,7 @@ export class History {
 	#looking = false;
 	#reading: Window | null = null;
 	#again = false;
-	#wish: { readonly time: number; readonly act: Act | null } | null = null;
+	#wish: Wish | null = null;
 	#wishing = false;
 
 	/** `told` hears of each record that was chosen. */
@@ -56,7 +69,7 @@ export class History {
 		const window = (this.#reading = this.window);
 		const [answer, acts] = await Promise.all([
 			request<TimeLine>('GET', `/api/v1/history/line?since=${window.from}&until=${window.to}`),
-			actsPage(window.from, window.to, null)
+			actsPage(window.from, window.to)
 		]);
 		this.#reading = null;
 		this.refusal = answer.ok ? null : answer.refusal;
@@ -80,54 +93,50 @@ export class History {
 	}
 
 	/** Chooses a record. */
-	async choose(number: number, act: Act | null = null): Promise<void> {
-		const known = this.line;
-		const wanted = known === null ? number : Math.min(Math.max(number, known.first.number), Math.max(known.last.number, number));
-		this.act = act;
-		this.place = { number: wanted, time: this.place?.time ?? this.window.to };
-		const answer = await request<HistoryAnswer>('GET', `/api/v1/history?before=${wanted + 1}&limit=1`);
-		if (this.place?.number !== wanted) return;
-		if (!answer.ok) {
-			this.momentRefusal = answer.refusal;
-			return;
-		}
-		const [record] = answer.value.records;
-		if (record !== undefined) this.#stand({ number: record.number, time: record.time });
+	choose(number: number, act: Act | null = null): Promise<void> {
+		return this.#want({ number, time: null, act });
 	}
 
-	/** Chooses the record at a time; of several wishes meanwhile only the last one counts. */
-	async chooseAt(time: number, act: Act | null = null): Promise<void> {
-		this.#wish = { time, act };
+	/** Chooses the record at a time. */
+	chooseAt(time: number, act: Act | null = null): Promise<void> {
+		return this.#want({ number: null, time, act });
+	}
+
+	/** Follows the last wish; those that came between are not asked for. */
+	async #want(wish: Wish): Promise<void> {
+		this.#wish = wish;
 		if (this.#wishing) return;
 		this.#wishing = true;
-		for (let wish = this.#take(); wish !== null; wish = this.#take()) await this.#chooseAt(wish.time, wish.act);
+		for (let last: Wish | null = null; this.#wish !== last; ) {
+			last = this.#wish;
+			if (last !== null) await this.#follow(last);
+		}
+		this.#wish = null;
 		this.#wishing = false;
 	}
 
-	#take(): { readonly time: number; readonly act: Act | null } | null {
-		const wish = this.#wish;
-		this.#wish = null;
-		return wish;
-	}
-
-	async #chooseAt(time: number, act: Act | null): Promise<void> {
-		const answer = await request<Place>('GET', `/api/v1/history/at?time=${time}`);
+	async #follow({ number, time, act }: Wish): Promise<void> {
+		const answer =
+			number === null
+				? await request<Place>('GET', `/api/v1/history/at?time=${time}`)
+				: await request<HistoryAnswer>('GET', `/api/v1/history?before=${number + 1}&limit=1`);
 		this.refusal = answer.ok ? null : answer.refusal;
-		if (!answer.ok) return;
+		const place = answer.ok ? placeOf(answer.value) : null;
+		if (place === null || this.#wish === null) return;
 		this.act = act;
-		this.#stand(answer.value);
+		this.#stand(place);
 	}
 
 	/** Goes so many records on. */
 	step(by: number): void {
-		const from = this.place?.number ?? this.line?.last.number;
+		const from = this.#wish?.number ?? this.place?.number ?? this.line?.last.number;
 		if (from === undefined || this.line === null) return;
 		void this.choose(Math.min(Math.max(from + by, this.line.first.number), this.line.last.number));
 	}
 
 	/** Back to now. */
 	leave(): void {
-		this.place = this.act = this.moment = this.momentRefusal = null;
+		this.#wish = this.place = this.act = this.moment = this.momentRefusal = null;
 		this.follows = true;
 		this.#told(null);
 		void this.look();

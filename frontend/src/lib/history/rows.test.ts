@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { expect, test } from 'vitest';
 import type { AuditRecord, RunRecord } from '#lib/contract.ts';
-import { joined, rowsOf } from './rows.ts';
+import { boundOf, joined, meets, readOf, rowsOf } from './rows.ts';
 import { changedAt, sortedBy } from './state.ts';
 import { EVERYTHING_OF_NOTE, isAct, questionOf } from './sought.ts';
 
@@ -44,4 +44,12 @@ test('the variables of a moment are read by name, and those that changed are kno
 	expect([...changedAt({ content: { measured: { a: 1 }, changes: { b: 2 } } })]).toEqual(['a', 'b']);
 	expect(changedAt({ content: {} }).size).toBe(0);
 	expect(sortedBy(['x', 'y', 'z'], (id) => ({ x: 'bolt 10', y: 'bolt 2', z: 'arm' })[id] ?? '')).toEqual(['z', 'y', 'x']);
+});
+
+test('what is older than the end of a page is not taken for known', () => {
+	const page = readOf({ records: [record(9, 90), record(8, 80)], next: 8 });
+	expect(boundOf(page)).toBe(80);
+	expect(boundOf(readOf({ records: [], next: null }))).toBe(-Infinity);
+	expect(meets(page, readOf({ records: [record(10, 95), record(9, 90)], next: 9 }))).toBe(true);
+	expect(meets(page, readOf({ records: [record(20, 95)], next: 20 }))).toBe(false);
 });

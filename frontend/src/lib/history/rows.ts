@@ -29,3 +29,36 @@ export function joined<Numbered extends { readonly number: number }>(
 	const numbers = new Set(known.map((each) => each.number));
 	return [...known, ...more.filter((each) => !numbers.has(each.number))].sort((a, b) => b.number - a.number);
 }
+
+/** What was read of one of both, the newest first: `next` is the number before which there is more. */
+export interface Read<Numbered extends { readonly number: number; readonly time: number }> {
+	readonly all: readonly Numbered[];
+	readonly next: number | null;
+	readonly more: boolean;
+}
+
+export const UNREAD = { all: [], next: null, more: true } as const;
+/** Nothing of it is wanted. */
+export const NOTHING = { all: [], next: null, more: false } as const;
+
+/** A page as it was read. */
+export function readOf<Numbered extends { readonly number: number; readonly time: number }>(page: {
+	readonly records: readonly Numbered[];
+	readonly next: number | null;
+}): Read<Numbered> {
+	return { all: page.records, next: page.next, more: page.next !== null };
+}
+
+/** The time down to which all of it is known: of what is older there may be more. */
+export function boundOf({ all, more }: Read<{ readonly number: number; readonly time: number }>): number {
+	return more ? (all.at(-1)?.time ?? Infinity) : -Infinity;
+}
+
+/** Whether the newest page and what was read before leave no gap between them. */
+export function meets<Numbered extends { readonly number: number; readonly time: number }>(
+	known: Read<Numbered>,
+	newest: Read<Numbered>
+): boolean {
+	const numbers = new Set(known.all.map((each) => each.number));
+	return !newest.more || newest.all.some((each) => numbers.has(each.number));
+}

@@ -48,9 +48,14 @@ export function questionOf(sought: Sought, view: StationView | null): URLSearchP
 	return query;
 }
 
+/** Whether acts of people may be among what is sought. */
+export function wantsActs({ kind }: Sought): boolean {
+	return CHOICES[kind].acts;
+}
+
 /** Whether an act is among what is sought. */
 export function isAct(record: AuditRecord, sought: Sought, view: StationView | null): boolean {
-	if (!CHOICES[sought.kind].acts) return false;
+	if (!wantsActs(sought)) return false;
 	const { entry } = record;
 	if (sought.who !== null && entry.actor.id !== sought.who.id) return false;
 	const text = JSON.stringify(entry).toLowerCase();

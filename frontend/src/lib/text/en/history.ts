@@ -5,7 +5,6 @@ export const history = {
 	about: 'What happened at the station, and what people did. Any moment of it can be looked at again; nothing of it can be changed.',
 	toJournal: 'All that people did, also with accounts, keys and watches, is in the Journal.',
 	reading: 'Reading',
-	nothing: 'Nothing has happened yet.',
 	line: {
 		title: 'Time line',
 		slider: 'Moment that is shown',
@@ -68,7 +67,6 @@ export const history = {
 		heard: 'Heard',
 		started: 'Started',
 		ended: 'Ended',
-		finished: 'Finish actions',
 		activated: 'Became active',
 		completed: 'Completed',
 		called_off: 'Called off',
@@ -110,12 +108,10 @@ export const history = {
 	},
 	past: {
 		heading: (when: string): string => `Past: ${when}`,
-		title: 'The station then',
 		choose: 'Choose a moment on the time line, or a record in the list, to see how the station was then.',
 		back: 'Back to now',
 		reading: 'The state at this record is being read.',
 		record: (n: number): string => `Record ${n}`,
-		tick: (n: number): string => `Tick ${n}`,
 		stepping: 'step by step',
 		operations: 'Active operations',
 		running: 'Running abilities',
@@ -185,11 +181,9 @@ export const history = {
 		going: 'Simulating',
 		done: (seconds: number, records: number): string =>
 			`${count(records, 'record')} in ${seconds.toFixed(0)} s of simulated time`,
-		short: 'It took too long for more.',
 		cut: 'Only the first of them are here.',
 		caption: 'What would have happened, in order',
 		end: 'Then it would be',
-		after: 'After',
 		different: 'Otherwise than at the chosen record'
 	},
 	journal: {

@@ -6,7 +6,6 @@ export const history: Text['history'] = {
 	about: 'Vad som hänt på stationen och vad människor gjort. Varje ögonblick kan ses på nytt; inget av det kan ändras.',
 	toJournal: 'Allt som människor gjort, även med konton, nycklar och klockor, finns i Journalen.',
 	reading: 'Läser',
-	nothing: 'Inget har hänt än.',
 	line: {
 		title: 'Tidslinje',
 		slider: 'Ögonblick som visas',
@@ -69,7 +68,6 @@ export const history: Text['history'] = {
 		heard: 'Hörde',
 		started: 'Startade',
 		ended: 'Slutade',
-		finished: 'Slutåtgärder',
 		activated: 'Blev aktiv',
 		completed: 'Slutförd',
 		called_off: 'Avbruten',
@@ -111,12 +109,10 @@ export const history: Text['history'] = {
 	},
 	past: {
 		heading: (when) => `Dåtid: ${when}`,
-		title: 'Stationen då',
 		choose: 'Välj ett ögonblick på tidslinjen eller en post i listan för att se hur stationen var då.',
 		back: 'Tillbaka till nu',
 		reading: 'Tillståndet vid posten läses.',
 		record: (n) => `Post ${n}`,
-		tick: (n) => `Takt ${n}`,
 		stepping: 'steg för steg',
 		operations: 'Aktiva operationer',
 		running: 'Förmågor som kördes',
@@ -185,11 +181,9 @@ export const history: Text['history'] = {
 		go: 'Simulera',
 		going: 'Simulerar',
 		done: (seconds, records) => `${count(records, 'post', 'poster')} på ${seconds.toFixed(0)} s simulerad tid`,
-		short: 'Mer skulle ha tagit för lång tid.',
 		cut: 'Bara de första av dem finns här.',
 		caption: 'Vad som skulle ha hänt, i ordning',
 		end: 'Då skulle det vara',
-		after: 'Efter',
 		different: 'Annorlunda än vid den valda posten'
 	},
 	journal: {
