@@ -8,6 +8,8 @@ import { USUAL, showing, within, type Window } from './window.ts';
 
 /** Milliseconds for a look back: the first one also prepares the station. */
 const PATIENCE = 70_000;
+/** Milliseconds for a record or a place of the line, also where the machine is busy. */
+const SOON = 20_000;
 
 /** What a person wants to see: a record by its number, or the one at a time. */
 interface Wish {
@@ -36,6 +38,8 @@ export class History {
 	/** How the station was at the last record that was chosen and read. */
 	moment = $state.raw<Moment | null>(null);
 	refusal = $state.raw<Refusal | null>(null);
+	/** Why what was chosen could not be found; it stays until something else is chosen. */
+	choiceRefusal = $state.raw<Refusal | null>(null);
 	momentRefusal = $state.raw<Refusal | null>(null);
 	/** The moment is that of the chosen record. */
 	readonly current = $derived(this.moment !== null && this.moment.record.number === this.place?.number);
@@ -118,9 +122,9 @@ export class History {
 	async #follow({ number, time, act }: Wish): Promise<void> {
 		const answer =
 			number === null
-				? await request<Place>('GET', `/api/v1/history/at?time=${time}`)
-				: await request<HistoryAnswer>('GET', `/api/v1/history?before=${number + 1}&limit=1`);
-		this.refusal = answer.ok ? null : answer.refusal;
+				? await request<Place>('GET', `/api/v1/history/at?time=${time}`, { patience: SOON })
+				: await request<HistoryAnswer>('GET', `/api/v1/history?before=${number + 1}&limit=1`, { patience: SOON });
+		this.choiceRefusal = answer.ok ? null : answer.refusal;
 		const place = answer.ok ? placeOf(answer.value) : null;
 		if (place === null || this.#wish === null) return;
 		this.act = act;
