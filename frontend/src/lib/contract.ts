@@ -76,7 +76,6 @@ export type Quality = Schemas['QualityView'];
 export type Mismatch = Schemas['MismatchView'];
 export type Call = Schemas['CallView'];
 
-export type RunRecord = Schemas['RunRecordView'];
 export type HistoryAnswer = Schemas['HistoryAnswer'];
 export type TimeLine = Schemas['LineView'];
 export type Mark = Schemas['MarkView'];
