@@ -86,6 +86,64 @@ def test_only_some_kinds_are_told_where_these_are_named(reader: httpx.Client) ->
     problem(reader.get(HISTORY, params={"kinds": "Begun"}), 422, "invalid-request")
 
 
+def test_records_are_sought_by_what_they_name(reader: httpx.Client) -> None:
+    everything = read(reader, limit=200)["records"]
+    started = next(each for each in everything if each["content"].get("started"))["content"]["started"][0]
+    found = read(reader, name=started, kinds="ticked,answered", limit=200)["records"]
+    assert [each["number"] for each in found] == [
+        each["number"]
+        for each in everything
+        if each["kind"] in ("ticked", "answered") and f'"{started}' in json.dumps(each["content"])
+    ]
+    assert 0 < len(found) < len(everything)
+    assert read(reader, text=started.upper(), name=started, kinds="ticked,answered", limit=200)["records"] == found
+    assert [each["number"] for each in read(reader, kinds="begun", parts="started,plan", limit=200)["records"]] == [
+        each["number"]
+        for each in everything
+        if each["kind"] == "begun" or "started" in each["content"] or "plan" in each["content"]
+    ]
+    assert read(reader, text="100%")["records"] == read(reader, who="Eva")["records"] == []
+
+
+def test_the_time_line_has_all_that_happened_between_two_times(reader: httpx.Client) -> None:
+    everything = read(reader, limit=200)["records"]
+    newest, oldest = everything[0], everything[-1]
+    line = read(reader, "/line", since=oldest["time"] - 1, until=newest["time"])
+    assert line["whole"]
+    assert (line["last"]["number"], line["end"], line["first"]["number"]) == (newest["number"], newest["number"], 1)
+    marked = {each["number"]: each["content"] for each in line["marks"]}
+    for each in everything:
+        for part in ("started", "ended", "plan"):
+            assert marked.get(each["number"], {}).get(part) == each["content"].get(part)
+    assert any("plan" in content for content in marked.values())
+    assert sum(line["bins"]) == newest["number"]
+
+
+def test_the_time_line_says_what_ran_when_it_begins(reader: httpx.Client) -> None:
+    everything = read(reader, limit=200)["records"]
+    middle = everything[len(everything) // 2]
+    line = read(reader, "/line", since=middle["time"], until=everything[0]["time"])
+    moment = read(reader, f"/{line['begin']}")["past"]
+    assert sorted(line["running"]) == moment["running"]
+    assert line["mode"] == moment["mode"]
+    assert min(each["number"] for each in line["marks"]) > line["begin"]
+
+
+def test_a_time_has_its_record(reader: httpx.Client) -> None:
+    everything = read(reader, limit=200)["records"]
+    middle = everything[len(everything) // 2]
+    found = read(reader, "/at", time=middle["time"])
+    assert found["time"] == middle["time"]
+    assert found["number"] >= middle["number"]
+    assert read(reader, "/at", time=0) == {"number": 1, "time": everything[-1]["time"]}
+    problem(reader.get(f"{HISTORY}/at", params={"time": "nan"}), 422, "invalid-request")
+
+
+def test_an_export_ends_where_it_is_asked_to(reader: httpx.Client) -> None:
+    lines = reader.get(f"{HISTORY}/export", params={"after": 3, "to": 5}).text.splitlines()
+    assert [json.loads(each)["number"] for each in lines] == [4, 5]
+
+
 def test_the_export_has_each_record_as_it_is_verified(server: Server, reader: httpx.Client) -> None:
     answer = reader.get(f"{HISTORY}/export", params={"after": 3})
     assert answer.headers["content-type"] == "application/x-ndjson"

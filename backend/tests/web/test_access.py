@@ -104,6 +104,8 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "DELETE /api/v1/watches/{watch}": ("operator", None),
     "GET /api/v1/audit": ("operator", "audit"),
     "GET /api/v1/history": ("operator", "audit"),
+    "GET /api/v1/history/at": ("operator", "audit"),
+    "GET /api/v1/history/line": ("operator", "audit"),
     "GET /api/v1/history/export": ("operator", "audit"),
     "GET /api/v1/history/checkpoint": ("operator", "audit"),
     "GET /api/v1/history/{number}": ("operator", "audit"),

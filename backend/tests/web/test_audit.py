@@ -91,6 +91,10 @@ def questions(choices: Choices) -> tuple[int, dict[str, object]]:
         filters["action"] = choices.pick((*ACTIONS, "never-done"))
     if choices.chance(2):
         filters["actor"] = choices.pick((*PEOPLE, "nobody"))
+    if choices.chance(2):
+        filters["since"] = 1000.0 + choices.number(0, MANY)
+    if choices.chance(2):
+        filters["until"] = 1000.0 + choices.number(0, MANY)
     return choices.number(1, MANY + 2), filters
 
 
@@ -106,6 +110,7 @@ def test_the_cursor_leads_through_everything_that_was_asked_for(
         for each in everything
         if filters.get("action", each["entry"]["action"]) == each["entry"]["action"]
         and filters.get("actor", each["entry"]["actor"]["id"]) == each["entry"]["actor"]["id"]
+        and filters.get("since", 0.0) <= each["time"] < filters.get("until", 1e12)
     ]
     found = list(pages(reader, limit=limit, **filters))
     assert [each for page in found for each in page] == wanted

@@ -195,7 +195,8 @@ export interface paths {
         };
         /**
          * Read
-         * @description What was done, refused or failed; only that of one action or of one actor (by id), where these are named.
+         * @description What was done, refused or failed; only that of one action or of one actor (by id), where these are named, and
+         *     that from `since` to before `until` (seconds since the epoch).
          */
         get: operations["read_api_v1_audit_get"];
         put?: never;
@@ -458,9 +459,33 @@ export interface paths {
         };
         /**
          * Read
-         * @description What has happened, only of some kinds, such as `mode-changed,forced`, where these are named.
+         * @description What has happened, only of some kinds, such as `mode-changed,forced`, or with some parts, such as
+         *     `started,ended`, where these are named.
+         *
+         *     `who` asks for what that person did, `name` for what has to do with one of these abilities, variables or operations
+         *     (`robot.` stands for all of a resource), and `text` for records in which one of these stands.
          */
         get: operations["read_api_v1_history_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/history/at": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * At Time
+         * @description The last record up to `time` (seconds since the epoch), or the first one where none is so old.
+         */
+        get: operations["at_time_api_v1_history_at_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -498,9 +523,30 @@ export interface paths {
         };
         /**
          * Export
-         * @description All records with higher numbers than `after`, one JSON document a line, as `journal export` writes them.
+         * @description All records with higher numbers than `after`, up to `to`, one JSON document a line, as `journal export` writes
+         *     them.
          */
         get: operations["export_api_v1_history_export_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/history/line": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Time Line
+         * @description What happened after `since` and up to `until` (seconds since the epoch), as a time line shows it.
+         */
+        get: operations["time_line_api_v1_history_line_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2389,6 +2435,32 @@ export interface components {
             why: string;
         };
         /**
+         * LineView
+         * @description What happened between two times: the records behind number `begin`, up to `end`.
+         *
+         *     `first` and `last` are those of the whole journal. `running` had been started before, and `mode` was the mode then.
+         *     Without `whole` there is too much for every start, end and plan to be a mark of its own. `bins` counts the records
+         *     in equal parts of the time.
+         */
+        LineView: {
+            /** Begin */
+            begin: number;
+            /** Bins */
+            bins: number[];
+            /** End */
+            end: number;
+            first: components["schemas"]["PlaceView"];
+            last: components["schemas"]["PlaceView"];
+            /** Marks */
+            marks: components["schemas"]["MarkView"][];
+            /** Mode */
+            mode: string | null;
+            /** Running */
+            running: string[];
+            /** Whole */
+            whole: boolean;
+        };
+        /**
          * Link
          * @description The controller fell silent, or is back; then a snapshot follows.
          */
@@ -2401,6 +2473,22 @@ export interface components {
             kind: "link";
             /** Sequence */
             sequence: number;
+        };
+        /**
+         * MarkView
+         * @description A record as a time line shows it. Of its content there is what is drawn.
+         */
+        MarkView: {
+            /** Content */
+            content: {
+                [key: string]: components["schemas"]["JsonValue"];
+            };
+            /** Kind */
+            kind: string;
+            /** Number */
+            number: number;
+            /** Time */
+            time: number;
         };
         /**
          * MismatchView
@@ -2915,6 +3003,16 @@ export interface components {
             pipelines: {
                 [key: string]: components["schemas"]["PipelineGraphView"];
             };
+        };
+        /**
+         * PlaceView
+         * @description A record's number, and when it was written.
+         */
+        PlaceView: {
+            /** Number */
+            number: number;
+            /** Time */
+            time: number;
         };
         /**
          * PlanAnswer
@@ -4505,6 +4603,8 @@ export interface operations {
                 limit?: number;
                 action?: string | null;
                 actor?: string | null;
+                since?: number | null;
+                until?: number | null;
             };
             header?: never;
             path?: never;
@@ -5075,6 +5175,10 @@ export interface operations {
                 before?: number | null;
                 limit?: number;
                 kinds?: string | null;
+                parts?: string | null;
+                who?: string;
+                name?: string[] | null;
+                text?: string[] | null;
             };
             header?: never;
             path?: never;
@@ -5093,6 +5197,42 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    at_time_api_v1_history_at_get: {
+        parameters: {
+            query: {
+                time: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PlaceView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
@@ -5143,6 +5283,7 @@ export interface operations {
         parameters: {
             query?: {
                 after?: number;
+                to?: number;
             };
             header?: never;
             path?: never;
@@ -5161,6 +5302,43 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    time_line_api_v1_history_line_get: {
+        parameters: {
+            query: {
+                since: number;
+                until: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["LineView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */

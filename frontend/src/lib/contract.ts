@@ -76,6 +76,17 @@ export type Quality = Schemas['QualityView'];
 export type Mismatch = Schemas['MismatchView'];
 export type Call = Schemas['CallView'];
 
+export type HistoryAnswer = Schemas['HistoryAnswer'];
+export type TimeLine = Schemas['LineView'];
+export type Mark = Schemas['MarkView'];
+export type Place = Schemas['PlaceView'];
+export type Moment = Schemas['MomentView'];
+export type Past = Schemas['PastView'];
+export type PastPlan = Schemas['PastPlanView'];
+export type Branch = Schemas['BranchView'];
+export type BranchBody = Schemas['BranchBody'];
+export type Checkpoint = Schemas['Checkpoint'];
+
 /** Written as a record, so that the compiler misses the name of a map that is not here. */
 const MERGED: Record<keyof Schemas['StationRemoval'], true> = {
 	resources: true,

@@ -55,6 +55,7 @@ class RunRecorder:
         self._unconfirmed = self._estimates if self._unconfirmed_since is not None else frozenset()
         self._service, self._done = execution.conduct.service, execution.conduct.done
         self._mode, self._stepping = execution.conduct.mode, execution.conduct.stepping
+        self._plan = _plan(execution)
         self._since_snapshot = 0
         self._now = Moment(clock(), 0.0) if beginning is None else beginning.now
         self.last = 0
@@ -95,6 +96,11 @@ class RunRecorder:
         if conduct.mode is not self._mode or conduct.stepping != self._stepping:
             self._mode, self._stepping = conduct.mode, conduct.stepping
             found["mode"], found["stepping"] = str(conduct.mode), conduct.stepping
+        if (plan := _plan(self._execution)) != self._plan:
+            found["plan"] = {"status": plan[0], "reason": plan[1]}
+            if plan[2] > self._plan[2]:
+                found["plan"]["replaced"] = True
+            self._plan = plan
         if self._unconfirmed and (seen := _seen(heard) | changes.keys()):
             self._unconfirmed -= seen
         return found
@@ -134,6 +140,11 @@ class RunRecorder:
 def kind_of_happening(happening: object) -> str:
     """The kind of the record of a happening."""
     return TICKED if isinstance(happening, Ticked) else kind_of(type(happening))
+
+
+def _plan(execution: Execution) -> tuple[str, str, int]:
+    """What is said of the plan, and how often another had taken the place of one."""
+    return str(execution.plan.status), execution.plan.reason, execution.plan.replanned
 
 
 def _seen(heard: Heard) -> frozenset[str]:

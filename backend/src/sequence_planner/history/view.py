@@ -23,6 +23,41 @@ class RunRecordView(View):
     hash: str
 
 
+class PlaceView(View):
+    """A record's number, and when it was written."""
+
+    number: int
+    time: float
+
+
+class MarkView(View):
+    """A record as a time line shows it. Of its content there is what is drawn."""
+
+    number: int
+    time: float
+    kind: str
+    content: dict[str, JsonValue]
+
+
+class LineView(View):
+    """What happened between two times: the records behind number `begin`, up to `end`.
+
+    `first` and `last` are those of the whole journal. `running` had been started before, and `mode` was the mode then.
+    Without `whole` there is too much for every start, end and plan to be a mark of its own. `bins` counts the records
+    in equal parts of the time.
+    """
+
+    first: PlaceView
+    last: PlaceView
+    begin: int
+    end: int
+    running: list[str]
+    mode: str | None
+    marks: list[MarkView]
+    whole: bool
+    bins: list[int]
+
+
 class PastStepView(View):
     """A start of the plan as it was then."""
 

@@ -100,8 +100,11 @@ def read(
     limit: int = 50,
     action: str | None = None,
     actor: str | None = None,
+    since: float | None = None,
+    until: float | None = None,
 ) -> list[Record]:
-    """Up to `limit` records, the newest first: those with numbers below `before`, of an action, of an actor's id.
+    """Up to `limit` records, the newest first: those with numbers below `before`, of an action, of an actor's id, and
+    from `since` to before `until`.
 
     Raises `StorageError` for a record that was changed so that it can no longer be read.
     """
@@ -112,6 +115,10 @@ def read(
         chosen = chosen.where(AUDIT.c.action == action)
     if actor is not None:
         chosen = chosen.where(AUDIT.c.actor == actor)
+    if since is not None:
+        chosen = chosen.where(AUDIT.c.time >= since)
+    if until is not None:
+        chosen = chosen.where(AUDIT.c.time < until)
     return [Stored(**row).record() for row in connection.execute(chosen).mappings()]
 
 

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import heapq
 import json
+from bisect import bisect_right
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final, TypeAlias
 
-from sqlalchemy import Connection, Select, select
+from sqlalchemy import ColumnElement, Connection, Select, and_, or_, select
 
 from sequence_planner.journal import chain
 from sequence_planner.journal.chain import BELOW_ALL, START, Link, Position
@@ -38,6 +39,52 @@ class RunRecord(Link):
         return f'{{"number":{self.number},"time":{self.time!r},"kind":{_quoted(self.kind)},"content":{self.content}'
 
 
+@dataclass(frozen=True)
+class Sought:
+    """Which records are sought: those that name `who`, one of `names` (or what begins with it), and one of `texts`.
+
+    What is left empty is not asked for. Texts are found whatever their case. Beside those of the kinds that are asked
+    for there are those with one of `parts`, as in `started`.
+    """
+
+    who: str = ""
+    names: tuple[str, ...] = ()
+    texts: tuple[str, ...] = ()
+    parts: tuple[str, ...] = ()
+
+    def of_parts(self) -> ColumnElement[bool]:
+        """That it has one of the parts, as a condition on the text of the content."""
+        needles = (f'"{part}":{_BEGINNINGS.get(part, "[")}' for part in self.parts)
+        return or_(*(RUN.c.content.contains(needle, autoescape=True) for needle in needles))
+
+    def condition(self) -> ColumnElement[bool] | None:
+        """It as a condition on the text of the content; None if everything is sought."""
+        content, asked = RUN.c.content, list[ColumnElement[bool]]()
+        if self.who:
+            asked.append(content.contains(f'"by":{json.dumps(self.who)}', autoescape=True))
+        if self.names:
+            asked.append(or_(*(content.contains(f'"{_within(name)}', autoescape=True) for name in self.names)))
+        if self.texts:
+            asked.append(or_(*(content.icontains(_within(text), autoescape=True) for text in self.texts)))
+        return and_(*asked) if asked else None
+
+
+_BEGINNINGS: Final = {"plan": '{"status"', "mode": '"'}  # of what a part holds; all else is a list
+
+
+def _within(text: str) -> str:
+    """As it is written within a string of JSON."""
+    return json.dumps(text)[1:-1]
+
+
+@dataclass(frozen=True)
+class Place:
+    """A record's number, and when it was written."""
+
+    number: int
+    time: float
+
+
 @lru_cache(256)
 def _quoted(kind: str) -> str:
     """As JSON: a kind with a quotation mark in it must not read as a shorter one with other content."""
@@ -56,15 +103,31 @@ def after(connection: Connection, number: int, limit: int, kinds: Collection[str
 
 
 def before(
-    connection: Connection, number: int | None, limit: int, kinds: Collection[str] | None = None
+    connection: Connection,
+    number: int | None,
+    limit: int,
+    kinds: Collection[str] | None = None,
+    sought: Sought | None = None,
 ) -> list[RunRecord]:
-    """Up to `limit` records with numbers below `number` (None: the latest), the newest first; only of these kinds."""
+    """Up to `limit` records with numbers below `number` (None: the latest), the newest first; only of these kinds, and
+    only what is sought.
+    """
+    condition = None if sought is None else sought.condition()
+
+    def order(record: RunRecord) -> int:
+        return -record.number
 
     def chosen() -> _Chosen:
         newest = select(RUN).order_by(RUN.c.number.desc()).limit(limit)
+        if condition is not None:
+            newest = newest.where(condition)
         return newest if number is None else newest.where(RUN.c.number < number)
 
-    return _page(connection, chosen, limit, kinds, lambda record: -record.number)
+    found = [] if not kinds and sought and sought.parts else _page(connection, chosen, limit, kinds, order)
+    if sought is None or not sought.parts:
+        return found
+    with_parts = _records(connection, chosen().where(sought.of_parts(), RUN.c.kind.not_in(kinds or ())))
+    return list(heapq.merge(found, with_parts, key=order))[:limit]
 
 
 def last(connection: Connection, kind: str) -> RunRecord | None:
@@ -75,6 +138,28 @@ def last(connection: Connection, kind: str) -> RunRecord | None:
 def get(connection: Connection, number: int) -> RunRecord | None:
     """The record of this number; None if there is none, or none any more."""
     return next(iter(_records(connection, select(RUN).where(RUN.c.number == number))), None)
+
+
+def bounds(connection: Connection) -> tuple[Place, Place] | None:
+    """The first record that there is and the last one; None if there is none."""
+    ends = (select(RUN.c.number, RUN.c.time).order_by(order).limit(1) for order in (RUN.c.number, RUN.c.number.desc()))
+    found = [connection.execute(each).one_or_none() for each in ends]
+    first, last_ = (None if each is None else Place(each.number, each.time) for each in found)
+    return None if first is None or last_ is None else (first, last_)
+
+
+def at(connection: Connection, time: float, first: Place, last_: Place) -> int:
+    """The number of the last record up to a time, among those from `first` to `last_`; below `first` if there is none.
+
+    Where the clock has been set back, one of the records at which it passes that time.
+    """
+    numbers = range(first.number, last_.number + 1)
+    return first.number - 1 + bisect_right(numbers, time, key=lambda number: _time(connection, number))
+
+
+def _time(connection: Connection, number: int) -> float:
+    found: float = connection.execute(select(RUN.c.time).where(RUN.c.number == number)).scalar_one()
+    return found
 
 
 def begin(connection: Connection) -> Position:

@@ -33,10 +33,16 @@ async def read(
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,
     action: Annotated[str | None, Query(pattern="^[a-z-]{1,100}$")] = None,
     actor: Annotated[str | None, Query(pattern="^[!-~ ]{1,200}$")] = None,
+    since: Annotated[float | None, Query(allow_inf_nan=False)] = None,
+    until: Annotated[float | None, Query(allow_inf_nan=False)] = None,
 ) -> AuditAnswer:
-    """What was done, refused or failed; only that of one action or of one actor (by id), where these are named."""
+    """What was done, refused or failed; only that of one action or of one actor (by id), where these are named, and
+    that from `since` to before `until` (seconds since the epoch).
+    """
     records = await identity.read(
-        lambda connection: audit.read(connection, before=before, limit=limit + 1, action=action, actor=actor)
+        lambda connection: audit.read(
+            connection, before=before, limit=limit + 1, action=action, actor=actor, since=since, until=until
+        )
     )
     more = len(records) > limit
     return AuditAnswer(records=records[:limit], next=records[limit - 1].number if more else None)

@@ -17,12 +17,15 @@ from pydantic import Field
 from sequence_planner.control.restart_commands import GivenValue
 from sequence_planner.control.view_part import View
 from sequence_planner.history.error import HistoryError
+from sequence_planner.history.line import line, place_at
 from sequence_planner.history.process import HistoryProcess
 from sequence_planner.history.view import (
     Answer,
     BranchView,
+    LineView,
     LookBack,
     MomentView,
+    PlaceView,
     Question,
     RunRecordView,
     TakeBranch,
@@ -31,6 +34,7 @@ from sequence_planner.history.view import (
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.journal import checkpoints, run_journal
 from sequence_planner.journal.checkpoints import Checkpoint
+from sequence_planner.journal.run_journal import Sought
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.web.body import Body
@@ -43,6 +47,7 @@ BRANCHING = 60.0  # seconds of work for a branch
 MOST_SECONDS = 600.0  # that a branch goes on
 EXPORTED_AT_ONCE = 500  # records
 LINES = "application/x-ndjson"
+PARTS = "^[a-z_]{1,40}(,[a-z_]{1,40}){0,19}$"
 KINDS = "^[a-z-]{1,40}(,[a-z-]{1,40}){0,19}$"
 
 OPERATOR = allowed(Role.OPERATOR, scope=Scope.AUDIT)
@@ -61,6 +66,9 @@ _REFUSALS = {
     "storage-unavailable": (503, "The database does not answer"),
 }
 
+Text = Annotated[str, Field(min_length=1, max_length=200)]
+Texts = Annotated[list[Text] | None, Query(max_length=100)]
+Seconds = Annotated[float, Query(ge=-1e11, le=1e11, allow_inf_nan=False)]
 Number = Annotated[int, Path(ge=1, le=LARGEST_NUMBER)]
 
 
@@ -84,14 +92,42 @@ async def read(
     before: Annotated[int | None, Query(ge=1, le=LARGEST_NUMBER)] = None,
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,
     kinds: Annotated[str | None, Query(pattern=KINDS)] = None,
+    parts: Annotated[str | None, Query(pattern=PARTS)] = None,
+    who: Annotated[str, Query(max_length=200)] = "",
+    name: Texts = None,
+    text: Texts = None,
 ) -> HistoryAnswer:
-    """What has happened, only of some kinds, such as `mode-changed,forced`, where these are named."""
+    """What has happened, only of some kinds, such as `mode-changed,forced`, or with some parts, such as
+    `started,ended`, where these are named.
+
+    `who` asks for what that person did, `name` for what has to do with one of these abilities, variables or operations
+    (`robot.` stands for all of a resource), and `text` for records in which one of these stands.
+    """
     wanted = None if kinds is None else frozenset(kinds.split(","))
-    records = await identity.read(lambda connection: run_journal.before(connection, before, limit + 1, wanted))
+    sought = Sought(who, tuple(name or ()), tuple(text or ()), tuple(parts.split(",")) if parts else ())
+    records = await identity.read(lambda connection: run_journal.before(connection, before, limit + 1, wanted, sought))
     more = len(records) > limit
     return HistoryAnswer(
         records=[record_view(each) for each in records[:limit]], next=records[limit - 1].number if more else None
     )
+
+
+@router.get("/line", dependencies=[OPERATOR], responses=refused(404))
+async def time_line(identity: Identity, since: Seconds, until: Seconds) -> LineView:
+    """What happened after `since` and up to `until` (seconds since the epoch), as a time line shows it."""
+    found = await identity.read(partial(line, since=since, until=until))
+    if found is None:
+        raise _empty()
+    return found
+
+
+@router.get("/at", dependencies=[OPERATOR], responses=refused(404))
+async def at_time(identity: Identity, time: Seconds) -> PlaceView:
+    """The last record up to `time` (seconds since the epoch), or the first one where none is so old."""
+    found = await identity.read(partial(place_at, time=time))
+    if found is None:
+        raise _empty()
+    return found
 
 
 @router.get(
@@ -100,9 +136,15 @@ async def read(
     response_class=StreamingResponse,
     responses={200: {"content": {LINES: {"schema": {"type": "string"}}}}},
 )
-async def export(identity: Identity, after: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0) -> StreamingResponse:
-    """All records with higher numbers than `after`, one JSON document a line, as `journal export` writes them."""
-    return StreamingResponse(_lines(identity, after), media_type=LINES)
+async def export(
+    identity: Identity,
+    after: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
+    to: Annotated[int, Query(ge=1, le=LARGEST_NUMBER)] = LARGEST_NUMBER,
+) -> StreamingResponse:
+    """All records with higher numbers than `after`, up to `to`, one JSON document a line, as `journal export` writes
+    them.
+    """
+    return StreamingResponse(_lines(identity, after, to), media_type=LINES)
 
 
 @router.get("/checkpoint", dependencies=[OPERATOR], responses=refused(404))
@@ -136,6 +178,10 @@ async def take_branch(request: Request, number: Number, body: BranchBody) -> Bra
     return found
 
 
+def _empty() -> ProblemFound:
+    return ProblemFound(404, "no-record", "There is no such record", "Nothing has happened yet: the journal is empty.")
+
+
 async def _asked(request: Request, question: Question, patience: float) -> Answer:
     process: HistoryProcess | None = request.app.state.history
     if process is None:
@@ -149,9 +195,14 @@ async def _asked(request: Request, question: Question, patience: float) -> Answe
         raise ProblemFound(status, error.slug, title, detail if detail.endswith(".") else f"{detail}.") from None
 
 
-async def _lines(identity: IdentityOffice, number: int) -> AsyncIterator[bytes]:
-    while True:
-        page = await identity.read(partial(run_journal.after, number=number, limit=EXPORTED_AT_ONCE))
+async def _lines(identity: IdentityOffice, number: int, to: int) -> AsyncIterator[bytes]:
+    while number < to:
+        limit = min(EXPORTED_AT_ONCE, to - number)
+        page = [
+            each
+            for each in await identity.read(partial(run_journal.after, number=number, limit=limit))
+            if each.number <= to
+        ]
         if not page:
             return
         yield "".join(f"{each.line()}\n" for each in page).encode()

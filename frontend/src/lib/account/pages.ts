@@ -17,7 +17,7 @@ export const MAIN: readonly Page[] = [
 	{ address: '/restart', title: 'restart', role: 'viewer' },
 	{ address: '/state', title: 'state', role: 'viewer' },
 	{ address: '/alarms', title: 'alarms', role: 'viewer' },
-	{ address: '/history', title: 'history', role: 'viewer' },
+	{ address: '/history', title: 'history', role: 'operator' },
 	{ address: '/ros', title: 'ros', role: 'viewer' },
 	{ address: WATCH, title: 'watch', role: 'viewer' }
 ];

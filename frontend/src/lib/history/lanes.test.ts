@@ -1,0 +1,68 @@
+import { describe, expect, test } from 'vitest';
+import type { Mark, TimeLine } from '#lib/contract.ts';
+import { gathered, lanesOf, nearest, runsOf, type Spot } from './lanes.ts';
+import { namesOf } from './names.ts';
+
+const names = namesOf(null);
+const window = { from: 100, to: 200 };
+
+function mark(number: number, time: number, kind: string, content: Mark['content']): Mark {
+	return { number, time, kind, content };
+}
+
+function line(marks: Mark[], rest: Partial<TimeLine> = {}): TimeLine {
+	const first = { number: 1, time: 0 };
+	const last = { number: 99, time: 190 };
+	return { first, last, begin: 10, end: 99, running: [], mode: 'paused', marks, whole: true, bins: [], ...rest };
+}
+
+describe('what ran', () => {
+	test('lasts from its start to its end', () => {
+		const marks = [
+			mark(11, 110, 'ticked', { started: ['robot.move'] }),
+			mark(12, 130, 'ticked', { ended: ['robot.move'], started: ['robot.wait'] }),
+			mark(13, 150, 'ticked', { ended: ['tool.run'] })
+		];
+		const runs = runsOf(line(marks, { running: ['tool.run'] }), window, Infinity);
+		expect(runs.get('robot.move')).toEqual([{ from: 110, to: 130, number: 11, label: 'robot.move', open: false }]);
+		expect(runs.get('tool.run')).toMatchObject([{ from: 100, to: 150, number: null, open: false }]);
+		expect(runs.get('robot.wait')).toMatchObject([{ from: 130, to: 200, open: true }]);
+	});
+
+	test('is not known to go on where nobody would write its end', () => {
+		const runs = runsOf(line([], { running: ['tool.run'] }), window, 150);
+		expect(runs.get('tool.run')).toMatchObject([{ from: 100, to: 150, open: true }]);
+	});
+});
+
+test('each thing has its lane', () => {
+	const lanes = lanesOf(
+		line([
+			mark(11, 110, 'mode-changed', { mode: 'automatic', by: 'Eva' }),
+			mark(12, 120, 'answered', { plan: { status: 'followed', reason: '', replaced: true } }),
+			mark(13, 130, 'ticked', { started: ['robot.move'] }),
+			mark(14, 140, 'alarm', { event: 'came', text: 'The robot is silent' }),
+			mark(15, 150, 'corrected', { values: { bolts: 'empty' } })
+		]),
+		[],
+		{ window, until: Infinity, resources: ['robot', 'tool'], names }
+	);
+	const lane = (id: string) => lanes.find((each) => each.id === id);
+	expect(lane('mode')?.bars.map(({ label, from, to }) => [label, from, to])).toEqual([
+		['Paused', 100, 110],
+		['Automatic', 110, 200]
+	]);
+	expect(lane('plan')?.spots.map((spot) => spot.label)).toEqual(['Plan replaced']);
+	expect(lane('of robot')?.bars.map((bar) => bar.number)).toEqual([13]);
+	expect(lane('of tool')?.bars).toEqual([]);
+	expect(lane('alarms')?.spots.map((spot) => spot.label)).toEqual(['Alarm came: The robot is silent']);
+	expect(lane('hand')?.spots.map((spot) => spot.number)).toEqual([15]);
+});
+
+test('marks that would cover one another are one, and what is pressed is the nearest', () => {
+	const spots = [110, 111, 160].map((time): Spot => ({ time, label: '', number: time, act: null, refused: false }));
+	expect(gathered(spots, window, 0.05).map((group) => group.length)).toEqual([2, 1]);
+	const lane = { id: 'a', title: '', bars: [], spots };
+	expect(nearest(lane, 158, 5)?.number).toBe(160);
+	expect(nearest(lane, 140, 5)).toBeNull();
+});

@@ -1,0 +1,60 @@
+import { expect, test } from 'vitest';
+import { namesOf } from './names.ts';
+import { told } from './told.ts';
+
+const names = namesOf(null);
+
+function said(kind: string, content: Record<string, unknown>): string[] {
+	const { what, on, who, why, outcome } = told({ kind, content }, names);
+	return [what, on, who, why, outcome];
+}
+
+test('a tick says what it did, else what it heard', () => {
+	expect(said('ticked', { started: ['robot.move'] })).toEqual(['Started', 'robot.move', '', '', '']);
+	expect(said('ticked', { ended: ['a'], completed: ['b'], plan: { status: 'broken', reason: 'it was moved' } })).toEqual([
+		'Ended, Completed, Plan broken',
+		'Ended: a · Completed: b',
+		'',
+		'it was moved',
+		''
+	]);
+	expect(said('ticked', { measured: { 'robot.pose': 'at_home', ready: null } })).toEqual([
+		'Heard',
+		'robot.pose = at home, ready = unknown',
+		'',
+		'',
+		''
+	]);
+	expect(said('ticked', {})[0]).toBe('Tick');
+});
+
+test('what a person did says who and why', () => {
+	expect(said('mode-changed', { what: { mode: 'hold', by: 'Eva' } })).toEqual(['Mode changed', 'Hold', 'Eva', '', '']);
+	expect(said('corrected', { what: { values: { bolts: 'empty' }, by: 'Eva', why: 'seen' } })).toEqual([
+		'Corrected',
+		'bolts = empty',
+		'Eva',
+		'seen',
+		''
+	]);
+	expect(said('service-changed', { what: { of: 'resource', name: 'robot', in_service: false, by: 'Eva', why: '' } })[4]).toBe(
+		'out of service'
+	);
+});
+
+test('an answer of the planner says what came of it', () => {
+	const answer = { verdict: 'found', plan: { ticks: [{ starts: ['a', 'b'] }, { starts: [] }] } };
+	expect(said('answered', { what: { answer } })).toEqual(['Planner answered', '', '', '', '2 starts']);
+	expect(said('answered', { what: { answer }, plan: { status: 'followed', reason: 'planned for a', replaced: true } })).toEqual([
+		'Plan replaced',
+		'',
+		'',
+		'planned for a',
+		'2 starts'
+	]);
+	expect(said('answered', { what: { answer: { verdict: 'none' } }, plan: { status: 'none', reason: '' } })[4]).toBe('no plan');
+});
+
+test('a kind that is not known keeps its own name', () => {
+	expect(said('weather-changed', {})[0]).toBe('weather changed');
+});

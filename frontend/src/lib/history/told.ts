@@ -1,0 +1,194 @@
+/** A record of the run in words: what happened, on what, by whom and why. */
+import { say } from '#lib/text/text.svelte.ts';
+import { plain, valueText } from '#lib/wording/values.ts';
+import { MODES } from '#lib/wording/station.ts';
+import type { Names } from './names.ts';
+
+export interface Told {
+	readonly what: string;
+	readonly on: string;
+	readonly who: string;
+	readonly why: string;
+	readonly outcome: string;
+}
+
+/** A record, or a mark of the time line, which has less of its content. */
+export interface Tellable {
+	readonly kind: string;
+	readonly content: Readonly<Record<string, unknown>>;
+}
+
+type Content = Readonly<Record<string, unknown>>;
+
+/** How many names are said of a list; of the others how many there are. */
+const NAMED = 4;
+
+/** The parts of a tick that people want to know, each with what its names are of. */
+const DEEDS = [
+	['started', 'ability'],
+	['ended', 'ability'],
+	['activated', 'operation'],
+	['completed', 'operation'],
+	['called_off', 'ability'],
+	['given_up', 'ability']
+] as const;
+
+export function told(record: Tellable, names: Names): Told {
+	const { kind, content } = record;
+	const what = partOf(content, 'what') ?? content;
+	const nothing = { on: '', who: textOf(what['by']), why: textOf(what['why']), outcome: '' };
+	const words = say().history.words;
+	switch (kind) {
+		case 'begun':
+			return { ...nothing, what: words.begun };
+		case 'snapshot':
+			return { ...nothing, what: words.snapshot };
+		case 'ticked':
+			return { ...nothing, ...tick(content, names) };
+		case 'asked':
+			return { ...nothing, what: what['contract'] === 'minimal' ? words.askedBetter : words.asked };
+		case 'answered':
+			return { ...nothing, ...answered(content, what) };
+		case 'unanswered':
+			return { ...nothing, what: planWords(content) ?? words.unanswered };
+		case 'explained':
+			return { ...nothing, what: words.explained };
+		case 'production-started':
+			return { ...nothing, what: words.production };
+		case 'mode-changed':
+			return { ...nothing, what: words.mode, on: modeText(what['mode']) };
+		case 'called-off':
+			return { ...nothing, what: words.calledOff };
+		case 'stepping-changed':
+			return { ...nothing, what: words.stepping, on: what['on'] === true ? words.on : words.off };
+		case 'step-taken':
+			return { ...nothing, what: words.step };
+		case 'service-changed':
+			return {
+				...nothing,
+				what: words.service,
+				on: served(textOf(what['of']), textOf(what['name']), names),
+				outcome: what['in_service'] === true ? words.inService : words.outOfService
+			};
+		case 'corrected':
+			return { ...nothing, what: words.corrected, on: settings(partOf(what, 'values') ?? {}, names) };
+		case 'confirmed':
+			return { ...nothing, what: words.confirmed, on: list(textsOf(what['names']).map(names.variable)) };
+		case 'forced':
+			return { ...nothing, what: words.forced, on: setting(textOf(what['name']), what['value'], names) };
+		case 'force-released':
+			return { ...nothing, what: words.released, on: names.variable(textOf(what['name'])) };
+		case 'errand-taken': {
+			const errand = partOf(what, 'errand') ?? what;
+			return { ...nothing, what: words.errand, who: textOf(errand['by']), why: textOf(errand['why']) };
+		}
+		case 'errand-stopped':
+			return { ...nothing, what: words.errandStopped };
+		case 'alarm':
+			return { ...nothing, what: words.alarm(textOf(what['event'])), on: textOf(what['text']), outcome: textOf(what['priority']) };
+		case 'alarms-aside':
+			return { ...nothing, what: words.aside };
+		case 'beliefs':
+			return { ...nothing, what: words.beliefs };
+		default:
+			return { ...nothing, what: plain(kind.replaceAll('-', ' ')) };
+	}
+}
+
+/** What is said of the plan from a record on; null where it says nothing of it. */
+export function planWords(content: Content): string | null {
+	const plan = partOf(content, 'plan');
+	if (plan === null) return null;
+	const words = say().history.words;
+	if (plan['replaced'] === true) return words.planReplaced;
+	switch (plan['status']) {
+		case 'followed':
+			return words.planMade;
+		case 'broken':
+			return words.planBroken;
+		case 'none':
+			return words.planNone;
+		case 'idle':
+			return words.planIdle;
+		default:
+			return words.planSought;
+	}
+}
+
+function tick(content: Content, names: Names): Partial<Told> & { what: string } {
+	const words = say().history.words;
+	const done = DEEDS.flatMap(([part, of]) => {
+		const ids = textsOf(content[part]);
+		return ids.length === 0 ? [] : [{ what: words[part], on: list(ids.map(names[of])) }];
+	});
+	const why = textOf(partOf(content, 'plan')?.['reason']);
+	const plan = planWords(content);
+	if (plan !== null) done.push({ what: plan, on: '' });
+	const [first] = done;
+	if (first === undefined) {
+		const heard = partOf(content, 'measured');
+		return { what: heard === null ? words.ticked : words.heard, on: settings(heard ?? {}, names) };
+	}
+	if (done.length === 1) return { ...first, why };
+	const on = done.map((each) => (each.on === '' ? '' : `${each.what}: ${each.on}`)).filter((text) => text !== '');
+	return { what: done.map((each) => each.what).join(', '), on: on.join(' · '), why };
+}
+
+function answered(content: Content, what: Content): Partial<Told> & { what: string } {
+	const words = say().history.words;
+	const plan = partOf(content, 'plan');
+	const found = partOf(partOf(what, 'answer') ?? {}, 'plan');
+	const ticks = Array.isArray(found?.['ticks']) ? found['ticks'] : [];
+	const starts = ticks.reduce((sum: number, each: unknown) => sum + startsOf(each), 0);
+	const length = 'answer' in what ? (found === null ? words.noPlan : words.starts(starts)) : '';
+	return { what: planWords(content) ?? words.answered, why: textOf(plan?.['reason']), outcome: length };
+}
+
+function startsOf(tick: unknown): number {
+	return typeof tick === 'object' && tick !== null && 'starts' in tick ? textsOf(tick.starts).length : 0;
+}
+
+function served(of: string, name: string, names: Names): string {
+	if (of === 'resource') return names.resource(name);
+	return of === 'operation' ? names.operation(name) : names.ability(name);
+}
+
+/** `robot: pose = home`, of what has another value. */
+function setting(name: string, value: unknown, names: Names): string {
+	return `${names.variable(name)} = ${anyValue(value)}`;
+}
+
+function settings(values: Content, names: Names): string {
+	return list(Object.entries(values).map(([name, value]) => setting(name, value, names)));
+}
+
+/** A value for a person to read; null is one that is not known. */
+export function anyValue(value: unknown): string {
+	if (value === null || value === undefined) return say().common.unknown;
+	if (typeof value === 'boolean') return value ? say().common.yes : say().common.no;
+	return typeof value === 'number' || typeof value === 'string' ? valueText(value) : JSON.stringify(value);
+}
+
+export function modeText(mode: unknown): string {
+	const name = textOf(mode);
+	return Object.hasOwn(MODES, name) ? MODES[name as keyof typeof MODES] : name;
+}
+
+function list(all: readonly string[]): string {
+	const rest = all.length - NAMED;
+	return rest > 1 ? `${all.slice(0, NAMED).join(', ')} ${say().history.words.and(rest)}` : all.join(', ');
+}
+
+function textOf(value: unknown): string {
+	return typeof value === 'string' ? value : '';
+}
+
+export function textsOf(value: unknown): string[] {
+	return Array.isArray(value) ? value.filter((each) => typeof each === 'string') : [];
+}
+
+/** What a part of a document holds, where that is a document itself. */
+export function partOf(content: Content, name: string): Content | null {
+	const part = content[name];
+	return typeof part === 'object' && part !== null && !Array.isArray(part) ? (part as Content) : null;
+}
