@@ -67,7 +67,7 @@ export type AuditRecord = Schemas['Record'];
 export type AuditAnswer = Schemas['AuditAnswer'];
 export type Outcome = Schemas['Outcome'];
 export type RunRecord = Schemas['RunRecordView'];
-export type History = Schemas['HistoryAnswer'];
+export type HistoryAnswer = Schemas['HistoryAnswer'];
 
 export type Network = Schemas['NetworkView'];
 export type GraphTopic = Schemas['GraphTopicView'];
@@ -76,7 +76,6 @@ export type Quality = Schemas['QualityView'];
 export type Mismatch = Schemas['MismatchView'];
 export type Call = Schemas['CallView'];
 
-export type HistoryAnswer = Schemas['HistoryAnswer'];
 export type TimeLine = Schemas['LineView'];
 export type Mark = Schemas['MarkView'];
 export type Place = Schemas['PlaceView'];

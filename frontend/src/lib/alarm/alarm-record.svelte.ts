@@ -1,5 +1,5 @@
 /** The alarms of some time past as this page knows them, read from the journal. */
-import type { History } from '#lib/contract.ts';
+import type { HistoryAnswer } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { past, reachesTo, turnsOf, withNewest, withOlder } from './record.ts';
@@ -11,7 +11,7 @@ const PAGES = 5;
 export const HOUR = 3600;
 
 export class AlarmRecord {
-	#known = $state.raw<History | null>(null);
+	#known = $state.raw<HistoryAnswer | null>(null);
 	#shown = $state(STEP);
 	#reading = false;
 	refusal = $state.raw<Refusal | null>(null);
@@ -61,10 +61,10 @@ export class AlarmRecord {
 		return true;
 	}
 
-	async #read(before: number | null, limit: number): Promise<History | null> {
+	async #read(before: number | null, limit: number): Promise<HistoryAnswer | null> {
 		const query = new URLSearchParams({ kinds: 'alarm', limit: String(limit) });
 		if (before !== null) query.set('before', String(before));
-		const answer = await request<History>('GET', `/api/v1/history?${query}`);
+		const answer = await request<HistoryAnswer>('GET', `/api/v1/history?${query}`);
 		this.refusal = answer.ok ? null : answer.refusal;
 		return answer.ok ? answer.value : null;
 	}

@@ -1,6 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import type { Alarm, History, RunRecord } from '#lib/contract.ts';
+import type { Alarm, HistoryAnswer, RunRecord } from '#lib/contract.ts';
 import { alarm } from '#lib/testing/view.ts';
 import { arrivals, frequent, past, reachesTo, turnsOf, withNewest, withOlder } from './record.ts';
 
@@ -38,7 +38,7 @@ describe('of the turns in the life of an alarm', () => {
 });
 
 test('what is known is always a stretch of the journal without gaps, from the newest on', () => {
-	const page = (length: number, before: number | null, size: number): History => {
+	const page = (length: number, before: number | null, size: number): HistoryAnswer => {
 		const rest = Array.from({ length }, (_, place) => record(length - place)).filter(
 			(each) => before === null || each.number < before
 		);

@@ -2,7 +2,7 @@
  * What the journal keeps of alarms: one record for each turn in the life of an alarm, with the alarm as it was then
  * (kind `alarm`, `docs/journal.md`).
  */
-import type { Alarm, History, RunRecord } from '#lib/contract.ts';
+import type { Alarm, HistoryAnswer, RunRecord } from '#lib/contract.ts';
 
 /** A turn in the life of an alarm. */
 export interface Turn {
@@ -51,13 +51,13 @@ export function frequent(came: readonly Turn[], most: number): [last: Turn, time
 }
 
 /** Whether all records since `from` are known. */
-export function reachesTo(known: History, from: number): boolean {
+export function reachesTo(known: HistoryAnswer, from: number): boolean {
 	const oldest = known.records.at(-1);
 	return known.next === null || (oldest !== undefined && oldest.time < from);
 }
 
 /** What is known after the newest records were read again. */
-export function withNewest(known: History | null, newest: History): History {
+export function withNewest(known: HistoryAnswer | null, newest: HistoryAnswer): HistoryAnswer {
 	if (known === null) return newest;
 	const last = known.records[0]?.number ?? 0;
 	const fresh = newest.records.filter((record) => record.number > last);
@@ -67,6 +67,6 @@ export function withNewest(known: History | null, newest: History): History {
 }
 
 /** What is known after older records were read. */
-export function withOlder(known: History, older: History): History {
+export function withOlder(known: HistoryAnswer, older: HistoryAnswer): HistoryAnswer {
 	return { records: [...known.records, ...older.records], next: older.next };
 }
