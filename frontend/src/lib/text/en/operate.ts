@@ -110,7 +110,6 @@ export const operate = {
 		waitsUntil: 'waits until',
 		completed: (n: number): string => `${n}× completed`,
 		once: 'done once: active again after a reset',
-		toReset: 'Reset',
 		out: 'out of service',
 		leftOut: 'left out of the plan'
 	},

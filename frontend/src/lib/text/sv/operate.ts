@@ -109,7 +109,6 @@ export const operate: Text['operate'] = {
 		waitsUntil: 'väntar tills',
 		completed: (n) => `${n}× slutförd`,
 		once: 'utförs en gång: aktiv igen efter återställning',
-		toReset: 'Återställ',
 		out: 'ur drift',
 		leftOut: 'utanför planen'
 	},
