@@ -142,7 +142,7 @@ export const operate = {
 		putBackTitle: (title: string): string => `Put ${title} back into service?`,
 		becauseOf: (why: string): string => `It was taken out because: ${why}`,
 		takeOut: 'Take out of service',
-		takeOutOf: (title: string): string => `Take ${title} out of service`,
+		takeOutOf: (title: string): string => `Take out of service: ${title}`,
 		takeOutTitle: (title: string): string => `Take ${title} out of service?`,
 		means: {
 			resource: 'Its abilities do not start, and nothing that its devices would do is counted on. What of it runs goes on. Plans are made without it until somebody puts it back.',

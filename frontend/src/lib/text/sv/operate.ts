@@ -141,7 +141,7 @@ export const operate: Text['operate'] = {
 		putBackTitle: (title) => `Ta ${title} i drift igen?`,
 		becauseOf: (why) => `Den togs ur drift därför att: ${why}`,
 		takeOut: 'Ta ur drift',
-		takeOutOf: (title) => `Ta ${title} ur drift`,
+		takeOutOf: (title) => `Ta ur drift: ${title}`,
 		takeOutTitle: (title) => `Ta ${title} ur drift?`,
 		means: {
 			resource: 'Dess förmågor startar inte, och inget som dess enheter skulle göra räknas med. Det som pågår fortsätter. Planer görs utan den tills någon tar den i drift igen.',
