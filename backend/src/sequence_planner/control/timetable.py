@@ -1,8 +1,9 @@
 """When the steps of a plan are expected to start and to end, from what the model says and how long runs have taken.
 
-The plan says in which tick each ability starts; a simulation of it says in which it ends. A tick comes when what ends
-in it has ended, or where nothing does when its effects have had their time. The first counts from what happened last,
-so that no time changes as long as nothing happens: what is late by then is expected at once.
+The plan says in which tick each ability starts; a simulation of it says in which it ends. A step waits for what ends
+before it in the plan, as far as its guards read of that; a tick in which nothing ends comes when its effects have had
+their time. The first counts from what happened last, so that no time changes as long as nothing happens: what is late
+by then is expected at once.
 """
 
 from __future__ import annotations
@@ -12,12 +13,14 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 
 from sequence_planner.automaton.compiled import CompiledRun
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.start_order import StartOrder, Step
+from sequence_planner.expressions.syntax import variables
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.advice.offer import expected_seconds
 from sequence_planner.planning.plan import Plan, PlanTick
+from sequence_planner.synthesis.guards import Guard
 
 # As many runs of an ability as are told from: devices change their pace, with a new tool or a slower override.
 REMEMBERED_RUNS = 5
@@ -57,6 +60,8 @@ class Timetable:
         self._counted: frozenset[int] = frozenset()  # the past steps whose run is among them
         self._outlook = Outlook(None, 0, 0, {}, {})
         self._began = 0.0  # when the plan was seen first
+        self._read: dict[str, tuple[Guard | None, frozenset[str]]] = {}  # by each ability, with the guard added then
+        self._written: dict[str, frozenset[str]] = {}
 
     def note(self, now: float) -> None:
         """After a tick: remember how long has taken what ended, and look through a plan that is new."""
@@ -71,17 +76,17 @@ class Timetable:
             self._outlook = look_through(order, self._execution.simulated(), self._execution.automaton)
             self._began = now
 
-    def expected(self) -> dict[int, Expected]:
-        """What runs and what is ahead, by the number of the step."""
+    def expected(self, guards: Mapping[str, Guard] | None = None) -> dict[int, Expected]:
+        """What runs and what is ahead, by the number of the step; `guards` are those that the supervisor adds."""
         order, outlook = self._execution.plan.order, self._outlook
-        ending: dict[int, float] = {}  # when what ends in a tick has ended
+        ending: dict[int, list[tuple[str, float]]] = defaultdict(list)  # which abilities end in a tick, and when
         table: dict[int, Expected] = {}
 
         def count_on(step: Step, start: float, tick: int) -> None:
             end = start + self._seconds(step, tick)
             table[step.number] = Expected(start, end)
             if (ends := outlook.ends.get(step.number)) is not None:
-                ending[ends] = max(ending.get(ends, end), end)
+                ending[ends].append((step.ability, end))
 
         comes, tick = self._began, outlook.tick
         for step in order.past:
@@ -93,11 +98,41 @@ class Timetable:
         for step in order.ahead:
             # One that was pulled forward keeps the tick that it once had.
             for passed in range(tick + 1, step.tick + 1):
-                wait = 0.0 if passed in ending else outlook.waits.get(passed, 0.0)
-                comes = max(comes + wait, ending.get(passed, comes))
+                comes += 0.0 if passed in ending else outlook.waits.get(passed, 0.0)
             tick = max(tick, step.tick)
+            read = self._reads(step.ability, (guards or {}).get(step.ability))
+            before = [end for each, ended in ending.items() if each <= tick for end in ended]
+            comes = max(comes, *(at for name, at in before if self._writes(name) & read), comes)
             count_on(step, comes, tick)
         return table
+
+    def _reads(self, name: str, guard: Guard | None) -> frozenset[str]:
+        """The variables that decide whether the ability starts."""
+        known = self._read.get(name)
+        if known is not None and known[0] is guard:
+            return known[1]
+        ability, predicates = self._execution.automaton.abilities[name], self._execution.automaton.flag_predicates
+        added = [] if guard is None or guard.expression is None else [guard.expression]
+        pending = [v for part in (ability.enabled, ability.start_guard, *added) for v in variables(part)]
+        read: set[str] = set()
+        while pending:
+            variable = pending.pop()
+            if variable not in read:
+                read.add(variable)
+                pending += variables(predicates[variable]) if variable in predicates else ()
+        self._read[name] = (guard, frozenset(read))
+        return self._read[name][1]
+
+    def _writes(self, name: str) -> frozenset[str]:
+        """The variables that a run of the ability may change by its end: all of its resource, and what it writes."""
+        if name in self._written:
+            return self._written[name]
+        automaton = self._execution.automaton
+        ability = automaton.abilities[name]
+        own = {each.name for each in automaton.variables.values() if each.resource == ability.resource}
+        actions = (*ability.start_actions, *ability.finish_actions)
+        self._written[name] = frozenset(own | {target(action) for action in actions})
+        return self._written[name]
 
     def _seconds(self, step: Step, tick: int) -> float:
         """How long a run takes: as the last ones have, or as the model says, or as long as its effects take."""

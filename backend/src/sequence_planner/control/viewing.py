@@ -222,7 +222,7 @@ class Viewing:
     def _plan(self) -> PlanView:
         execution = self._execution
         order, plan, answer = execution.plan.order, execution.plan.order.plan, execution.plan.answer
-        expected = self._timetable.expected()
+        expected = self._timetable.expected(self.guards)
         steps = [
             self._step(step, StepStatus.DONE if step.ended else StepStatus.RUNNING, expected) for step in order.past
         ]
