@@ -7,7 +7,7 @@ export const header: Text['header'] = {
 		automatic: 'Automatik',
 		paused: 'Pausad',
 		hold: 'Stannad',
-		restart: 'Återstart'
+		restart: 'Omstart'
 	},
 	meaning: {
 		automatic: 'Operationer utförs.',

@@ -130,7 +130,7 @@ export const operate: Text['operate'] = {
 		allOf: (n, title) => `Alla ${n} värden för ${title}`,
 		abilities: (n) => (n === 1 ? '1 förmåga' : `${n} förmågor`),
 		runs: 'pågår',
-		restartOnly: 'bara vid återstart'
+		restartOnly: 'bara vid omstart'
 	},
 	service: {
 		title: 'Ur drift',
