@@ -96,6 +96,11 @@ def test_a_better_plan_takes_the_place_of_the_one_that_is_followed(following: Ex
     assert following.plan.order.names == ("directly", "ring")
     assert following.plan.reason == "re-planned: a better way was found"
     assert following.plan.replanned == 1
+    replacement = following.plan.replacement
+    assert replacement is not None
+    assert (replacement.why, replacement.dropped) == (following.plan.reason, ("aside", "onwards"))
+    new = [step.ability for step in following.plan.order.ahead if step.number in replacement.new]
+    assert new == ["directly"], "that both ring is nothing new"
 
 
 @pytest.mark.parametrize("other", [DETOUR, (PlanTick((), ()), *DETOUR)])
@@ -104,6 +109,7 @@ def test_one_that_is_as_good_or_longer_does_not(following: Execution, other: tup
     following.adopt(asked_better(following), found(other))
     assert following.plan.order == before, "else plans would take turns"
     assert following.plan.replanned == 0
+    assert following.plan.replacement is None
 
 
 def test_one_with_more_goals_does_and_one_with_fewer_does_not(following: Execution) -> None:

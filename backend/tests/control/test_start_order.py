@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.start_order import REMEMBERED_STEPS, StartOrder
+from sequence_planner.control.start_order import FEWEST_STEPS, REMEMBERED_STEPS, StartOrder
 from sequence_planner.planning.plan import Plan, PlanTick
 
 
@@ -56,6 +56,18 @@ def test_only_so_many_past_steps_are_remembered_but_all_that_run() -> None:
             order.finish(name, at(2))
     assert [step.ability for step in order.running] == ["a0"]
     assert len(order.past) <= REMEMBERED_STEPS + 2
+
+
+def test_a_minute_is_looked_back_on_and_a_few_steps_however_long_ago() -> None:
+    def after(seconds: list[float]) -> int:
+        order = following(tuple(f"a{number}" for number, _ in enumerate(seconds)))
+        for number, second in enumerate(seconds):
+            order.start(at(second))
+            order.finish(f"a{number}", at(second))
+        return len(order.past)
+
+    assert after([*map(float, range(30)), 59]) == 31
+    assert after([*map(float, range(30)), 500]) == FEWEST_STEPS + 1
 
 
 def test_the_rest_of_the_plan_begins_behind_the_last_start() -> None:

@@ -50,6 +50,9 @@ def step(name: str, resource: str, status: StepStatus, tick: int) -> PlanStepVie
         tick=tick,
         started=None,
         ended=None,
+        expected_start=None,
+        expected_end=None,
+        new=False,
         waits_for=[],
     )
 
@@ -128,6 +131,7 @@ def example_view(**changes: object) -> StationView:
             minimal_ticks=True,
             minimal_starts=True,
             replanned=0,
+            replacement=None,
             contract=Contract.MINIMAL,
             engine="bounded model checking",
             milliseconds=1.5,

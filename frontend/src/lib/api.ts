@@ -2031,6 +2031,18 @@ export interface components {
             safe: boolean | number | string;
         };
         /**
+         * DroppedStepView
+         * @description A start that the plan before had, and this one has not.
+         */
+        DroppedStepView: {
+            /** Ability */
+            ability: string;
+            /** Resource */
+            resource: string;
+            /** Title */
+            title: string;
+        };
+        /**
          * EdgeFlowView
          * @description What has passed an edge since the controller began.
          *
@@ -3048,14 +3060,23 @@ export interface components {
         /**
          * PlanStepView
          * @description One start of the plan. `tick` counts from the tick in which the plan was made.
+         *
+         *     As long as it is not over it is expected to start and to end at these times, which are told from what happened last
+         *     and do not move on by themselves: what is late by now is expected at once, and what follows as much later.
          */
         PlanStepView: {
             /** Ability */
             ability: string;
             /** Ended */
             ended: number | null;
+            /** Expected End */
+            expected_end: number | null;
+            /** Expected Start */
+            expected_start: number | null;
             /** Id */
             id: string;
+            /** New */
+            new: boolean;
             /** Resource */
             resource: string;
             /** Started */
@@ -3084,6 +3105,7 @@ export interface components {
             minimal_ticks: boolean;
             /** Reason */
             reason: string;
+            replacement: components["schemas"]["ReplacementView"] | null;
             /** Replanned */
             replanned: number;
             status: components["schemas"]["PlanStatus"];
@@ -3209,6 +3231,18 @@ export interface components {
             number: number;
             /** Time */
             time: number;
+        };
+        /**
+         * ReplacementView
+         * @description A plan took the place of another: when, why, and what went with it. The steps say if they are new.
+         */
+        ReplacementView: {
+            /** At */
+            at: number;
+            /** Dropped */
+            dropped: components["schemas"]["DroppedStepView"][];
+            /** Why */
+            why: string;
         };
         /**
          * ResetBody

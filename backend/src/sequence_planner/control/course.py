@@ -131,6 +131,10 @@ class Course:
             return True
         return bool(self._overdue(now))
 
+    def simulated(self) -> CompiledRun:
+        """A run that goes on from the present, for those who want to see what would become of it."""
+        return self._run.fork()
+
     def startable(self, name: str) -> CompiledRun | None:
         """The run after the start of the ability, if its guards and the supervisor allow it now."""
         if self.circumstances.bars(self.automaton.abilities[name]) or name not in self._run.startable():

@@ -6,6 +6,7 @@ followed, better ones are asked for, and one is taken only if it leads to the go
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 from copy import copy
 from dataclasses import dataclass, replace
@@ -34,6 +35,15 @@ class Present:
 
 
 @dataclass(frozen=True)
+class Replacement:
+    """A plan took the place of another: why, which starts went with the old one, and which steps are new."""
+
+    why: str
+    dropped: tuple[str, ...]
+    new: frozenset[int]
+
+
+@dataclass(frozen=True)
 class Question:
     """What an answer is about: it would be the same again."""
 
@@ -51,6 +61,7 @@ class LivePlan:
         self.reason = ""
         self.answer: PlanAnswer | None = None
         self.replanned = 0
+        self.replacement: Replacement | None = None  # how the plan that is followed took the place of another
         self._automaton = automaton
         self._lookahead = lookahead
         self._asked: Question | None = None
@@ -147,7 +158,12 @@ class LivePlan:
         self.replanned += replacing
         if not (following and same):
             self.reason = why_new(self._automaton, self.status, hopeful, self.order.requested, replacing)
+        before = self.order.names
         self.order.adopt(answer.plan, goals, (goal.name for goal in request.goals))
+        if replacing:
+            self.replacement = _replacement(self.reason, before, self.order)
+        elif not same:
+            self.replacement = None
         self.answer = answer
         self.status = PlanStatus.FOLLOWED
         self._none = self.diagnosis = None
@@ -169,7 +185,7 @@ class LivePlan:
 
     def _rest(self) -> None:
         """Whatever has been asked or said about another plan is of no interest any more."""
-        self.answer = self._asked = self._asked_better = self._none = self.diagnosis = None
+        self.answer = self._asked = self._asked_better = self._none = self.diagnosis = self.replacement = None
         self._none_while_blind = self._undecided = False
 
     def looks(self, lookahead: Lookahead) -> bool:
@@ -315,6 +331,18 @@ class LivePlan:
             self._asked = _question(present, asked)
             self.order.adopt(None, (), asked)
         return current
+
+
+def _replacement(why: str, before: tuple[str, ...], order: StartOrder) -> Replacement:
+    """What is different of what is ahead; a start that both plans have is the same, whenever it comes."""
+    dropped = Counter(before)
+    new: set[int] = set()
+    for step in order.ahead:
+        if dropped[step.ability]:
+            dropped[step.ability] -= 1
+        else:
+            new.add(step.number)
+    return Replacement(why, tuple(dropped.elements()), frozenset(new))
 
 
 def _is_proven(plan: Plan | None) -> bool:

@@ -117,6 +117,7 @@ def preparing_view(
         minimal_ticks=False,
         minimal_starts=False,
         replanned=0,
+        replacement=None,
         contract=None,
         engine="",
         milliseconds=None,

@@ -8,8 +8,11 @@ from dataclasses import dataclass, field, replace
 from sequence_planner.control.moment import Moment
 from sequence_planner.planning.plan import Plan, PlanTick
 
-# As many past steps as an operator looks back on; older ones are history.
-REMEMBERED_STEPS = 12
+# An operator looks back on the last minute, and on a few steps at least; older ones are history, and so are those of
+# abilities that follow one another faster than can be read.
+LOOK_BACK = 60.0
+FEWEST_STEPS = 12
+REMEMBERED_STEPS = 40
 
 
 @dataclass
@@ -56,10 +59,15 @@ class StartOrder:
         self.finish(step.ability, now)
         step.started = now
         self.past.append(step)
-        ended = [past for past in self.past if past.ended is not None]
-        for forgotten in ended[: max(len(ended) - REMEMBERED_STEPS, 0)]:
-            self.past.remove(forgotten)
+        self._forget(now)
         return step
+
+    def _forget(self, now: Moment) -> None:
+        ended = [(past, past.ended.monotonic) for past in self.past if past.ended is not None]
+        since = now.monotonic - LOOK_BACK
+        for age, (step, at) in enumerate(reversed(ended), 1):
+            if age > REMEMBERED_STEPS or (age > FEWEST_STEPS and at < since):
+                self.past.remove(step)
 
     def pull_forward(self, index: int) -> None:
         """The step ahead at `index` becomes the next. The order then is no longer that of the plan's ticks."""

@@ -165,7 +165,11 @@ class OperationView(View):
 
 
 class PlanStepView(View):
-    """One start of the plan. `tick` counts from the tick in which the plan was made."""
+    """One start of the plan. `tick` counts from the tick in which the plan was made.
+
+    As long as it is not over it is expected to start and to end at these times, which are told from what happened last
+    and do not move on by themselves: what is late by now is expected at once, and what follows as much later.
+    """
 
     id: str
     ability: str
@@ -175,6 +179,9 @@ class PlanStepView(View):
     tick: int
     started: float | None
     ended: float | None
+    expected_start: float | None
+    expected_end: float | None
+    new: bool  # the plan that was replaced last did not have it
     waits_for: list[str]  # for the next step: what keeps it from starting, in the model's language
 
 
@@ -190,6 +197,22 @@ class DiagnosisView(View):
     corrections: list[str]
 
 
+class DroppedStepView(View):
+    """A start that the plan before had, and this one has not."""
+
+    ability: str
+    title: str
+    resource: str
+
+
+class ReplacementView(View):
+    """A plan took the place of another: when, why, and what went with it. The steps say if they are new."""
+
+    at: float
+    why: str
+    dropped: list[DroppedStepView]
+
+
 class PlanView(View):
     """The live plan: what is done, what runs, what comes next and what that waits for."""
 
@@ -200,6 +223,7 @@ class PlanView(View):
     minimal_ticks: bool
     minimal_starts: bool
     replanned: int
+    replacement: ReplacementView | None  # how it took the place of another, if it did
     contract: Contract | None  # what it is: the shortest, proven, or one found soon
     engine: str  # of the planner, which gave the answer
     milliseconds: float | None  # how long the planner took

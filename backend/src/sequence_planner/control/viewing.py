@@ -13,6 +13,7 @@ from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.heard import TickOutcome
+from sequence_planner.control.live_plan import Replacement
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
@@ -20,15 +21,18 @@ from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import LastCorrectionView, QuestionView, UndecidedOutputView
 from sequence_planner.control.start_order import Step
 from sequence_planner.control.tasks import TaskDesk, TaskProblem
+from sequence_planner.control.timetable import Expected, Timetable
 from sequence_planner.control.view import (
     AbilityView,
     ControlView,
     DiagnosisView,
+    DroppedStepView,
     OperationView,
     PackML,
     PlanStepView,
     PlanView,
     Production,
+    ReplacementView,
     ResourceView,
     StationIdentity,
     StationView,
@@ -88,6 +92,8 @@ class Viewing:
         self._feeding = feeds.heard_on
         self._since: dict[str, tuple[Value | None, float]] = {}
         self._active_since: dict[str, float] = {}
+        self._timetable = Timetable(execution)
+        self._replaced: tuple[Replacement | None, float] = (None, 0.0)  # and when that was seen first
         self.completed: dict[str, int] = dict.fromkeys(execution.automaton.operations, 0)
         self.analysis: AnalysisDocument | None = None
         self.guards: Mapping[str, Guard] = {}  # that the supervisor adds, as far as they are known
@@ -101,6 +107,9 @@ class Viewing:
             if name not in self._since or self._since[name][0] != value:
                 self._since[name] = (value, now)
         self._active_since = {name: self._active_since.get(name, now) for name in self._execution.active}
+        self._timetable.note(now)
+        if self._execution.plan.replacement is not self._replaced[0]:
+            self._replaced = (self._execution.plan.replacement, now)
 
     def since(self, name: str) -> float | None:
         """When a variable was first seen with the value that it has; None before the first tick."""
@@ -214,9 +223,12 @@ class Viewing:
     def _plan(self) -> PlanView:
         execution = self._execution
         order, plan, answer = execution.plan.order, execution.plan.order.plan, execution.plan.answer
-        steps = [self._step(step, StepStatus.DONE if step.ended else StepStatus.RUNNING) for step in order.past]
+        expected = self._timetable.expected(self.guards)
+        steps = [
+            self._step(step, StepStatus.DONE if step.ended else StepStatus.RUNNING, expected) for step in order.past
+        ]
         for index, step in enumerate(order.ahead):
-            steps.append(self._step(step, StepStatus.PLANNED if index else StepStatus.NEXT))
+            steps.append(self._step(step, StepStatus.PLANNED if index else StepStatus.NEXT, expected))
         return PlanView(
             status=execution.plan.status,
             reason=execution.plan.reason,
@@ -225,14 +237,30 @@ class Viewing:
             minimal_ticks=plan is not None and plan.minimal_ticks,
             minimal_starts=plan is not None and plan.minimal_starts,
             replanned=execution.plan.replanned,
+            replacement=self._replacement(),
             contract=_contract(plan),
             engine=answer.engine if answer else "",
             milliseconds=answer.seconds * 1000 if answer else None,
             why=_why(execution.plan.diagnosis),
         )
 
-    def _step(self, step: Step, status: StepStatus) -> PlanStepView:
+    def _replacement(self) -> ReplacementView | None:
+        replacement, at = self._replaced
+        if replacement is None:
+            return None
+        abilities = [self._execution.automaton.abilities[name] for name in replacement.dropped]
+        return ReplacementView(
+            at=at,
+            why=replacement.why,
+            dropped=[
+                DroppedStepView(ability=each.name, title=each.title, resource=each.resource) for each in abilities
+            ],
+        )
+
+    def _step(self, step: Step, status: StepStatus, expected: Mapping[int, Expected]) -> PlanStepView:
         ability = self._execution.automaton.abilities[step.ability]
+        due = expected.get(step.number)
+        replacement = self._replaced[0]
         waiting = (
             waits_for(self._execution, step.ability, self._feeding, self.guards.get(step.ability))
             if status is StepStatus.NEXT
@@ -247,6 +275,9 @@ class Viewing:
             tick=step.tick,
             started=_epoch(step.started),
             ended=_epoch(step.ended),
+            expected_start=due.start if due and step.started is None else None,
+            expected_end=due.end if due else None,
+            new=replacement is not None and step.number in replacement.new,
             waits_for=waiting,
         )
 

@@ -8,7 +8,8 @@ import {
 	reportProblem,
 	setMode,
 	solveProblem,
-	takeControl
+	takeControl,
+	takeOut
 } from './send.ts';
 
 afterEach(() => vi.unstubAllGlobals());
@@ -52,6 +53,7 @@ test('control is taken from the session that was shown, with a reason only where
 test('what an act is about stands in its address or body, names of the model as one segment', async () => {
 	const fetch = accepting();
 	await putBack({ of: 'ability', name: 'robot.move(a/b)', title: '', since: 0, by: null, why: '' }, 'oiled');
+	await takeOut('resource', 'robot', 'leaks');
 	await acknowledgeAlarm('silent /ur10/state', alarm({ since: 12.5 }));
 	await reportProblem('a/b', 3, ' no bolts ');
 	await reportProblem('a/b', 3, ' ');
@@ -59,6 +61,7 @@ test('what an act is about stands in its address or body, names of the model as 
 	await decideOutputs({ 'robot.go': false }, 'looked');
 	expect(fetch.mock.calls.map(([path, { method, body }]) => [method, path, body])).toEqual([
 		['PUT', '/api/v1/service/ability/robot.move(a%2Fb)', '{"in_service":true,"reason":"oiled"}'],
+		['PUT', '/api/v1/service/resource/robot', '{"in_service":false,"reason":"leaks"}'],
 		['POST', '/api/v1/alarms/acknowledge', '{"alarm":"silent /ur10/state","since":12.5}'],
 		['POST', '/api/v1/tasks/a%2Fb/problem', '{"revision":3,"reason":"no bolts"}'],
 		['POST', '/api/v1/tasks/a%2Fb/problem', '{"revision":3}'],

@@ -58,6 +58,12 @@ export function restoreAlarm(key: string): Promise<Refusal | null> {
 	return command('POST', '/api/v1/alarms/restore', { body: { alarm: key } });
 }
 
+/** Takes out of service what is in it, until somebody puts it back. */
+export function takeOut(of: string, name: string, reason: string): Promise<Refusal | null> {
+	const path = `/api/v1/service/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;
+	return command('PUT', path, { body: { in_service: false, reason } });
+}
+
 /** Puts back into service what was taken out of it. */
 export function putBack({ of, name }: OutOfService, reason: string): Promise<Refusal | null> {
 	const path = `/api/v1/service/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;

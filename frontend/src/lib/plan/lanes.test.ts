@@ -2,159 +2,139 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { PlanStep } from '#lib/contract.ts';
 import { step } from '#lib/testing/view.ts';
-import { hasBegun, layOut, shownSteps, type Block, type Chart } from './lanes.ts';
+import { endOf, hasBegun, lateness, layOut, timesOf, type Block, type Lane } from './lanes.ts';
 
+const NOW = 1000;
+const ROOM = { words: 3, mark: 0.5 };
 const RESOURCES = ['robot', 'nutrunner', 'operator'];
-const resource = fc.constantFrom(...RESOURCES);
+const resource = fc.constantFrom(...RESOURCES, 'agv');
+const seconds = fc.integer({ min: 0, max: 200 }).map((tenths) => tenths / 10);
 const past = fc.array(
-	fc.record({
-		resource,
-		// Few instants, so that several steps start together, and ticks of plans that were replaced long ago.
-		started: fc.nat(15),
-		lasted: fc.option(fc.nat(20)),
-		tick: fc.nat(50)
-	}),
+	fc.record({ resource, ago: seconds, lasted: fc.option(seconds), expected: fc.option(seconds) }),
 	{ maxLength: 16 }
 );
-const future = fc.array(fc.record({ resource, tick: fc.nat(12) }), { maxLength: 8 });
+const future = fc.array(fc.record({ resource, after: seconds, takes: seconds }), { maxLength: 10 });
 
 /** Steps as the server lists them: those that have begun, then those ahead in the order of their start. */
-const steps = fc.tuple(past, future).map(([begun, ahead]): PlanStep[] => [
-	...begun.map(({ resource, started, lasted, tick }, k) =>
-		step(`past${k}`, resource, tick, {
-			status: lasted === null ? 'running' : 'done',
-			started,
-			ended: lasted === null ? null : started + lasted
+const steps = fc.tuple(past, future, seconds).map(([begun, ahead, late]): PlanStep[] => {
+	let start = NOW - late;
+	return [
+		...begun.map(({ resource, ago, lasted, expected }, k) => {
+			const started = NOW - ago;
+			const ended = lasted === null ? null : Math.min(NOW, started + lasted);
+			const expected_end = ended !== null || expected === null ? null : started + expected;
+			return step(`past${k}`, resource, 0, { status: ended === null ? 'running' : 'done', started, ended, expected_end });
+		}),
+		...ahead.map(({ resource, after, takes }, k) => {
+			start += after / 10;
+			const status = k ? 'planned' : 'next';
+			return step(`ahead${k}`, resource, k, { status, expected_start: start, expected_end: start + takes });
 		})
-	),
-	...ahead.map(({ resource, tick }, k) => step(`ahead${k}`, resource, tick, { status: k ? 'planned' : 'next' }))
-]);
+	];
+});
 
-const columns = fc.integer({ min: 1, max: 10 });
-
-function blocksOf(chart: Chart): Block[] {
-	return chart.lanes.flatMap((lane) => [...lane.blocks]);
+function blocksOf(lanes: readonly Lane[]): Block[] {
+	return lanes.flatMap((lane) => [...lane.blocks]);
 }
 
+const drawn = (list: readonly PlanStep[]): Lane[] => layOut(list, RESOURCES, NOW, ROOM);
+
+/** Sums of tenths are not exact. */
+const NEARLY = 1e-6;
+
 describe('the lanes of any plan', () => {
-	test('hold every shown step once, in the lane of its resource', () => {
+	test('hold every step once, in the lane of its resource', () => {
 		fc.assert(
-			fc.property(steps, columns, (list, columns) => {
-				const chart = layOut(list, RESOURCES, columns);
-				const shown = shownSteps(list, columns);
-				expect(
-					blocksOf(chart)
-						.map((block) => block.step.id)
-						.sort()
-				).toEqual(shown.map((s) => s.id).sort());
-				for (const lane of chart.lanes)
-					for (const block of lane.blocks) expect(block.step.resource).toBe(lane.resource);
+			fc.property(steps, (list) => {
+				const lanes = drawn(list);
+				const ids = (all: readonly PlanStep[]): string[] => all.map((each) => each.id).sort();
+				expect(ids(blocksOf(lanes).map((block) => block.step))).toEqual(ids(list));
+				for (const lane of lanes) for (const block of lane.blocks) expect(block.step.resource).toBe(lane.resource);
+				expect(lanes.map((lane) => lane.resource).slice(0, RESOURCES.length)).toEqual(RESOURCES);
 			})
 		);
 	});
 
-	test('never draw two blocks over each other, nor one outside the columns', () => {
+	test('never draw two blocks of a row over each other, nor one too narrow for its mark', () => {
 		fc.assert(
-			fc.property(steps, columns, (list, columns) => {
-				const chart = layOut(list, RESOURCES, columns);
-				for (const lane of chart.lanes) {
-					const cells = lane.blocks.flatMap(({ row, column, span }) =>
-						Array.from({ length: span }, (_, k) => `${row}/${column + k}`)
-					);
-					expect(new Set(cells).size).toBe(cells.length);
-					for (const { row, column, span } of lane.blocks) {
-						expect(row).toBeLessThan(lane.rows);
-						expect(column + span).toBeLessThanOrEqual(chart.begun.length + chart.ahead);
+			fc.property(steps, (list) => {
+				for (const lane of drawn(list)) {
+					for (const row of Array.from({ length: lane.rows }, (_, index) => index)) {
+						const blocks = lane.blocks.filter((block) => block.row === row).sort((a, b) => a.from - b.from);
+						for (const [index, block] of blocks.entries()) {
+							expect(block.to - block.from).toBeGreaterThanOrEqual(ROOM.mark - NEARLY);
+							expect(block.from).toBeGreaterThanOrEqual((blocks[index - 1]?.to ?? -Infinity) - NEARLY);
+						}
+					}
+					expect(Math.max(0, ...lane.blocks.map((block) => block.row))).toBeLessThan(lane.rows);
+				}
+			})
+		);
+	});
+
+	test('keep what is over before the present, and what is planned after it', () => {
+		fc.assert(
+			fc.property(steps, (list) => {
+				for (const { step, from, to } of blocksOf(drawn(list))) {
+					if (!hasBegun(step)) expect(from).toBeGreaterThanOrEqual(0);
+					else if (step.ended === null) expect(to).toBeGreaterThanOrEqual(0);
+					else expect(to).toBeLessThanOrEqual(NEARLY);
+				}
+			})
+		);
+	});
+
+	test('cover the time that each step takes', () => {
+		fc.assert(
+			fc.property(steps, (list) => {
+				const late = lateness(list, NOW);
+				for (const { step, from, to } of blocksOf(drawn(list))) {
+					const { start, end } = timesOf(step, NOW, late);
+					if (hasBegun(step)) expect(from).toBeLessThanOrEqual(start);
+					expect(to - from).toBeGreaterThanOrEqual(end - start - NEARLY);
+				}
+			})
+		);
+	});
+
+	test('keep what is ahead in its order within a row, as it will start', () => {
+		fc.assert(
+			fc.property(steps, (list) => {
+				for (const lane of drawn(list)) {
+					const order = list.filter((each) => each.resource === lane.resource && !hasBegun(each));
+					for (const row of [0, 1]) {
+						const mine = lane.blocks.filter((block) => block.row === row && !hasBegun(block.step));
+						const places = mine.map((block) => order.indexOf(block.step));
+						expect(places).toEqual([...places].sort((a, b) => a - b));
 					}
 				}
 			})
 		);
 	});
 
-	test('keep what has begun before the present and what has not behind it, whatever ticks the steps had', () => {
-		fc.assert(
-			fc.property(steps, columns, (list, columns) => {
-				const chart = layOut(list, RESOURCES, columns);
-				for (const { step, column, span } of blocksOf(chart)) {
-					if (hasBegun(step)) expect(column + span).toBeLessThanOrEqual(chart.begun.length);
-					else expect(column).toBeGreaterThanOrEqual(chart.begun.length);
-				}
-			})
-		);
-	});
-
-	test('put what started together into one column, and what started earlier to the left', () => {
-		fc.assert(
-			fc.property(steps, columns, (list, columns) => {
-				const chart = layOut(list, RESOURCES, columns);
-				expect(chart.begun).toEqual([...new Set(chart.begun)].sort((a, b) => a - b));
-				for (const { step, column, continued } of blocksOf(chart)) {
-					if (!hasBegun(step)) continue;
-					if (continued) expect(step.started).toBeLessThan(chart.begun[0] ?? -Infinity);
-					else expect(chart.begun[column]).toBe(step.started);
-				}
-			})
-		);
-	});
-
-	test('promise nothing: what is ahead fills one column, never to the left of a start before it', () => {
-		fc.assert(
-			fc.property(steps, columns, (list, columns) => {
-				const drawn = new Map(blocksOf(layOut(list, RESOURCES, columns)).map((block) => [block.step.id, block]));
-				const ahead = list.filter((s) => !hasBegun(s)).map((s) => drawn.get(s.id));
-				ahead.reduce((before, block) => {
-					expect(block?.span).toBe(1);
-					expect(block?.column).toBeGreaterThanOrEqual(before?.column ?? 0);
-					return block;
-				}, undefined);
-			})
-		);
-	});
-
-	test('show no more of the past than can be read, and everything that still runs', () => {
-		fc.assert(
-			fc.property(steps, columns, (list, columns) => {
-				const chart = layOut(list, RESOURCES, columns);
-				expect(chart.begun.length).toBeLessThanOrEqual(columns);
-				const drawn = new Set(blocksOf(chart).map((block) => block.step.id));
-				for (const { id, status } of list) if (status !== 'done') expect(drawn).toContain(id);
-			})
-		);
+	test('let everything glide alike while nothing happens and nothing is late', () => {
+		const plan = [
+			step('done', 'robot', 0, { status: 'done', started: NOW - 20, ended: NOW - 12 }),
+			step('next', 'robot', 1, { status: 'next', expected_start: NOW + 10, expected_end: NOW + 14 })
+		];
+		const places = (now: number): number[] => blocksOf(layOut(plan, [], now, ROOM)).map((block) => block.from + now);
+		expect(places(NOW + 5)).toEqual(places(NOW));
 	});
 });
 
-test('a tool that runs while the robot makes two moves is drawn over both, of whichever plans they were', () => {
-	const chart = layOut(
-		[
-			step('run', 'nutrunner', 5, { status: 'running', started: 10 }),
-			step('above', 'robot', 5, { status: 'done', started: 10, ended: 12 }),
-			step('down', 'robot', 1, { status: 'running', started: 12 }),
-			step('up', 'robot', 4, { status: 'next' }),
-			step('again', 'nutrunner', 4),
-			step('over', 'robot', 6)
-		],
-		['robot', 'nutrunner', 'operator']
-	);
-	expect(chart.begun).toEqual([10, 12]);
-	expect(chart.ahead).toBe(2);
-	const placed = chart.lanes.map((lane) => lane.blocks.map(({ step, column, span }) => [step.id, column, span]));
-	expect(placed).toEqual([
-		[
-			['above', 0, 1],
-			['down', 1, 1],
-			['up', 2, 1],
-			['over', 3, 1]
-		],
-		[
-			['run', 0, 2],
-			['again', 2, 1]
-		],
-		[]
-	]);
+test('what is late is expected at once, and what follows as much later', () => {
+	const plan = [
+		step('next', 'robot', 0, { status: 'next', expected_start: NOW - 30, expected_end: NOW - 28 }),
+		step('then', 'nutrunner', 1, { expected_start: NOW - 28, expected_end: NOW - 20 })
+	];
+	expect(blocksOf(layOut(plan, [], NOW, ROOM)).map(({ from }) => from)).toEqual([0, 2]);
+	expect(endOf(layOut(plan, [], NOW, ROOM))).toBe(10);
 });
 
-test('a step that was pulled forward is drawn before those that start after it, not at the tick it once had', () => {
-	const chart = layOut([step('pulled', 'robot', 6, { status: 'next' }), step('task', 'operator', 2)], []);
-	expect(chart.ahead).toBe(1);
-	expect(chart.lanes.flatMap((lane) => lane.blocks.map((block) => block.column))).toEqual([0, 0]);
+test('what runs is drawn to where it is expected to end, and to the present where that has passed', () => {
+	const running = (expected_end: number): PlanStep =>
+		step('run', 'nutrunner', 0, { status: 'running', started: NOW - 6, expected_end });
+	const end = (list: PlanStep[]): number | undefined => blocksOf(drawn(list))[0]?.to;
+	expect(end([running(NOW + 2)])).toBe(2);
+	expect(end([running(NOW - 2)])).toBe(0);
 });

@@ -1,25 +1,22 @@
 /**
- * The plan as a picture: one lane per resource; columns for what has begun, the present, columns for what is ahead.
+ * The plan as a picture over time: one lane per resource, the present where it always is.
  *
- * What has begun is known: it stands at the instant of its start, whichever plan it came from, and is drawn over every
- * column that began while it ran. What is ahead is only ordered: the plan says in which tick an ability starts and never
- * when it ends, so a step that is still to come fills its own column alone.
+ * What has begun is drawn from its start to its end, or to the present; what runs goes on to where it is expected to end,
+ * and what is ahead lies after the present by what is expected of it. Times are seconds after the present. A block is as
+ * wide as its words need where nothing else needs the room, and never narrower than its mark.
  */
 import type { PlanStep } from '#lib/contract.ts';
 
-/** Columns of the past that are shown at most; older starts would only push the present out of sight. */
-export const PAST_COLUMNS = 8;
+/** Rows that every lane has, so that the page stays where it is when a short step needs a second one. */
+export const ROWS = 2;
 
 export interface Block {
 	readonly step: PlanStep;
-	/** First column, from 0: those of `begun`, then those ahead. */
-	readonly column: number;
-	/** Columns covered, at least 1. */
-	readonly span: number;
+	/** Where it is drawn: this covers the time it takes. */
+	readonly from: number;
+	readonly to: number;
 	/** Row within the lane, from 0: blocks of one row never overlap. */
 	readonly row: number;
-	/** It began before the first column. */
-	readonly continued: boolean;
 }
 
 export interface Lane {
@@ -28,89 +25,97 @@ export interface Lane {
 	readonly blocks: readonly Block[];
 }
 
-export interface Chart {
-	/** The instant of each column that has begun, in seconds, ascending. The present lies after them. */
-	readonly begun: readonly number[];
-	/** How many columns lie ahead. */
-	readonly ahead: number;
-	readonly lanes: readonly Lane[];
+/** Widths in seconds: what words need at best, and what a mark needs. */
+export interface Room {
+	readonly words: number;
+	readonly mark: number;
 }
 
-type Begun = PlanStep & { readonly started: number };
+interface Drawn extends Block {
+	to: number;
+	/** Until when it takes time. */
+	readonly until: number;
+}
 
 /** Whether a step has been started. */
-export function hasBegun(step: PlanStep): step is Begun {
+export function hasBegun(step: PlanStep): step is PlanStep & { readonly started: number } {
 	return step.started !== null;
 }
 
-/** The last `columns` instants at which something started, ascending. */
-function latestStarts(steps: readonly PlanStep[], columns: number): number[] {
-	return distinct(steps.filter(hasBegun).map((step) => step.started)).slice(-columns);
+/** By how much all that is ahead comes later than expected, as its first step should have begun by `now`. */
+export function lateness(steps: readonly PlanStep[], now: number): number {
+	const first = steps.find((step) => !hasBegun(step));
+	return Math.max(0, now - (first?.expected_start ?? now));
 }
 
-/** The steps that reach into the last `columns` starts or lie ahead; those that ended before are history. */
-export function shownSteps(all: readonly PlanStep[], columns = PAST_COLUMNS): PlanStep[] {
-	const first = latestStarts(all, columns)[0] ?? -Infinity;
-	return all.filter((step) => !hasBegun(step) || step.started >= first || step.ended === null || step.ended > first);
+/** When a step starts and ends, in seconds after `now`; what is ahead comes `late`.. */
+export function timesOf(step: PlanStep, now: number, late: number): { start: number; end: number } {
+	if (hasBegun(step)) {
+		const end = step.ended === null ? Math.max(0, (step.expected_end ?? now) - now) : step.ended - now;
+		return { start: step.started - now, end };
+	}
+	const start = Math.max(0, (step.expected_start ?? now) + late - now);
+	return { start, end: start + Math.max(0, (step.expected_end ?? now) - (step.expected_start ?? now)) };
 }
 
 /**
- * Lays out the steps of a plan, of which those ahead come in the order of their start. There is a lane for each of
- * `resources`, and at most `columns` (1 or more) of the past.
+ * Lays out the steps of a plan at `now`: those that have begun, then those ahead in the order of their start. There is a
+ * lane for each of `resources`, and for those that a step names.
  */
-export function layOut(all: readonly PlanStep[], resources: readonly string[], columns = PAST_COLUMNS): Chart {
-	const steps = shownSteps(all, columns);
-	const begun = latestStarts(steps, columns);
-	const ticks = ticksAhead(steps);
-	const ahead = distinct([...ticks.values()]);
-
-	function place(step: PlanStep): Omit<Block, 'row'> {
-		if (!hasBegun(step)) {
-			const column = begun.length + ahead.indexOf(ticks.get(step) ?? 0);
-			return { step, column, span: 1, continued: false };
-		}
-		const column = Math.max(0, begun.indexOf(step.started));
-		const until = step.ended ?? Infinity;
-		const end = begun.filter((instant) => instant < until).length;
-		return { step, column, span: Math.max(1, end - column), continued: !begun.includes(step.started) };
+export function layOut(all: readonly PlanStep[], resources: readonly string[], now: number, room: Room): Lane[] {
+	const late = lateness(all, now);
+	const lanes = new Map<string, PlanStep[]>(resources.map((resource) => [resource, []]));
+	for (const step of all) {
+		const lane = lanes.get(step.resource);
+		if (lane === undefined) lanes.set(step.resource, [step]);
+		else lane.push(step);
 	}
-
-	const names = new Set([...resources, ...steps.map((step) => step.resource)]);
-	const lanes = [...names].map((resource): Lane => {
-		const blocks = pack(steps.filter((step) => step.resource === resource).map(place));
-		return { resource, blocks, rows: Math.max(1, ...blocks.map((block) => block.row + 1)) };
+	return [...lanes].map(([resource, steps]) => {
+		const rows = pack(steps, now, late, room);
+		return { resource, rows: Math.max(ROWS, rows.length), blocks: rows.flat() };
 	});
-	return { begun, ahead: ahead.length, lanes };
 }
 
-/**
- * The tick under which each step ahead is drawn: its own, unless one that starts earlier has a later one. The order of
- * the starts is what will happen; a step that was pulled forward keeps the tick it once had.
- */
-function ticksAhead(steps: readonly PlanStep[]): Map<PlanStep, number> {
-	let latest = -Infinity;
-	const ticks = new Map<PlanStep, number>();
-	for (const step of steps) {
-		if (hasBegun(step)) continue;
-		latest = Math.max(latest, step.tick);
-		ticks.set(step, latest);
+/** The last moment, in seconds after `now`, at which something is drawn. */
+export function endOf(lanes: readonly Lane[]): number {
+	return Math.max(0, ...lanes.flatMap((lane) => lane.blocks.map((block) => block.to)));
+}
+
+function pack(steps: readonly PlanStep[], now: number, late: number, room: Room): Drawn[][] {
+	const rows: Drawn[][] = [];
+	const timed = steps.map((step) => ({ step, ...timesOf(step, now, late) }));
+	const begun = timed.filter(({ step }) => hasBegun(step)).sort((a, b) => a.start - b.start);
+	const ahead = timed.filter(({ step }) => !hasBegun(step));
+	for (const { step, start, end } of begun) {
+		// What has begun does not reach over the present for the sake of its words.
+		const from = Math.min(start, -room.mark);
+		const until = step.ended === null ? Math.max(0, end) : Math.min(0, end);
+		place(rows, step, from, until, Math.max(until, Math.min(from + room.words, 0)), room);
 	}
-	return ticks;
+	for (const { step, start, end } of ahead)
+		place(rows, step, start, end, Math.max(end, start + room.words), room, true);
+	return rows;
 }
 
-function distinct(numbers: readonly number[]): number[] {
-	return [...new Set(numbers)].sort((a, b) => a - b);
-}
-
-/** Gives each block the first row in which it overlaps none before it. */
-function pack(blocks: readonly Omit<Block, 'row'>[]): Block[] {
-	const ends: number[] = [];
-	return [...blocks]
-		.sort((a, b) => a.column - b.column)
-		.map((block) => {
-			const free = ends.findIndex((end) => end <= block.column);
-			const row = free === -1 ? ends.length : free;
-			ends[row] = block.column + block.span;
-			return { ...block, row };
-		});
+/** Puts a block into the first row with room for it; what stands before it gives up what only its words need. */
+function place(rows: Drawn[][], step: PlanStep, from: number, until: number, to: number, room: Room, movable = false): void {
+	const last = (row: Drawn[]): Drawn | undefined => row.at(-1);
+	const free = (row: Drawn[]): boolean => (last(row)?.to ?? -Infinity) <= from;
+	const over = (row: Drawn[]): boolean => (last(row)?.until ?? -Infinity) <= from;
+	const cut = (row: Drawn[]): boolean => over(row) && (last(row)?.from ?? -Infinity) + room.mark <= from;
+	let index = rows.findIndex(free);
+	if (index === -1 && rows.length < ROWS) index = rows.length;
+	if (index === -1) index = rows.findIndex(cut);
+	let moved = 0;
+	if (index === -1 && movable) {
+		// Several that take no time: one after the other, as they will start.
+		index = rows.findIndex(over);
+		const before = rows[index]?.at(-1);
+		if (before) moved = before.from + room.mark - from;
+	}
+	if (index === -1) index = rows.length;
+	const row = (rows[index] ??= []);
+	const before = last(row);
+	if (before) before.to = Math.min(before.to, from + moved);
+	row.push({ step, from: from + moved, until: until + moved, to: to + moved, row: index });
 }

@@ -5,6 +5,7 @@
  * `OLD_AFTER` is old, whatever the reason; the reasons that are known sooner (connection closed, controller lost, a message missing) count at
  * once.
  */
+import { say } from '#lib/text/text.svelte.ts';
 import { ageOf, type Hearing } from './hearing.ts';
 import type { Stream } from './receive.ts';
 
@@ -32,11 +33,21 @@ export function judge(stream: Told, hearing: Hearing, open: boolean, now: number
 	return { live: true, age };
 }
 
-/** Why a view is old, as a person says it. */
-export const CAUSES: Record<Cause, string> = {
-	connecting: 'Connecting to the station.',
-	closed: 'The connection to the server is lost. Trying again.',
-	controller: 'The server does not hear the controller.',
-	gap: 'A message was lost on the way. A new picture has been asked for.',
-	silent: 'Nothing new has come from the server.'
+/** Why a view is old, as a person says it in the language of the page. */
+export const CAUSES: Readonly<Record<Cause, string>> = {
+	get connecting() {
+		return say().header.causes.connecting;
+	},
+	get closed() {
+		return say().header.causes.closed;
+	},
+	get controller() {
+		return say().header.causes.controller;
+	},
+	get gap() {
+		return say().header.causes.gap;
+	},
+	get silent() {
+		return say().header.causes.silent;
+	}
 };

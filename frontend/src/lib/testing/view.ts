@@ -9,6 +9,7 @@ export const PLAN: Plan = {
 	minimal_ticks: true,
 	minimal_starts: true,
 	replanned: 0,
+	replacement: null,
 	contract: 'minimal',
 	engine: '',
 	milliseconds: null,
@@ -27,6 +28,9 @@ export function step(ability: string, resource: string, tick: number, rest: Part
 		status: 'planned',
 		started: null,
 		ended: null,
+		expected_start: null,
+		expected_end: null,
+		new: false,
 		waits_for: []
 	};
 	return { ...base, ...rest };

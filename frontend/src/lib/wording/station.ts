@@ -1,79 +1,47 @@
-/** How the state of execution is said. */
+/** How the state of execution is said, in the language of the page. */
 import type { Mode, PackML, Plan, StationView } from '#lib/contract.ts';
+import { header } from '#lib/text/en/header.ts';
+import { operate } from '#lib/text/en/operate.ts';
+import { say } from '#lib/text/text.svelte.ts';
 
-export const MODES: Record<Mode, string> = {
-	automatic: 'Automatic',
-	paused: 'Paused',
-	hold: 'Hold',
-	restart: 'Restart'
-};
+/** A record whose texts are looked up as they are read, so that they follow the language. */
+function spoken<Key extends string>(keys: Readonly<Record<Key, string>>, now: () => Record<Key, string>): Record<Key, string> {
+	const made = {} as Record<Key, string>;
+	for (const key of Object.keys(keys) as Key[]) Object.defineProperty(made, key, { enumerable: true, get: () => now()[key] });
+	return made;
+}
 
-/** What a mode means for what happens next, once production is started. */
-const MEANING: Record<Mode, string> = {
-	automatic: 'Operations are carried out.',
-	paused: 'What runs may finish; nothing is started.',
-	hold: 'Nothing is started, and what ran was called off where that is possible.',
-	restart: 'Operations wait. Nothing is started but what a person has looked at and taken.'
-};
+export const MODES: Readonly<Record<Mode, string>> = spoken(header.mode, () => say().header.mode);
 
 /** What happens next, and what does not. */
 export function modeMeaning({ mode, production }: Pick<StationView, 'mode' | 'production'>): string {
-	if (production === 'started') return MEANING[mode];
-	const nothing = 'Nothing is sent to the devices until production is started.';
-	return mode === 'automatic' ? nothing : `${MEANING[mode]} ${nothing}`;
+	const { meaning, nothingSent } = say().header;
+	if (production === 'started') return meaning[mode];
+	return mode === 'automatic' ? nothingSent : `${meaning[mode]} ${nothingSent}`;
 }
 
 /** The states of PackML by the names that the standard has for them. */
-export const PACKML: Record<PackML, string> = {
-	resetting: 'Resetting',
-	idle: 'Idle',
-	execute: 'Execute',
-	suspended: 'Suspended',
-	holding: 'Holding',
-	held: 'Held',
-	stopping: 'Stopping',
-	stopped: 'Stopped',
-	aborted: 'Aborted',
-	clearing: 'Clearing'
-};
+export const PACKML: Readonly<Record<PackML, string>> = spoken(header.packml, () => say().header.packml);
 
-export const PRODUCTION: Record<StationView['production'], string> = {
-	preparing: 'preparing: nothing moves yet',
-	waiting: 'waits for the start of production',
-	started: 'production started'
-};
+export const PRODUCTION: Readonly<Record<StationView['production'], string>> = spoken(
+	header.production,
+	() => say().header.production
+);
 
-export const PLAN_STATUS: Record<Plan['status'], string> = {
-	idle: 'Nothing to plan',
-	planning: 'Planning',
-	followed: 'Followed',
-	broken: 'The station departed from the plan; a new one is being looked for',
-	none: 'No plan was found'
-};
+export const PLAN_STATUS: Readonly<Record<Plan['status'], string>> = spoken(
+	operate.plan.statusText,
+	() => say().operate.plan.statusText
+);
 
-/** `3 starts`, `1 start`. */
+/** `3 starts`, `1 start`; in English. */
 export function count(n: number, one: string, many = `${one}s`): string {
 	return `${n} ${n === 1 ? one : many}`;
 }
 
-/** What the plan promises: what kind it is, its length, how much of it is ahead, and whether less would do. */
-export function planLength(plan: Plan): string {
-	if (plan.contract === null) return '';
-	const ahead = count(plan.steps.filter((step) => step.started === null).length, 'start');
-	if (plan.contract === 'minimal') return `Shortest plan, proven: ${count(plan.ticks, 'tick')}, ${ahead} ahead`;
-	const ticks = `${count(plan.ticks, 'tick')} (${plan.minimal_ticks ? 'fewest possible' : 'maybe not the fewest'})`;
-	return `Plan found soon: ${ticks}, ${ahead} ahead`;
-}
-
-/** How the answer came about: `answered in 12 ms by pdr`. */
-export function planOrigin(plan: Plan): string {
-	if (plan.milliseconds === null) return '';
-	return `answered in ${plannerTime(plan.milliseconds)}${plan.engine === '' ? '' : ` by ${plan.engine}`}`;
-}
-
 /** Milliseconds the planner took: `0.4 ms`, `12 ms`, `1.2 s`. */
 export function plannerTime(milliseconds: number): string {
-	if (milliseconds < 10) return `${milliseconds.toFixed(1)} ms`;
-	if (milliseconds < 1000) return `${Math.round(milliseconds)} ms`;
-	return `${(milliseconds / 1000).toFixed(1)} s`;
+	const { ms, s } = say().common.time;
+	if (milliseconds < 10) return ms(Number(milliseconds.toFixed(1)));
+	if (milliseconds < 1000) return ms(Math.round(milliseconds));
+	return s((milliseconds / 1000).toFixed(1));
 }

@@ -1,5 +1,6 @@
 /** How names and values of the model are said to a person. */
 import type { Value } from '#lib/contract.ts';
+import { say } from '#lib/text/text.svelte.ts';
 
 /** `bolt_pair_1` → `bolt pair 1`. */
 export function plain(name: string): string {
@@ -17,6 +18,6 @@ export function variableName(key: string, resource: string | null): string {
 
 /** `true` → `yes`; names lose their underscores; numbers stay. */
 export function valueText(value: Value): string {
-	if (typeof value === 'boolean') return value ? 'yes' : 'no';
+	if (typeof value === 'boolean') return value ? say().common.yes : say().common.no;
 	return typeof value === 'string' ? plain(value) : String(value);
 }

@@ -1,7 +1,6 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
-import { PLAN, step } from '#lib/testing/view.ts';
-import { modeMeaning, planLength, planOrigin, plannerTime } from './station.ts';
+import { modeMeaning, plannerTime } from './station.ts';
 import { ageText, agoText, durationText } from './time.ts';
 import { valueText, variableName } from './values.ts';
 
@@ -69,21 +68,6 @@ test('no mode is said to carry anything out before production is started', () =>
 	expect(modeMeaning({ mode: 'automatic', production: 'started' })).toBe('Operations are carried out.');
 	expect(modeMeaning({ mode: 'automatic', production: 'waiting' })).toMatch(/^Nothing is sent/);
 	expect(modeMeaning({ mode: 'restart', production: 'waiting' })).toMatch(/^Operations wait.* until production is started/);
-});
-
-test('a plan says how much of it is ahead, and when less might do', () => {
-	const steps = [step('a', 'robot', 0, { status: 'done', started: 1, ended: 2 }), step('b', 'robot', 0)];
-	expect(planLength({ ...PLAN, steps, ticks: 1 })).toBe('Shortest plan, proven: 1 tick, 1 start ahead');
-	expect(planLength({ ...PLAN, steps, ticks: 6, contract: 'fast', minimal_ticks: false })).toBe(
-		'Plan found soon: 6 ticks (maybe not the fewest), 1 start ahead'
-	);
-	expect(planLength({ ...PLAN, contract: null })).toBe('');
-});
-
-test('a plan says who found it, and how long that took', () => {
-	expect(planOrigin({ ...PLAN, milliseconds: 12.3, engine: 'search' })).toBe('answered in 12 ms by search');
-	expect(planOrigin({ ...PLAN, milliseconds: 0.41 })).toBe('answered in 0.4 ms');
-	expect(planOrigin(PLAN)).toBe('');
 });
 
 test('the time of the planner keeps two figures or so', () => {

@@ -16,5 +16,16 @@ export const common = {
 	takeControlFirst: 'Take control first.',
 	notLive: 'Not live: wait until the station is heard again.',
 	more: (n: number): string => `${n} more`,
-	language: 'Language'
+	language: 'Language',
+	/** How spans of time are said; what is before `justNow` are units. */
+	time: {
+		ms: (n: number): string => `${n} ms`,
+		s: (n: string | number): string => `${n} s`,
+		min: (n: number): string => `${n} min`,
+		h: (n: number): string => `${n} h`,
+		days: (n: number): string => `${n} days`,
+		justNow: 'just now',
+		ago: (span: string): string => `${span} ago`,
+		before: (span: string): string => `${span} before`
+	}
 };

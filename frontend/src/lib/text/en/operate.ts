@@ -1,2 +1,180 @@
 /** Operate. */
-export const operate = {};
+const starts = (n: number): string => (n === 1 ? '1 start' : `${n} starts`);
+const ticks = (n: number): string => (n === 1 ? '1 tick' : `${n} ticks`);
+
+export const operate = {
+	title: 'Operate',
+	glance: {
+		title: 'At a glance',
+		mode: 'Mode',
+		alarms: 'Alarms',
+		next: 'Next start',
+		task: 'For a person',
+		noTask: 'Nothing to do',
+		noTaskKnown: 'Nothing when last heard',
+		noAlarm: 'None',
+		nothing: 'Nothing',
+		more: (n: number): string => `and ${n} more`
+	},
+	plan: {
+		title: 'Plan',
+		asTable: 'as table',
+		lanes: 'Plan as lanes',
+		steps: 'Steps of the plan',
+		timeShown: 'Time shown',
+		seconds: (n: number): string => (n < 60 ? `${n} s` : `${n / 60} min`),
+		statusText: {
+			idle: 'Nothing to plan',
+			planning: 'Planning',
+			followed: 'Followed',
+			broken: 'The station departed from the plan; a new one is being looked for',
+			none: 'No plan was found'
+		},
+		replanned: (n: number): string => `re-planned ${n}×`,
+		next: 'Next',
+		nothingMore: 'Nothing more to start',
+		step: { done: 'done', running: 'running', next: 'next', planned: 'planned' },
+		isNew: 'new',
+		changed: (ago: string): string => `The plan changed ${ago}`,
+		unchanged: 'The plan has not taken the place of another.',
+		dropped: 'Dropped',
+		added: 'New',
+		onlyOrder: 'The same starts in another order.',
+		columns: {
+			expected: 'Began or expected',
+			resource: 'Resource',
+			step: 'Step',
+			status: 'Status',
+			lasts: 'Lasted or expected to',
+			waits: 'Waits for'
+		},
+		inSeconds: (n: number): string => (n === 0 ? 'now' : `in ${n} s`),
+		about: (n: number): string => `about ${n} s`,
+		droppedStatus: 'dropped',
+		shortest: (n: number, ahead: number): string => `Shortest plan, proven: ${ticks(n)}, ${starts(ahead)} ahead`,
+		soon: (n: number, fewest: boolean, ahead: number): string =>
+			`Plan found soon: ${ticks(n)} (${fewest ? 'fewest possible' : 'maybe not the fewest'}), ${starts(ahead)} ahead`,
+		ends: (seconds: number): string => `expected to be done in about ${seconds} s`,
+		answered: (time: string): string => `answered in ${time}`,
+		answeredBy: (time: string, engine: string): string => `answered in ${time} by ${engine}`,
+		noneWhile: (several: boolean): string =>
+			`No plan as long as ${several ? 'all of these stay as they are' : 'this stays as it is'}:`,
+		thereWouldBe: (several: boolean): string =>
+			`There would be a plan again with ${several ? 'one of these' : 'this'}:`
+	},
+	why: {
+		ask: 'Why?',
+		askOf: (title: string): string => `Why? ${title}`,
+		of: (title: string): string => `What ${title} waits for`,
+		nothing: 'Nothing is in its way.',
+		again: 'Ask again',
+		asked: (clock: string): string => `As it was at ${clock}`,
+		asking: 'Asking',
+		conditions: 'It waits until all of these are so',
+		kind: {
+			station: 'The station',
+			service: 'Service',
+			written: 'Condition of the model',
+			unpublished: 'Command on its way',
+			supervisor: 'Kept back by the supervisor',
+			plan: 'Plan'
+		} as Readonly<Record<string, string>>,
+		untilExecuting: (title: string): string => `waits until ${title} is executing`,
+		untilNotExecuting: (title: string): string => `waits until ${title} is not executing`,
+		untilFinished: (title: string): string => `waits until ${title} has finished`,
+		untilIs: (name: string, values: string): string => `waits until ${name} is ${values}`,
+		untilChanges: (name: string): string => `waits until ${name} changes, together with others`,
+		or: ' or ',
+		waitsFor: (text: string): string => `waits for ${text}`,
+		itIs: (value: string): string => `It is ${value}`,
+		itIsSince: (value: string, ago: string): string => `It is ${value}, since ${ago}`,
+		heardOn: (topic: string): string => `heard on ${topic}`,
+		notConfirmed: 'not confirmed',
+		changers: 'Could be changed by',
+		nobody: 'nobody',
+		how: {
+			start: (title: string, running: boolean): string => `the start of ${title}${running ? ', which runs' : ''}`,
+			finish: (title: string, running: boolean): string => `the end of ${title}${running ? ', which runs' : ''}`,
+			effect: (title: string, running: boolean): string => `what ${title} does${running ? ', which runs' : ''}`,
+			correction: (): string => 'a correction by a person',
+			force: (): string => 'forcing the output',
+			device: (title: string): string => `somebody at ${title}`,
+			message: (title: string): string => `a message on ${title}`
+		} as Readonly<Record<string, (title: string, running: boolean) => string>>,
+		plan: (n: number): string => `A plan is at hand: ${starts(n)}.`
+	},
+	operations: {
+		title: 'Operations',
+		activeOf: (active: number, all: number): string => `${active} of ${all} active`,
+		activeFor: (duration: string): string => `active ${duration}, until`,
+		waitsUntil: 'waits until',
+		completed: (n: number): string => `${n}× completed`,
+		once: 'done once: active again after a reset',
+		out: 'out of service',
+		leftOut: 'left out of the plan'
+	},
+	resources: {
+		title: 'Resources',
+		product: 'Product',
+		online: 'online',
+		offline: 'offline',
+		out: 'out of service',
+		estimated: 'estimated',
+		commanded: 'commanded',
+		unknown: 'unknown',
+		awaitsAll: 'Awaits',
+		awaits: 'awaits',
+		nothingRuns: 'nothing runs',
+		notConfirmed: 'not confirmed',
+		forced: 'forced',
+		all: (n: number): string => `All ${n} values`,
+		allOf: (n: number, title: string): string => `All ${n} values of ${title}`,
+		abilities: (n: number): string => (n === 1 ? '1 ability' : `${n} abilities`),
+		runs: 'runs',
+		restartOnly: 'restart mode only'
+	},
+	service: {
+		title: 'Out of service',
+		of: { resource: 'resource', ability: 'ability', operation: 'operation' } as Readonly<Record<string, string>>,
+		since: (clock: string, by: string, why: string): string => `since ${clock}, ${by}: ${why}`,
+		byStation: 'given up by the station',
+		putBack: 'Put back',
+		putBackTitle: (title: string): string => `Put ${title} back into service?`,
+		becauseOf: (why: string): string => `It was taken out because: ${why}`,
+		takeOut: 'Take out of service',
+		takeOutOf: (title: string): string => `Take out of service: ${title}`,
+		takeOutTitle: (title: string): string => `Take ${title} out of service?`,
+		means: {
+			resource: 'Its abilities do not start, and nothing that its devices would do is counted on. What of it runs goes on. Plans are made without it until somebody puts it back.',
+			ability: 'It does not start; what runs of it goes on. Plans are made without it until somebody puts it back.',
+			operation: 'It does not become active, and is not active any more, until somebody puts it back.'
+		} as Readonly<Record<string, string>>
+	},
+	topics: {
+		title: 'Topics',
+		never: 'never',
+		silent: 'silent',
+		in: 'in',
+		out: 'out',
+		peers: (n: number): string => (n === 1 ? '1 peer' : `${n} peers`)
+	},
+	supervisor: {
+		title: 'Supervisor',
+		computed: (what: string): string => `Being computed: ${what}.`,
+		guards: (n: number): string => (n === 1 ? '1 guard added by it' : `${n} guards added by it`),
+		onlyWhen: 'only when',
+		noShort: 'no short condition says it',
+		because: 'because of',
+		rest: 'coming to rest again',
+		none: 'There is no supervisor, so nothing is started.',
+		about: (number: string): string => `about ${number}`,
+		reached: (number: string, one: boolean): string => `${number} ${one ? 'state' : 'states'} can be reached`,
+		supervised: (number: string): string => `${number} of them with the supervisor`,
+		fromBeginning: 'It is so from the beginning',
+		howItComes: (n: number): string => `How it comes about, in ${n} ${n === 1 ? 'step' : 'steps'}`,
+		kind: { tick: 'Tick', start: 'Start', activity: 'Operation', transition: 'Step' } as Readonly<Record<string, string>>,
+		finished: 'finished:',
+		nothingChanges: 'nothing changes',
+		forbiddenBy: 'forbidden by'
+	}
+};

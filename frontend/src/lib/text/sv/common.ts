@@ -17,5 +17,15 @@ export const common: Text['common'] = {
 	takeControlFirst: 'Ta kontrollen först.',
 	notLive: 'Inte direkt: vänta tills stationen hörs igen.',
 	more: (n) => `${n} till`,
-	language: 'Språk'
+	language: 'Språk',
+	time: {
+		ms: (n) => `${n} ms`,
+		s: (n) => `${String(n).replace('.', ',')} s`,
+		min: (n) => `${n} min`,
+		h: (n) => `${n} h`,
+		days: (n) => `${n} dygn`,
+		justNow: 'just nu',
+		ago: (span) => `för ${span} sedan`,
+		before: (span) => `${span} tidigare`
+	}
 };

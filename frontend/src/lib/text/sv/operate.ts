@@ -1,3 +1,179 @@
 import type { Text } from '../text.svelte.ts';
 
-export const operate: Text['operate'] = {};
+const starts = (n: number): string => (n === 1 ? '1 start' : `${n} starter`);
+const runs = (running: boolean): string => (running ? ', som pågår' : '');
+
+export const operate: Text['operate'] = {
+	title: 'Drift',
+	glance: {
+		title: 'I korthet',
+		mode: 'Läge',
+		alarms: 'Larm',
+		next: 'Nästa start',
+		task: 'För en person',
+		noTask: 'Inget att göra',
+		noTaskKnown: 'Inget när stationen senast hördes',
+		noAlarm: 'Inga',
+		nothing: 'Inget',
+		more: (n) => `och ${n} till`
+	},
+	plan: {
+		title: 'Plan',
+		asTable: 'som tabell',
+		lanes: 'Planen som banor',
+		steps: 'Planens steg',
+		timeShown: 'Visad tid',
+		seconds: (n) => (n < 60 ? `${n} s` : `${n / 60} min`),
+		statusText: {
+			idle: 'Inget att planera',
+			planning: 'Planerar',
+			followed: 'Följs',
+			broken: 'Stationen avvek från planen; en ny söks',
+			none: 'Ingen plan hittades'
+		},
+		replanned: (n) => `omplanerad ${n}×`,
+		next: 'Nästa',
+		nothingMore: 'Inget mer att starta',
+		step: { done: 'klart', running: 'pågår', next: 'nästa', planned: 'planerat' },
+		isNew: 'nytt',
+		changed: (ago) => `Planen ändrades ${ago}`,
+		unchanged: 'Planen har inte tagit någon annans plats.',
+		dropped: 'Utgår',
+		added: 'Nytt',
+		onlyOrder: 'Samma starter i en annan ordning.',
+		columns: {
+			expected: 'Började eller väntas',
+			resource: 'Resurs',
+			step: 'Steg',
+			status: 'Status',
+			lasts: 'Varade eller väntas vara',
+			waits: 'Väntar på'
+		},
+		inSeconds: (n) => (n === 0 ? 'nu' : `om ${n} s`),
+		about: (n) => `cirka ${n} s`,
+		droppedStatus: 'utgår',
+		shortest: (n, ahead) => `Kortaste planen, bevisat: ${n} tick, ${starts(ahead)} kvar`,
+		soon: (n, fewest, ahead) =>
+			`Plan som hittades snabbt: ${n} tick (${fewest ? 'minsta möjliga' : 'kanske inte minsta möjliga'}), ${starts(ahead)} kvar`,
+		ends: (seconds) => `väntas vara klar om cirka ${seconds} s`,
+		answered: (time) => `svar på ${time}`,
+		answeredBy: (time, engine) => `svar på ${time} av ${engine}`,
+		noneWhile: (several) => `Ingen plan så länge ${several ? 'allt detta förblir' : 'detta förblir'} som det är:`,
+		thereWouldBe: (several) => `Det skulle finnas en plan igen med ${several ? 'något av detta' : 'detta'}:`
+	},
+	why: {
+		ask: 'Varför?',
+		askOf: (title) => `Varför? ${title}`,
+		of: (title) => `Vad ${title} väntar på`,
+		nothing: 'Inget är i vägen.',
+		again: 'Fråga igen',
+		asked: (clock) => `Som det var ${clock}`,
+		asking: 'Frågar',
+		conditions: 'Det väntar tills allt detta gäller',
+		kind: {
+			station: 'Stationen',
+			service: 'I drift',
+			written: 'Villkor i modellen',
+			unpublished: 'Kommando på väg',
+			supervisor: 'Hålls tillbaka av övervakaren',
+			plan: 'Plan'
+		},
+		untilExecuting: (title) => `väntar tills ${title} pågår`,
+		untilNotExecuting: (title) => `väntar tills ${title} inte pågår`,
+		untilFinished: (title) => `väntar tills ${title} är klart`,
+		untilIs: (name, values) => `väntar tills ${name} är ${values}`,
+		untilChanges: (name) => `väntar tills ${name} ändras, tillsammans med annat`,
+		or: ' eller ',
+		waitsFor: (text) => `väntar på ${text}`,
+		itIs: (value) => `Det är ${value}`,
+		itIsSince: (value, ago) => `Det är ${value}, sedan ${ago}`,
+		heardOn: (topic) => `hörs på ${topic}`,
+		notConfirmed: 'inte bekräftat',
+		changers: 'Kan ändras av',
+		nobody: 'ingen',
+		how: {
+			start: (title, running) => `starten av ${title}${runs(running)}`,
+			finish: (title, running) => `slutet av ${title}${runs(running)}`,
+			effect: (title, running) => `det som ${title} gör${runs(running)}`,
+			correction: () => 'en rättelse av en person',
+			force: () => 'att utgången tvingas',
+			device: (title) => `någon vid ${title}`,
+			message: (title) => `ett meddelande på ${title}`
+		},
+		plan: (n) => `Det finns en plan: ${starts(n)}.`
+	},
+	operations: {
+		title: 'Operationer',
+		activeOf: (active, all) => `${active} av ${all} aktiva`,
+		activeFor: (duration) => `aktiv ${duration}, tills`,
+		waitsUntil: 'väntar tills',
+		completed: (n) => `${n}× slutförd`,
+		once: 'utförs en gång: aktiv igen efter återställning',
+		out: 'ur drift',
+		leftOut: 'utanför planen'
+	},
+	resources: {
+		title: 'Resurser',
+		product: 'Produkt',
+		online: 'ansluten',
+		offline: 'tyst',
+		out: 'ur drift',
+		estimated: 'uppskattat',
+		commanded: 'beordrat',
+		unknown: 'okänt',
+		awaitsAll: 'Inväntar',
+		awaits: 'inväntar',
+		nothingRuns: 'inget pågår',
+		notConfirmed: 'inte bekräftat',
+		forced: 'tvingat',
+		all: (n) => `Alla ${n} värden`,
+		allOf: (n, title) => `Alla ${n} värden för ${title}`,
+		abilities: (n) => (n === 1 ? '1 förmåga' : `${n} förmågor`),
+		runs: 'pågår',
+		restartOnly: 'bara vid omstart'
+	},
+	service: {
+		title: 'Ur drift',
+		of: { resource: 'resurs', ability: 'förmåga', operation: 'operation' },
+		since: (clock, by, why) => `sedan ${clock}, ${by}: ${why}`,
+		byStation: 'stationen gav upp den',
+		putBack: 'Ta i drift',
+		putBackTitle: (title) => `Ta ${title} i drift igen?`,
+		becauseOf: (why) => `Den togs ur drift därför att: ${why}`,
+		takeOut: 'Ta ur drift',
+		takeOutOf: (title) => `Ta ur drift: ${title}`,
+		takeOutTitle: (title) => `Ta ${title} ur drift?`,
+		means: {
+			resource: 'Dess förmågor startar inte, och inget som dess enheter skulle göra räknas med. Det som pågår fortsätter. Planer görs utan den tills någon tar den i drift igen.',
+			ability: 'Den startar inte; det som pågår av den fortsätter. Planer görs utan den tills någon tar den i drift igen.',
+			operation: 'Den blir inte aktiv, och är inte längre aktiv, tills någon tar den i drift igen.'
+		}
+	},
+	topics: {
+		title: 'Ämnen',
+		never: 'aldrig',
+		silent: 'tyst',
+		in: 'in',
+		out: 'ut',
+		peers: (n) => (n === 1 ? '1 motpart' : `${n} motparter`)
+	},
+	supervisor: {
+		title: 'Övervakare',
+		computed: (what) => `Beräknas: ${what}.`,
+		guards: (n) => (n === 1 ? '1 tillagt villkor' : `${n} tillagda villkor`),
+		onlyWhen: 'bara när',
+		noShort: 'inget kort villkor säger det',
+		because: 'på grund av',
+		rest: 'att åter komma till vila',
+		none: 'Det finns ingen övervakare, så inget startas.',
+		about: (number) => `cirka ${number}`,
+		reached: (number) => `${number} tillstånd kan nås`,
+		supervised: (number) => `${number} av dem med övervakaren`,
+		fromBeginning: 'Det är så från början',
+		howItComes: (n) => `Hur det uppstår, i ${n} steg`,
+		kind: { tick: 'Tick', start: 'Start', activity: 'Operation', transition: 'Steg' },
+		finished: 'klart:',
+		nothingChanges: 'inget ändras',
+		forbiddenBy: 'förbjuds av'
+	}
+};

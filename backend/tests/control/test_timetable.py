@@ -1,0 +1,115 @@
+"""When the steps of a plan are expected: by the model, by the runs there were, and by what happened last."""
+
+from __future__ import annotations
+
+import pytest
+
+from control.test_local_formulas import beginning
+from control.test_receding_horizon import asked, ticks
+from core.building import Does, automaton
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.timetable import Timetable
+from sequence_planner.expressions.types import EnumerationType, Value
+from sequence_planner.immutable import replace
+from sequence_planner.planning.plan import Plan, PlanAnswer, PlanTick, Verdict
+
+PLACES = EnumerationType(("here", "detour", "there", "back"))
+AT_REST: dict[str, Value] = {"at": "here"}
+
+
+def going(place: str, since: str) -> Does:
+    """Goes there from `since`, which is over on arrival."""
+    return Does(
+        start=(f"target := {place}",),
+        enabled=f"at == {since} and target == {since}",
+        executing=f"target == {place} and at != {place}",
+        finish=f"target == {place} and at == {place}",
+    )
+
+
+WAY = automaton(
+    {
+        "aside": going("detour", "here"),
+        "return": going("here", "detour"),
+        "onwards": going("there", "detour"),
+        "away": going("back", "there"),
+    },
+    measured={"at": (PLACES, "here")},
+    output={"target": (PLACES, "here")},
+    effects={str(place): (f"target == {place} and at != {place}", (f"at := {place}",)) for place in PLACES.domain},
+    goals={"come": "at == back"},
+)
+SLOW = replace(WAY, effects=tuple(replace(effect, shortest=2.0, longest=4.0) for effect in WAY.effects))
+TICKS = ticks(("", "aside"), ("detour", "onwards"), ("there", "away"), ("back", ""))
+
+
+class Watched:
+    """An execution that follows a plan, and its timetable."""
+
+    def __init__(self, automaton: Automaton, plan: tuple[PlanTick, ...] = TICKS) -> None:
+        self.execution, _ = beginning(automaton, **AT_REST)
+        self.timetable = Timetable(self.execution)
+        answer = PlanAnswer(Verdict.FOUND, Plan(plan, False, False), ("come",), (), 0, 0.01)
+        assert self.execution.adopt(asked(self.execution), answer)
+
+    def tick(self, seconds: float, at: str = "here") -> None:
+        self.execution.tick({"at": at}, Moment(1000 + seconds, seconds))
+        self.timetable.note(1000 + seconds)
+
+    @property
+    def expected(self) -> dict[str, tuple[float, float]]:
+        """By ability, in seconds after the first tick."""
+        order = self.execution.plan.order
+        names = {step.number: step.ability for step in (*order.past, *order.ahead)}
+        table = self.timetable.expected().items()
+        return {names[number]: (each.start - 1000, each.end - 1000) for number, each in table}
+
+
+def test_steps_follow_one_another_as_the_plan_orders_them() -> None:
+    watched = Watched(SLOW)
+    watched.tick(0)
+    assert watched.expected == {"aside": (0, 3), "onwards": (3, 6), "away": (6, 9)}
+
+
+def test_nothing_moves_on_while_nothing_happens() -> None:
+    watched = Watched(SLOW)
+    watched.tick(0)
+    before = watched.expected
+    watched.tick(2)
+    assert watched.expected == before
+
+
+def test_what_is_late_makes_what_follows_late() -> None:
+    watched = Watched(SLOW)
+    watched.tick(0)
+    watched.tick(5, at="detour")
+    assert watched.expected["onwards"][0] == 5
+    assert watched.expected["away"][0] - watched.expected["onwards"][0] == 3
+
+
+def test_runs_there_were_tell_more_than_the_model() -> None:
+    watched = Watched(SLOW, ticks(("", "aside"), ("detour", "return"), ("here", "aside")) + TICKS[1:])
+    watched.tick(0)
+    watched.tick(1, at="detour")
+    assert watched.expected == {"return": (1, 4), "aside": (4, 5), "onwards": (5, 8), "away": (8, 11)}
+
+
+@pytest.mark.parametrize("plan_dropped", [True, False])
+def test_without_a_plan_nothing_is_expected(plan_dropped: bool) -> None:
+    execution, _ = beginning(SLOW, **AT_REST)
+    timetable = Timetable(execution)
+    timetable.note(1000)
+    if plan_dropped:
+        execution.plan.drop("for a test")
+        timetable.note(1001)
+    assert timetable.expected() == {}
+
+
+def test_the_execution_is_left_as_it_is() -> None:
+    """What is simulated is a run of its own."""
+    execution: Execution = Watched(SLOW).execution
+    before = dict(execution.state)
+    Timetable(execution).note(1000)
+    assert dict(execution.state) == before

@@ -1,0 +1,64 @@
+import { findings, overflow } from '../station/barriers.ts';
+import { picture, restsOnPerson } from '../station/seen.ts';
+import { expect, test } from '../station/test.ts';
+
+test('mode, alarms, next start and task are read from afar, beside Pause, the operations and the plan', async ({
+	operate,
+	watch
+}) => {
+	await restsOnPerson(operate, watch);
+	const far = operate.locator('[data-glance]');
+	await expect(far).toHaveCount(4);
+	for (const each of await far.all()) {
+		await expect(each).toBeInViewport({ ratio: 1 });
+		const size = await each.evaluate((element) => parseFloat(getComputedStyle(element).fontSize));
+		expect(size, `pixels of ${await each.getAttribute('data-glance')}`).toBeGreaterThanOrEqual(40);
+	}
+	await expect(operate.locator('[data-glance="mode"]')).toHaveCSS('text-transform', 'uppercase');
+	await expect(operate.locator('[data-glance="task"]')).toContainText('Place bolt pair');
+	for (const name of ['Pause', 'Hold'])
+		await expect(operate.getByRole('button', { name, exact: true })).toBeInViewport({ ratio: 1 });
+	await expect(operate.locator('[data-operation]').last()).toBeInViewport({ ratio: 1 });
+	await expect(operate.getByRole('group', { name: 'Plan as lanes' })).toBeInViewport();
+});
+
+test('what runs ends at the present or after it, what is planned lies after it, and the present stays', async ({
+	operate,
+	watch
+}) => {
+	await restsOnPerson(operate, watch);
+	const lanes = operate.getByRole('group', { name: 'Plan as lanes' });
+	const places = () =>
+		lanes.evaluate((all) => {
+			const now = all.querySelector('.present')?.getBoundingClientRect().left ?? NaN;
+			const blocks = [...all.querySelectorAll<HTMLElement>('[data-step]')].map((block) => {
+				const { left, right } = block.getBoundingClientRect();
+				return { status: block.dataset['status'], from: left - now, to: right - now };
+			});
+			return { now, blocks };
+		});
+	const before = await places();
+	for (const { status, from, to } of before.blocks) {
+		if (status === 'done') expect(to).toBeLessThanOrEqual(3);
+		else if (status === 'running') expect(to).toBeGreaterThanOrEqual(-3);
+		else expect(from).toBeGreaterThanOrEqual(-3);
+	}
+	await operate.waitForTimeout(1000);
+	expect((await places()).now).toBe(before.now);
+});
+
+test('why an operation waits is said in words, as often as it is asked @theme', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	await operate.getByRole('button', { name: 'Why? New engine' }).click();
+	const dialog = operate.getByRole('dialog', { name: 'What New engine waits for' });
+	await expect(dialog).toContainText('is tightened');
+	await expect(dialog.locator('[data-involved]').first()).toContainText('Could be changed by');
+	await dialog.getByRole('button', { name: 'Ask again' }).click();
+	await expect(dialog.getByRole('status').first()).toContainText('As it was at');
+	await picture(operate, 'operate-why');
+	expect(await findings(operate)).toEqual([]);
+	await operate.setViewportSize({ width: 320, height: 640 });
+	expect(await overflow(operate)).toBe(0);
+	await operate.keyboard.press('Escape');
+	await expect(dialog).toBeHidden();
+});
