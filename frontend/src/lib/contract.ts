@@ -38,6 +38,11 @@ export type WhyNot = Schemas['WhyNotView'];
 export type Changer = Schemas['ChangerView'];
 export type VariableKind = Schemas['VariableKind'];
 export type UndecidedOutput = Schemas['UndecidedOutputView'];
+export type AdviceAnswer = Schemas['AdviceView'];
+export type WayOffer = Schemas['OfferView'];
+export type PlanPreview = Schemas['PlanPreviewView'];
+export type CorrectionPreview = Schemas['CorrectionPreview'];
+export type WhyNot = Schemas['WhyNotView'];
 export type Value = NonNullable<Variable['value']>;
 
 export type SessionAnswer = Schemas['SessionAnswer'];

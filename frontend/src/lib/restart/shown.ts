@@ -1,17 +1,33 @@
 /** When a person has to do with a restart at all: as long as the station works by itself, the page does not speak of one. */
 import type { StationView, Value, Variable } from '#lib/contract.ts';
 
+/** Why a person is wanted for a restart, the most telling first. */
+export type Wanted = 'outside' | 'undecided' | 'questions' | 'unconfirmed' | 'noPlan' | 'errand' | 'restart' | 'hold' | 'paused';
+
+/** Whether nothing is planned although something is to be done. */
+export function lacksPlan(view: StationView): boolean {
+	return view.plan.status === 'none' && Object.values(view.operations).some((operation) => operation.active);
+}
+
+/** All reasons for which a person is wanted; none while the station works by itself. */
+export function wantedFor(view: StationView): Wanted[] {
+	const reasons: [Wanted, boolean][] = [
+		['outside', view.way_back !== null],
+		['undecided', Object.keys(view.undecided).length > 0],
+		['questions', view.questions.length > 0],
+		['unconfirmed', view.unconfirmed],
+		['noPlan', lacksPlan(view)],
+		['errand', view.errand !== null],
+		['restart', view.mode === 'restart'],
+		['hold', view.mode === 'hold'],
+		['paused', view.mode === 'paused']
+	];
+	return reasons.flatMap(([reason, holds]) => (holds ? [reason] : []));
+}
+
 /** Whether there is anything to say of it. */
 export function concernsRestart(view: StationView): boolean {
-	return (
-		view.mode !== 'automatic' ||
-		view.errand !== null ||
-		view.way_back !== null ||
-		view.questions.length > 0 ||
-		view.unconfirmed ||
-		Object.keys(view.undecided).length > 0 ||
-		(view.plan.status === 'none' && Object.values(view.operations).some((operation) => operation.active))
-	);
+	return wantedFor(view).length > 0;
 }
 
 /** The estimates that nobody has confirmed since they came back from the journal. */
