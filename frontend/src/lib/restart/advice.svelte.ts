@@ -17,6 +17,17 @@ export class Advice {
 	#times = 0;
 	#last = -Infinity;
 
+	/** Keeps the offers as they are, for as long as a person is at one of them. */
+	hold(): void {
+		this.held = true;
+	}
+
+	/** Lets go of them. What was taken is seen before anything is asked again. */
+	release(): void {
+		this.held = false;
+		this.#last = performance.now();
+	}
+
 	/** Asks if it is time to, for a station whose state is at `revision`. */
 	consider(revision: number): void {
 		const since = performance.now() - this.#last;

@@ -25,17 +25,17 @@ export function nextAct(view: StationView, { live, acts, mine, advice }: Standin
 	if (view.production === 'preparing') return 'preparing';
 	if (!mine) return 'control';
 	if (Object.keys(view.undecided).length > 0) return 'decide';
-	if (view.questions.length > 0) return view.production === 'waiting' || view.mode === 'restart' ? 'answer' : 'enter';
+	if (reasons.includes('questions')) return view.production === 'waiting' || view.mode === 'restart' ? 'answer' : 'enter';
 	if (view.unconfirmed && view.production === 'waiting') return 'answer';
 	if (view.production === 'waiting') return 'start';
 	if (reasons.every((reason) => reason === 'unconfirmed')) return 'answer';
+	if (reasons.includes('outside') && view.mode !== 'restart') return 'enter';
 	return offered(view, advice);
 }
 
 /** By what is offered from the present state. */
 function offered(view: StationView, advice: AdviceAnswer | null): Next {
 	const inside = view.mode === 'restart';
-	if (view.way_back !== null && !inside) return 'enter';
 	if (advice === null || advice.revision !== view.revision) return 'looking';
 	const [first] = advice.offers;
 	if (first === undefined) return 'stuck';

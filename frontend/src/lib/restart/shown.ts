@@ -1,20 +1,28 @@
 /** When a person has to do with a restart at all: as long as the station works by itself, the page does not speak of one. */
 import type { StationView, Value, Variable } from '#lib/contract.ts';
+import { openQuestions } from './answers.ts';
 
 /** Why a person is wanted for a restart, the most telling first. */
-export type Wanted = 'outside' | 'undecided' | 'questions' | 'unconfirmed' | 'noPlan' | 'errand' | 'restart' | 'hold' | 'paused';
+export type Wanted = 'outside' | 'unsure' | 'undecided' | 'questions' | 'unconfirmed' | 'noPlan' | 'errand' | 'restart' | 'hold' | 'paused';
 
 /** Whether nothing is planned although something is to be done. */
 export function lacksPlan(view: StationView): boolean {
 	return view.plan.status === 'none' && Object.values(view.operations).some((operation) => operation.active);
 }
 
+/** Whether the station may be safe, and what is awaited decides: nothing that is known says that it is not. */
+export function isUnsure({ violated, differences, awaits }: NonNullable<StationView['way_back']>): boolean {
+	return violated.length === 0 && differences.length === 0 && awaits.length > 0;
+}
+
 /** All reasons for which a person is wanted; none while the station works by itself. */
 export function wantedFor(view: StationView): Wanted[] {
+	const way = view.way_back;
 	const reasons: [Wanted, boolean][] = [
-		['outside', view.way_back !== null],
+		['outside', way !== null && !isUnsure(way)],
+		['unsure', way !== null && isUnsure(way)],
 		['undecided', Object.keys(view.undecided).length > 0],
-		['questions', view.questions.length > 0],
+		['questions', openQuestions(view).length > 0],
 		['unconfirmed', view.unconfirmed],
 		['noPlan', lacksPlan(view)],
 		['errand', view.errand !== null],

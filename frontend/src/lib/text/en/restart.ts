@@ -25,6 +25,7 @@ export const restart = {
 			questions: (n: number): string => `${count(n, 'question')}: what is believed does not fit what is measured.`,
 			unconfirmed: 'Nobody has confirmed yet what the station believes since it started.',
 			outside: 'The station is outside its safe states.',
+			unsure: 'Whether the station is safe is not known.',
 			noPlan: 'There is no plan for what is to be done.',
 			errand: 'What a person has taken is carried out.'
 		}
@@ -58,6 +59,7 @@ export const restart = {
 		alarms: 'Alarms',
 		plan: 'Plan',
 		outside: 'Outside the safe states',
+		unsure: 'Whether it is safe is not known',
 		violated: 'Violated:',
 		threatened: 'Could come about without any start:',
 		safe: 'In the nearest safe state:',
@@ -90,6 +92,8 @@ export const restart = {
 		so: (value: string): string => `It is so: ${value}`,
 		other: (value: string): string => `It is ${value}`,
 		more: (n: number): string => `Then ${count(n, 'more question')}. With each answer there may be fewer.`,
+		answered: (name: string, value: string, by: string, at: string): string =>
+			`${name} is ${value}, ${by} said at ${at}. What is measured does not fit that: something has been done by hand, or is measured wrongly.`,
 		by: (writer: string, at: string): string => `by ${writer}, ${at}`,
 		evidence: 'Measured then:',
 		unconfirmed: 'Not confirmed since the controller started',

@@ -25,6 +25,7 @@ export const restart: Text['restart'] = {
 			questions: (n) => `${count(n, 'fråga', 'frågor')}: det som antas stämmer inte med det som mäts.`,
 			unconfirmed: 'Ingen har ännu bekräftat det som stationen antar sedan den startade.',
 			outside: 'Stationen är utanför sina säkra tillstånd.',
+			unsure: 'Det är inte känt om stationen är säker.',
 			noPlan: 'Det finns ingen plan för det som ska göras.',
 			errand: 'Det som någon har valt utförs.'
 		}
@@ -57,6 +58,7 @@ export const restart: Text['restart'] = {
 		alarms: 'Larm',
 		plan: 'Plan',
 		outside: 'Utanför de säkra tillstånden',
+		unsure: 'Om den är säker är inte känt',
 		violated: 'Bryts:',
 		threatened: 'Kan brytas utan att något startas:',
 		safe: 'I närmaste säkra tillstånd:',
@@ -89,6 +91,8 @@ export const restart: Text['restart'] = {
 		so: (value) => `Det är så: ${value}`,
 		other: (value) => `Det är ${value}`,
 		more: (n) => `Sedan ${count(n, 'fråga', 'frågor')} till. Med varje svar kan de bli färre.`,
+		answered: (name, value, by, at) =>
+			`${name} är ${value}, sade ${by} ${at}. Det som mäts stämmer inte med det: något har gjorts för hand, eller mäts fel.`,
 		by: (writer, at) => `av ${writer}, ${at}`,
 		evidence: 'Uppmätt då:',
 		unconfirmed: 'Inte bekräftat sedan styrningen startade',
