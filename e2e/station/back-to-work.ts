@@ -58,6 +58,7 @@ export class Back {
 				return this.#answer();
 			case 'decide':
 				return this.#decide();
+			case 'look':
 			case 'physical':
 				if (this.#mended) return false;
 				this.#mended = true;

@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { AdviceAnswer, StationView, WayOffer } from '#lib/contract.ts';
 import { offer, preview } from '#lib/testing/offer.ts';
-import { view } from '#lib/testing/view.ts';
+import { alarm, view } from '#lib/testing/view.ts';
 import { nextAct, type Next, type Standing } from './next.ts';
 
 const QUESTION = { variable: 'b', believed: 'placed', possible: ['empty'], because: [] };
@@ -39,6 +39,16 @@ describe('what a person does next', () => {
 	test('at work: confirm what came back, and into restart mode where there is no plan', () => {
 		expect(next({ unconfirmed: true })).toBe('answer');
 		expect(next({ way_back: WAY_BACK })).toBe('enter');
+	});
+
+	test('is never nothing while an alarm lasts, and what it reminds of is none', () => {
+		const late = { late: alarm() };
+		expect(next({ alarms: late })).toBe('looking');
+		expect(next({ alarms: late }, advice(HANDS))).toBe('physical');
+		expect(next({ alarms: late }, advice(TAKE))).toBe('enter');
+		expect(next({ alarms: late }, advice(offer()))).toBe('look');
+		expect(next({ alarms: { force: alarm({ priority: 'low' }) } })).toBe('nothing');
+		expect(next({ alarms: { over: alarm({ ended: 995 }) } })).toBe('nothing');
 	});
 
 	test('held: into restart mode, unless the station can go on as it is', () => {

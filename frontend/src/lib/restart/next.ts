@@ -42,7 +42,8 @@ function offered(view: StationView, advice: AdviceAnswer | null): Next {
 	if (asksForHands(first)) return 'physical';
 	if (!goesOn(first)) return inside ? 'take' : 'enter';
 	if (inside) return 'leave';
-	return view.mode === 'automatic' ? 'enter' : 'continue';
+	if (view.mode !== 'automatic') return 'continue';
+	return wantedFor(view).every((reason) => reason === 'alarm') ? 'look' : 'enter';
 }
 
 /** The part of the page in which that is done; null where it is not on this page. */
@@ -51,6 +52,7 @@ export const PLACE: Record<Next, string | null> = {
 	viewer: null,
 	control: null,
 	nothing: null,
+	look: null,
 	preparing: null,
 	errand: 'errand',
 	decide: 'outputs',

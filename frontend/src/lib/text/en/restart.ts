@@ -27,6 +27,7 @@ export const restart = {
 			outside: 'The station is outside its safe states.',
 			unsure: 'Whether the station is safe is not known.',
 			noPlan: 'There is no plan for what is to be done.',
+			alarm: (n: number): string => `${count(n, 'alarm lasts', 'alarms last')}.`,
 			errand: 'What a person has taken is carried out.'
 		}
 	},
@@ -48,6 +49,7 @@ export const restart = {
 		continue: 'Continue.',
 		stuck: 'No way back is known: see why, and put right what is in the way.',
 		looking: 'Wait for the ways back.',
+		look: 'See to what the alarms say; the station goes on as far as it can.',
 		nothing: 'Nothing: the station works by itself.',
 		viewer: 'An operator gets the station back to work.',
 		there: 'Go there'

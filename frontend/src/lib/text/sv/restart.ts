@@ -27,6 +27,7 @@ export const restart: Text['restart'] = {
 			outside: 'Stationen är utanför sina säkra tillstånd.',
 			unsure: 'Det är inte känt om stationen är säker.',
 			noPlan: 'Det finns ingen plan för det som ska göras.',
+			alarm: (n) => `${count(n, 'larm', 'larm')} kvarstår.`,
 			errand: 'Det som någon har valt utförs.'
 		}
 	},
@@ -47,6 +48,7 @@ export const restart: Text['restart'] = {
 		continue: 'Fortsätt.',
 		stuck: 'Ingen väg tillbaka är känd: se varför, och åtgärda det som hindrar.',
 		looking: 'Vänta på vägarna tillbaka.',
+		look: 'Åtgärda det som larmen säger; stationen fortsätter så långt det går.',
 		nothing: 'Inget: stationen arbetar själv.',
 		viewer: 'En operatör får stationen i arbete igen.',
 		there: 'Gå dit'
