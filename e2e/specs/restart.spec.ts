@@ -136,8 +136,8 @@ interface Fault {
 	readonly name: string;
 	/** Something goes wrong at a station that works. */
 	readonly strike: (at: Place) => Promise<void>;
-	/** What an alarm says of it. */
-	readonly alarm: RegExp;
+	/** What an alarm says of it; null where none has to, and Operate alone says that a person is wanted. */
+	readonly alarm: RegExp | null;
 	readonly hands: (at: Place) => Hands;
 	/** What the page has a person do, among other things. */
 	readonly asks: string[];
@@ -188,8 +188,10 @@ const FAULTS: readonly Fault[] = [
 	{
 		name: 'held in the middle of a bolt',
 		strike: async (at) => {
+			await at.station.fault('nutrunner slow 10'); // or the bolt could be tight before the press
 			await turns(at);
 			await at.restart.getByRole('button', { name: 'Hold', exact: true }).click();
+			await at.station.fault('clear');
 		},
 		alarm: /outside its safe states/,
 		hands: clear,
@@ -205,7 +207,7 @@ const FAULTS: readonly Fault[] = [
 	{
 		name: 'the controller dies',
 		strike: ({ station }) => Promise.resolve(station.server.killPart('controller')),
-		alarm: /./,
+		alarm: null,
 		hands: clear,
 		asks: ['start']
 	},
@@ -287,7 +289,7 @@ test.describe('a station of its own', () => {
 	test.use({ shared: null });
 
 	test('from an alarm to production again, by this page alone', async ({ operate, watch, station }) => {
-		const faults = process.env['ONLY'] ? process.env['ONLY'].split(',').map((i) => FAULTS[Number(i)]!) : FAULTS.slice(0, NUMBER);
+		const faults = FAULTS.slice(0, NUMBER);
 		test.setTimeout(60_000 + faults.length * 60_000);
 		await restsOnPerson(operate, watch);
 		await takeControl(operate);
@@ -299,7 +301,8 @@ test.describe('a station of its own', () => {
 				const back = new Back(restart, hands(at));
 				try {
 					await strike(at);
-					await expect(restart.locator('[data-happened]').filter({ hasText: alarm }).first()).toBeVisible();
+					const said = restart.locator('[data-happened]').filter(alarm === null ? {} : { hasText: alarm });
+					if (alarm !== null) await expect(said.first()).toBeVisible();
 					await expect(operate.getByTestId('restart-notice')).toBeVisible();
 					await back.toWork();
 					expect(back.acts).toEqual(expect.arrayContaining(asks));
@@ -308,11 +311,11 @@ test.describe('a station of its own', () => {
 				} catch (error) {
 					// The others are gone through all the same.
 					wrong.push(`${name} (${back.acts.join(', ')}): ${String(error)}`);
-					await restart.screenshot({ path: `artefacts/fault-${wrong.length}.png`, fullPage: true });
-					await back.hands.mend();
+					await picture(restart, `restart-fault-${wrong.length}`);
+					await station.fault('clear');
+					await back.toWork().catch(() => undefined);
 				}
 				test.info().annotations.push({ type: name, description: back.acts.join(', ') });
-				if (process.env['FAULTS'] || process.env['ONLY']) console.log(`${name}: ${back.acts.join(', ')}`);
 			});
 		expect(wrong).toEqual([]);
 	});
