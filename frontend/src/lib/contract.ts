@@ -40,9 +40,6 @@ export type VariableKind = Schemas['VariableKind'];
 export type UndecidedOutput = Schemas['UndecidedOutputView'];
 export type AdviceAnswer = Schemas['AdviceView'];
 export type WayOffer = Schemas['OfferView'];
-export type PlanPreview = Schemas['PlanPreviewView'];
-export type CorrectionPreview = Schemas['CorrectionPreview'];
-export type WhyNot = Schemas['WhyNotView'];
 export type Value = NonNullable<Variable['value']>;
 
 export type SessionAnswer = Schemas['SessionAnswer'];

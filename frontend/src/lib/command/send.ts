@@ -22,8 +22,8 @@ export function startProduction(): Promise<Refusal | null> {
 }
 
 /** Has the operations wait for a restart. Nothing is started by it. */
-export function enterRestart(reason: string): Promise<Refusal | null> {
-	return command('POST', '/api/v1/restart/enter', { body: { reason } });
+export function enterRestart(reason?: string): Promise<Refusal | null> {
+	return command('POST', '/api/v1/restart/enter', { body: reason === undefined ? {} : { reason } });
 }
 
 /** Leaves restart mode for the paused one; to go on is another act. */
@@ -61,15 +61,6 @@ export function whyNotGoal(predicate: string): Promise<Answer<WhyNot>> {
 /** Finds out what a correction would bring about. Nothing is changed by asking. */
 export function previewCorrection(values: Readonly<Record<string, Value>>): Promise<Answer<CorrectionPreview>> {
 	return request('POST', '/api/v1/corrections/preview', { body: { values }, patience: PLANNING });
-}
-
-/** Gives estimates other values, upon the `revision` that was seen. 409: the station has moved. */
-export function correctEstimates(
-	values: Readonly<Record<string, Value>>,
-	revision: number,
-	reason: string
-): Promise<Refusal | null> {
-	return command('POST', '/api/v1/corrections', { body: { values, revision, reason } });
 }
 
 /** Starts no further what is being carried out. */
