@@ -74,14 +74,16 @@ test.describe('when a part of the station dies', () => {
 		await takeControl(operate);
 		await operate.getByRole('button', { name: 'Start production' }).click();
 		await expect(operate.getByRole('alert').filter({ hasText: 'requested_pair' })).toBeVisible();
-		await operate.getByRole('button', { name: 'Decide' }).click();
+		await operate.getByTestId('restart-notice').getByRole('link', { name: 'To Restart' }).click();
+		await operate.getByRole('button', { name: 'Decide', exact: true }).click();
 		const dialog = operate.getByRole('dialog');
 		await dialog.getByRole('radio', { name: /^bolt pair/ }).check();
 		await dialog.getByLabel('Reason').fill('The person is still at it');
-		await picture(operate, 'operate-undecided');
+		await picture(operate, 'restart-undecided');
 		expect(await findings(operate)).toEqual([]);
 		await dialog.getByRole('button', { name: 'Decide' }).click();
 		await expect(operate.getByTestId('undecided')).toBeHidden();
+		await operate.getByRole('link', { name: 'Operate' }).click();
 		// Its alarm is over, and stays until somebody has seen it.
 		const alarm = operate.locator('[data-alarm]').filter({ hasText: 'requested_pair' });
 		await expect(alarm).toHaveAttribute('data-state', 'returned');

@@ -1,13 +1,26 @@
+import type { Page } from '@playwright/test';
+import { Back, served, type Hands } from '../station/back-to-work.ts';
 import { examine } from '../station/barriers.ts';
-import { acknowledge, done, picture, restsOnPerson, takeControl, tightenings } from '../station/seen.ts';
+import { acknowledge, done, picture, restsOnPerson, takeControl, tightenings, variable } from '../station/seen.ts';
+import type { Station } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
+
+/** The page Restart in the same browser as Operate: the same session, with the same control. */
+async function openRestart(operate: Page): Promise<Page> {
+	const page = await operate.context().newPage();
+	await page.goto(new URL('/restart', operate.url()).href);
+	await expect(page.getByTestId('next-act')).toBeVisible();
+	return page;
+}
 
 test('held, into restart mode and out of it, each by an act of its own, and work goes on', async ({ operate, watch }) => {
 	const mode = operate.getByTestId('mode');
-	const restart = operate.getByRole('region', { name: 'Restart' });
+	const notice = operate.getByRole('region', { name: 'Restart' });
+	const main = operate.locator('main');
 	const press = (name: string) => operate.getByRole('button', { name, exact: true });
+	const act = (name: string) => main.getByRole('button', { name, exact: true });
 	await restsOnPerson(operate, watch);
-	await expect(restart).toBeHidden(); // as long as the station works by itself
+	await expect(notice).toBeHidden(); // as long as the station works by itself
 	const before = await tightenings(operate);
 	await takeControl(operate);
 
@@ -16,44 +29,294 @@ test('held, into restart mode and out of it, each by an act of its own, and work
 		await expect(mode).toContainText('Hold');
 		await press('Hold').click({ force: true });
 		await expect(press('Continue')).toBeVisible();
-		await expect(restart).toContainText('Nothing is started');
+		await expect(notice).toContainText('Nothing is started');
+		await picture(operate, 'operate-held');
+		await notice.getByRole('link', { name: 'To Restart' }).click();
 	});
 
 	await test.step('in restart mode operations wait, and there is no way on but out of it', async () => {
-		await press('Enter restart mode').click();
+		await act('Enter restart mode').click();
+		await operate.getByRole('dialog').getByLabel('Reason').fill('to see what it is');
+		await operate.getByRole('dialog').getByRole('button', { name: 'Enter restart mode' }).click();
 		await expect(mode).toContainText('Restart');
-		await expect(press('Continue')).toBeHidden();
+		await expect(act('Continue')).toHaveAttribute('aria-disabled', 'true');
+		await expect(operate.getByTestId('strip').getByRole('button', { name: 'Continue' })).toBeHidden();
+		await expect(operate.getByTestId('offers')).toContainText('Go on as it is');
 		await acknowledge(watch);
 		await operate.waitForTimeout(2000);
+		await expect(operate.getByTestId('moves')).toContainText('Nothing');
+		await picture(operate, 'restart');
+		await operate.getByRole('link', { name: 'Operate' }).click();
 		await expect(operate.locator('[data-status="running"]')).toHaveCount(0);
 		expect(await tightenings(operate)).toBe(before);
-		await picture(operate, 'operate-restart');
+		await expect(notice).toContainText('The station is in restart mode');
+		await notice.getByRole('link', { name: 'To Restart' }).click();
 	});
 
 	await test.step('leaving it pauses', async () => {
-		await press('Leave restart mode').click();
+		await act('Leave restart mode').click();
 		await expect(mode).toContainText('Paused');
 		await operate.waitForTimeout(1000);
 		await expect(mode).toContainText('Paused');
 	});
 
 	await test.step('and Continue goes on', async () => {
-		await press('Continue').click();
+		await act('Continue').click();
 		await expect(mode).toContainText('Automatic');
-		await expect(restart).toBeHidden();
+		await operate.getByRole('link', { name: 'Operate' }).click();
+		await expect(notice).toBeHidden();
 		await expect.poll(() => tightenings(operate), { timeout: 60_000 }).toBe(before + 1);
 	});
 });
 
-test('the page can be read and pressed in restart mode', async ({ operate, watch }) => {
+test('an operation is reset by a plan that is looked at first, and refused once the station has moved', async ({
+	operate,
+	watch,
+	station
+}) => {
 	await restsOnPerson(operate, watch);
 	await takeControl(operate);
+	const pair = (await operate.locator('[data-status="running"]').getAttribute('data-step')) ?? '';
 	await operate.getByRole('button', { name: 'Hold', exact: true }).click();
-	await operate.getByRole('button', { name: 'Enter restart mode' }).click();
+	await operate.goto(`${station.url}/restart`);
+	const main = operate.locator('main');
+	const dialog = operate.getByRole('dialog');
+	await main.getByRole('button', { name: 'Enter restart mode' }).click();
+	await dialog.getByLabel('Reason').fill('the scene');
+	await dialog.getByRole('button', { name: 'Enter restart mode' }).click();
 	await expect(operate.getByTestId('mode')).toContainText('Restart');
+
+	await test.step('what is found lists each start, and is taken by a second act with a reason', async () => {
+		await main.getByText('Reset an operation ·').click();
+		await main.getByLabel('Operation').selectOption({ label: 'Prepare the planning scene' });
+		await main.getByRole('button', { name: 'Find a plan' }).first().click();
+		await main.getByRole('button', { name: 'Take… Reset Prepare the planning scene' }).click();
+		await expect(dialog.locator('[data-start]')).toHaveCount(1);
+		await dialog.getByLabel('Reason').fill('to have it anew');
+		await expect(dialog.getByRole('button', { name: 'Take it' })).toHaveAttribute('aria-disabled', 'true');
+		await dialog.getByRole('checkbox').check();
+	});
+
+	await test.step('while somebody reads, the station moves: it says so, and leads back to a fresh plan', async () => {
+		await acknowledge(watch);
+		await expect(dialog).toContainText('The station has moved since this was offered');
+		await picture(operate, 'restart-moved');
+		await dialog.getByRole('button', { name: 'Back to fresh offers' }).click();
+		await main.getByRole('button', { name: 'Take… Reset Prepare the planning scene' }).click();
+		await dialog.getByRole('checkbox').check();
+		await dialog.getByLabel('Reason').fill('to have it anew');
+		await dialog.getByRole('button', { name: 'Take it' }).click();
+		await expect(operate.getByTestId('last-errand')).toContainText('Reset Prepare the planning scene');
+		await expect(operate.getByTestId('last-errand')).toHaveAttribute('data-done', 'true');
+		await expect(operate.getByTestId('mode')).toContainText('Restart');
+	});
+
+	await test.step('a predicate that means nothing is marked where it does not', async () => {
+		await main.getByLabel('Predicate').fill('robot.pose == hom');
+		await main.getByRole('button', { name: 'Find a plan' }).last().click();
+		await expect(operate.getByTestId('place').locator('mark')).toHaveText('hom');
+	});
+
 	await examine(operate, 'restart');
 	await operate.setViewportSize({ width: 1440, height: 900 });
-	await operate.getByRole('button', { name: 'Leave restart mode' }).click();
-	await operate.getByRole('button', { name: 'Continue', exact: true }).click();
+	await main.getByRole('button', { name: 'Leave restart mode' }).click();
+	await main.getByRole('button', { name: 'Continue', exact: true }).click();
+	expect(pair).toContain('place_bolt_pair');
 	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
+});
+
+interface Place {
+	readonly station: Station;
+	readonly operate: Page;
+	readonly watch: Page;
+	readonly restart: Page;
+}
+
+interface Fault {
+	readonly name: string;
+	/** Something goes wrong at a station that works. */
+	readonly strike: (at: Place) => Promise<void>;
+	/** What an alarm says of it; null where none has to, and Operate alone says that a person is wanted. */
+	readonly alarm: RegExp | null;
+	readonly hands: (at: Place) => Hands;
+	/** What the page has a person do, among other things. */
+	readonly asks: string[];
+}
+
+const clear = ({ station }: Place): Hands => ({ mend: () => station.fault('clear') });
+
+/** The tool turns at a bolt pair. */
+async function turns({ operate, watch }: Place): Promise<void> {
+	const turning = operate.locator('[data-variable="nutrunner.tool_is_running_forward"][data-value="true"]');
+	const there = operate.locator('[data-variable="robot.pose"][data-value^="bolt_pair"]');
+	await served(watch, async () => (await turning.count()) > 0 && (await there.count()) > 0, 40);
+}
+
+/** Work goes on until an alarm comes. */
+async function alarms({ restart, watch }: Place): Promise<void> {
+	await served(watch, async () => (await restart.locator('[data-happened]').count()) > 0, 40);
+}
+
+/** Something is believed that is not so. */
+async function believe({ restart, station }: Place, name: string, value: string): Promise<void> {
+	const send = async (path: string, data: object): Promise<{ revision: number }> => {
+		const answer = await restart.request.post(`${station.url}/api/v1/${path}`, { data });
+		expect(answer.ok(), `${path}: ${await answer.text()}`).toBe(true);
+		return answer.status() === 204 ? { revision: 0 } : ((await answer.json()) as { revision: number });
+	};
+	await send('restart/enter', {});
+	const { revision } = await send('corrections/preview', { values: { [name]: value } });
+	await send('corrections', { values: { [name]: value }, revision, reason: 'a slip' });
+	await send('restart/leave', {});
+}
+
+/** The bolt pair that a person is asked to place. */
+async function requested({ operate, watch }: Place): Promise<string> {
+	const pair = variable(operate, 'operator.requested_pair');
+	await served(watch, async () => /^bolt_pair/.test((await pair.getAttribute('data-value')) ?? ''), 40);
+	return (await pair.getAttribute('data-value')) ?? '';
+}
+
+const FAULTS: readonly Fault[] = [
+	{
+		name: 'a device is gone',
+		strike: ({ station }) => station.fault('robot offline'),
+		alarm: /Nothing is heard/,
+		hands: clear,
+		asks: ['physical']
+	},
+	{
+		name: 'held in the middle of a bolt',
+		strike: async (at) => {
+			await at.station.fault('nutrunner slow 10'); // or the bolt could be tight before the press
+			await turns(at);
+			await at.restart.getByRole('button', { name: 'Hold', exact: true }).click();
+			await at.station.fault('clear');
+		},
+		alarm: /outside its safe states/,
+		hands: clear,
+		asks: ['enter', 'take', 'leave', 'continue']
+	},
+	{
+		name: 'what is believed is wrong',
+		strike: async (at) => believe(at, `bolts[${await requested(at)}]`, 'placed'),
+		alarm: /is believed to be placed/,
+		hands: () => ({ mend: () => Promise.resolve(), truth: 'empty' }),
+		asks: ['enter', 'answer', 'leave', 'continue']
+	},
+	{
+		name: 'the controller dies',
+		strike: ({ station }) => Promise.resolve(station.server.killPart('controller')),
+		alarm: null,
+		hands: clear,
+		asks: ['start']
+	},
+	{
+		name: 'a sensor says what is not true',
+		strike: async (at) => {
+			await at.station.fault('nutrunner.tool_is_idle wrong false');
+			await alarms(at);
+		},
+		alarm: /./,
+		hands: clear,
+		asks: []
+	},
+	{
+		name: 'a device does nothing more',
+		strike: async (at) => {
+			await at.station.fault('nutrunner slow 10000');
+			await alarms(at);
+		},
+		alarm: /./,
+		hands: clear,
+		asks: []
+	},
+	{
+		name: 'a device is gone in the middle of a bolt',
+		strike: async (at) => {
+			await turns(at);
+			await at.station.fault('nutrunner offline');
+		},
+		alarm: /Nothing is heard/,
+		hands: clear,
+		asks: []
+	},
+	{
+		name: 'the robot is pushed between its poses',
+		strike: async ({ station, restart }) => {
+			await restart.getByRole('button', { name: 'Hold', exact: true }).click();
+			await station.fault('robot slow 10000');
+			await station.byHand('robot.pose := unknown');
+		},
+		alarm: /./,
+		hands: clear,
+		asks: []
+	},
+	{
+		name: 'a device is out of service',
+		strike: async ({ restart, station }) => {
+			const data = { in_service: false, reason: 'it squeaks' };
+			const answer = await restart.request.put(`${station.url}/api/v1/service/resource/robot`, { data });
+			expect(answer.ok(), await answer.text()).toBe(true);
+		},
+		alarm: /./,
+		hands: clear,
+		asks: []
+	},
+	{
+		name: 'a device talks nonsense',
+		strike: ({ station }) => station.fault('nutrunner garbage'),
+		alarm: /./,
+		hands: clear,
+		asks: []
+	},
+	{
+		name: 'a device begins anew in the middle of a bolt',
+		strike: async (at) => {
+			await turns(at);
+			await at.station.fault('robot restarted');
+		},
+		alarm: /./,
+		hands: clear,
+		asks: []
+	}
+];
+
+/** So many of them are gone through; all of them in a campaign. */
+const NUMBER = Number(process.env['FAULTS'] ?? 3);
+
+test.describe('a station of its own', () => {
+	test.use({ shared: null });
+
+	test('from an alarm to production again, by this page alone', async ({ operate, watch, station }) => {
+		const faults = FAULTS.slice(0, NUMBER);
+		test.setTimeout(60_000 + faults.length * 60_000);
+		await restsOnPerson(operate, watch);
+		await takeControl(operate);
+		const restart = await openRestart(operate);
+		const at: Place = { station, operate, watch, restart };
+		const wrong: string[] = [];
+		for (const { name, strike, alarm, hands, asks } of faults)
+			await test.step(name, async () => {
+				const back = new Back(restart, hands(at));
+				try {
+					await strike(at);
+					const said = restart.locator('[data-happened]').filter(alarm === null ? {} : { hasText: alarm });
+					if (alarm !== null) await expect(said.first()).toBeVisible();
+					await expect(operate.getByTestId('restart-notice')).toBeVisible();
+					await back.toWork();
+					expect(back.acts).toEqual(expect.arrayContaining(asks));
+					const before = await tightenings(operate);
+					await served(watch, async () => (await tightenings(operate)) > before, 60);
+				} catch (error) {
+					// The others are gone through all the same.
+					wrong.push(`${name} (${back.acts.join(', ')}): ${String(error)}`);
+					await picture(restart, `restart-fault-${wrong.length}`);
+					await station.fault('clear');
+					await back.toWork().catch(() => undefined);
+				}
+				test.info().annotations.push({ type: name, description: back.acts.join(', ') });
+			});
+		expect(wrong).toEqual([]);
+	});
 });

@@ -41,6 +41,8 @@ export type CorrectionPreview = Schemas['CorrectionPreview'];
 export type PlanPreview = Schemas['PlanPreviewView'];
 export type VariableKind = Schemas['VariableKind'];
 export type UndecidedOutput = Schemas['UndecidedOutputView'];
+export type AdviceAnswer = Schemas['AdviceView'];
+export type WayOffer = Schemas['OfferView'];
 export type Value = NonNullable<Variable['value']>;
 
 export type SessionAnswer = Schemas['SessionAnswer'];

@@ -52,7 +52,7 @@ test('control is taken from the session that was shown, with a reason only where
 
 test('what an act is about stands in its address or body, names of the model as one segment', async () => {
 	const fetch = accepting();
-	await putBack({ of: 'ability', name: 'robot.move(a/b)', title: '', since: 0, by: null, why: '' }, 'oiled');
+	await putBack({ of: 'ability', name: 'robot.move(a/b)' }, 'oiled');
 	await takeOut('resource', 'robot', 'leaks');
 	await acknowledgeAlarm('silent /ur10/state', alarm({ since: 12.5 }));
 	await reportProblem('a/b', 3, ' no bolts ');

@@ -4,9 +4,12 @@
  * A command succeeds or is refused; a refusal carries words for the person. What a command did is never taken from its
  * answer: it shows in the stream.
  */
-import type { Alarm, Mode, OutOfService, Value } from '#lib/contract.ts';
+import type { Alarm, CorrectionPreview, Mode, OutOfService, Value, WayOffer, WhyNot } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
-import { command } from '#lib/rest/request.ts';
+import { command, request, type Answer } from '#lib/rest/request.ts';
+
+/** Milliseconds in which a plan that is asked for is found, or why there is none; the server waits no longer. */
+const PLANNING = 20_000;
 
 /** Changes the mode of execution. Restart mode has a way in and a way out of its own. */
 export function setMode(mode: Exclude<Mode, 'restart'>): Promise<Refusal | null> {
@@ -19,13 +22,45 @@ export function startProduction(): Promise<Refusal | null> {
 }
 
 /** Has the operations wait for a restart. Nothing is started by it. */
-export function enterRestart(): Promise<Refusal | null> {
-	return command('POST', '/api/v1/restart/enter', { body: {} });
+export function enterRestart(reason?: string): Promise<Refusal | null> {
+	return command('POST', '/api/v1/restart/enter', { body: reason === undefined ? {} : { reason } });
 }
 
 /** Leaves restart mode for the paused one; to go on is another act. */
 export function leaveRestart(): Promise<Refusal | null> {
 	return command('POST', '/api/v1/restart/leave', { body: {} });
+}
+
+/** Has what was offered carried out, and nothing else. 409: the station has moved, and it has to be asked for again. */
+export function takeOffer(offer: WayOffer, reason: string): Promise<Refusal | null> {
+	const starts = (offer.errand?.steps ?? []).map((step) => step.ability);
+	const corrections = Object.fromEntries(offer.corrections.map(({ name, then }) => [name, then]));
+	return command('POST', '/api/v1/errands', { body: { offer: offer.id, starts, corrections, reason } });
+}
+
+/** Finds a plan to where the operation begins. Nothing is changed by asking. */
+export function findReset(operation: string): Promise<Answer<WayOffer>> {
+	return request('POST', '/api/v1/errands/reset-preview', { body: { operation }, patience: PLANNING });
+}
+
+/** Finds a plan to where `predicate` holds. 422: it cannot be read. Nothing is changed by asking. */
+export function findGoal(predicate: string): Promise<Answer<WayOffer>> {
+	return request('POST', '/api/v1/errands/goal-preview', { body: { predicate }, patience: PLANNING });
+}
+
+/** Finds out why the operation is not active, or not done. */
+export function whyNotOperation(operation: string): Promise<Answer<WhyNot>> {
+	return request('GET', `/api/v1/why-not/operation/${encodeURIComponent(operation)}`, { patience: PLANNING });
+}
+
+/** Finds out why `predicate` does not hold. 422: it cannot be read. */
+export function whyNotGoal(predicate: string): Promise<Answer<WhyNot>> {
+	return request('POST', '/api/v1/why-not/goal', { body: { predicate }, patience: PLANNING });
+}
+
+/** Finds out what a correction would bring about. Nothing is changed by asking. */
+export function previewCorrection(values: Readonly<Record<string, Value>>): Promise<Answer<CorrectionPreview>> {
+	return request('POST', '/api/v1/corrections/preview', { body: { values }, patience: PLANNING });
 }
 
 /** Starts no further what is being carried out. */
@@ -65,7 +100,7 @@ export function takeOut(of: string, name: string, reason: string): Promise<Refus
 }
 
 /** Puts back into service what was taken out of it. */
-export function putBack({ of, name }: OutOfService, reason: string): Promise<Refusal | null> {
+export function putBack({ of, name }: Pick<OutOfService, 'of' | 'name'>, reason: string): Promise<Refusal | null> {
 	const path = `/api/v1/service/${encodeURIComponent(of)}/${encodeURIComponent(name)}`;
 	return command('PUT', path, { body: { in_service: true, reason } });
 }

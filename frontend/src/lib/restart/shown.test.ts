@@ -1,7 +1,7 @@
 import { describe, expect, test } from 'vitest';
 import type { Operation, StationView } from '#lib/contract.ts';
 import { PLAN, estimate, view } from '#lib/testing/view.ts';
-import { concernsRestart, unconfirmed } from './shown.ts';
+import { concernsRestart, unconfirmed, wantedFor } from './shown.ts';
 
 const active: Operation = {
 	title: 'Tighten',
@@ -34,4 +34,12 @@ test('unconfirmed are the estimates that nobody has seen since', () => {
 	const belief = { writer: 'place', at: 900, evidence: [], unconfirmed_since: 950 };
 	const variables = { b: estimate({ belief }), c: estimate(), 'robot.pose': estimate({ kind: 'measured', belief: null }) };
 	expect(unconfirmed(variables).map(([name]) => name)).toEqual(['b']);
+});
+
+test('a station of which too little is heard is not said to be outside its safe states', () => {
+	const way = { violated: [], threatened: [], differences: [], awaits: [], ticks: null, steps: [], breaks: [], reason: '' };
+	expect(wantedFor(view({ way_back: { ...way, awaits: ['/ur10/state'] } }))).toEqual(['unsure']);
+	const violated = [{ name: 'never', title: 'Never' }];
+	expect(wantedFor(view({ way_back: { ...way, violated, awaits: ['/ur10/state'] } }))).toEqual(['outside']);
+	expect(wantedFor(view({ way_back: way }))).toEqual(['outside']);
 });

@@ -1,17 +1,59 @@
 /** When a person has to do with a restart at all: as long as the station works by itself, the page does not speak of one. */
-import type { StationView, Value, Variable } from '#lib/contract.ts';
+import { byUrgency } from '#lib/alarm/priority.ts';
+import type { Alarm, StationView, Value, Variable } from '#lib/contract.ts';
+import { openQuestions } from './answers.ts';
+
+/** Why a person is wanted for a restart, the most telling first. */
+export type Wanted =
+	| 'outside'
+	| 'unsure'
+	| 'undecided'
+	| 'questions'
+	| 'unconfirmed'
+	| 'noPlan'
+	| 'alarm'
+	| 'errand'
+	| 'restart'
+	| 'hold'
+	| 'paused';
+
+/** Whether nothing is planned although something is to be done. */
+export function lacksPlan(view: StationView): boolean {
+	return view.plan.status === 'none' && Object.values(view.operations).some((operation) => operation.active);
+}
+
+/** Whether the station may be safe, and what is awaited decides: nothing that is known says that it is not. */
+export function isUnsure({ violated, differences, awaits }: NonNullable<StationView['way_back']>): boolean {
+	return violated.length === 0 && differences.length === 0 && awaits.length > 0;
+}
+
+/** The alarms of what is not as it should be now; what only reminds people, such as of a force, is none of them. */
+export function lastingAlarms({ alarms }: Pick<StationView, 'alarms'>): [string, Alarm][] {
+	return byUrgency(alarms).filter(([, alarm]) => alarm.ended === null && alarm.priority !== 'low');
+}
+
+/** All reasons for which a person is wanted; none while the station works by itself. */
+export function wantedFor(view: StationView): Wanted[] {
+	const way = view.way_back;
+	const reasons: [Wanted, boolean][] = [
+		['outside', way !== null && !isUnsure(way)],
+		['unsure', way !== null && isUnsure(way)],
+		['undecided', Object.keys(view.undecided).length > 0],
+		['questions', openQuestions(view).length > 0],
+		['unconfirmed', view.unconfirmed],
+		['noPlan', lacksPlan(view)],
+		['alarm', lastingAlarms(view).length > 0],
+		['errand', view.errand !== null],
+		['restart', view.mode === 'restart'],
+		['hold', view.mode === 'hold'],
+		['paused', view.mode === 'paused']
+	];
+	return reasons.flatMap(([reason, holds]) => (holds ? [reason] : []));
+}
 
 /** Whether there is anything to say of it. */
 export function concernsRestart(view: StationView): boolean {
-	return (
-		view.mode !== 'automatic' ||
-		view.errand !== null ||
-		view.way_back !== null ||
-		view.questions.length > 0 ||
-		view.unconfirmed ||
-		Object.keys(view.undecided).length > 0 ||
-		(view.plan.status === 'none' && Object.values(view.operations).some((operation) => operation.active))
-	);
+	return wantedFor(view).length > 0;
 }
 
 /** The estimates that nobody has confirmed since they came back from the journal. */

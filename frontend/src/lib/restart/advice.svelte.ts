@@ -1,0 +1,54 @@
+/** The ways back as this page knows them: the last answer, which is kept while another is waited for. */
+import type { AdviceAnswer } from '#lib/contract.ts';
+import type { Refusal } from '#lib/rest/refusal.ts';
+import { request } from '#lib/rest/request.ts';
+import { isDue } from './due.ts';
+
+/** Milliseconds in which the server answers, also where it has given itself more time. */
+const PATIENCE = 12_000;
+
+export class Advice {
+	answer = $state.raw<AdviceAnswer | null>(null);
+	/** Why the last question was not answered; null when it was. */
+	refusal = $state.raw<Refusal | null>(null);
+	pending = $state(false);
+	/** A person is at one of the offers: they stay as they are. */
+	held = $state(false);
+	#times = 0;
+	#last = -Infinity;
+
+	/** Keeps the offers as they are, for as long as a person is at one of them. */
+	hold(): void {
+		this.held = true;
+	}
+
+	/** Lets go of them. What was taken is seen before anything is asked again. */
+	release(): void {
+		this.held = false;
+		this.#last = performance.now();
+	}
+
+	/** Asks if it is time to, for a station whose state is at `revision`. */
+	consider(revision: number): void {
+		const since = performance.now() - this.#last;
+		const asked = { answer: this.answer, refused: this.refusal !== null, times: this.#times, since };
+		if (!this.held && isDue(asked, revision)) void this.look();
+	}
+
+	/** Asks, unless a question is under way. */
+	async look(): Promise<void> {
+		if (this.pending) return;
+		this.pending = true;
+		const answer = await request<AdviceAnswer>('GET', '/api/v1/advice', { patience: PATIENCE });
+		this.pending = false;
+		this.#last = performance.now();
+		if (!answer.ok) {
+			this.refusal = answer.refusal;
+			return;
+		}
+		this.refusal = null;
+		this.#times = answer.value.revision === this.answer?.revision ? this.#times + 1 : 1;
+		// Whoever opened a dialog meanwhile reads on undisturbed; it is asked again after that.
+		if (!this.held) this.answer = answer.value;
+	}
+}

@@ -1,0 +1,20 @@
+import { expect, test } from 'vitest';
+import { alarm, estimate, view } from '#lib/testing/view.ts';
+import { answeredQuestions, openQuestions } from './answers.ts';
+
+const question = { variable: 'b', believed: 'placed', possible: ['empty'], because: [] };
+
+function asked(at: number): ReturnType<typeof view> {
+	const belief = { writer: 'Eva', at, evidence: [], unconfirmed_since: null };
+	return view({
+		questions: [question],
+		alarms: { contradiction: alarm({ since: 950 }) },
+		variables: { b: estimate({ belief }) }
+	});
+}
+
+test('a question is open until somebody has said something since it came up', () => {
+	expect([openQuestions(asked(900)).length, answeredQuestions(asked(900)).length]).toEqual([1, 0]);
+	expect([openQuestions(asked(960)).length, answeredQuestions(asked(960)).length]).toEqual([0, 1]);
+	expect(openQuestions(view({ questions: [question] }))).toEqual([question]);
+});

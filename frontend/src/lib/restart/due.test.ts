@@ -1,0 +1,36 @@
+import fc from 'fast-check';
+import { describe, expect, test } from 'vitest';
+import type { AdviceAnswer } from '#lib/contract.ts';
+import { offer } from '#lib/testing/offer.ts';
+import { isDue, type Asked } from './due.ts';
+
+const answer: AdviceAnswer = { revision: 7, offers: [offer()], reasons: null, complete: true, seconds: 0.1 };
+const asked = (over: Partial<Asked> = {}): Asked => ({ answer, refused: false, times: 1, since: 3000, ...over });
+
+describe('ways back are asked for', () => {
+	test('at first, and as soon as the state has moved', () => {
+		expect(isDue(asked({ answer: null, since: Infinity }), 7)).toBe(true);
+		expect(isDue(asked(), 8)).toBe(true);
+		expect(isDue(asked(), 7)).toBe(false);
+	});
+
+	test('again where no answer came', () => expect(isDue(asked({ refused: true }), 7)).toBe(true));
+
+	test('now and then in the same state, since time alone can tell of a device that does nothing more', () => {
+		expect(isDue(asked({ since: 11_000 }), 7)).toBe(true);
+	});
+
+	test('a few times more where the time was too short', () => {
+		const short = { ...answer, offers: [], complete: false };
+		expect(isDue(asked({ answer: short, times: 1 }), 7)).toBe(true);
+		expect(isDue(asked({ answer: short, times: 3, since: 60_000 }), 7)).toBe(false);
+	});
+
+	test('never sooner than 2 s after the last answer', () => {
+		fc.assert(
+			fc.property(fc.nat(1999), fc.boolean(), fc.nat(), fc.nat(), (since, refused, times, revision) => {
+				expect(isDue(asked({ since, refused, times }), revision)).toBe(false);
+			})
+		);
+	});
+});

@@ -1,0 +1,33 @@
+/** When ways back are asked for again: as soon as the station has moved, and calmly. */
+import type { AdviceAnswer } from '#lib/contract.ts';
+
+/** What is known of the last question. */
+export interface Asked {
+	readonly answer: AdviceAnswer | null;
+	/** The last question was not answered. */
+	readonly refused: boolean;
+	/** Answers in a row for the same state. */
+	readonly times: number;
+	/** Milliseconds since the last answer, or since it did not come. */
+	readonly since: number;
+}
+
+/** Milliseconds between an answer and the next question, at least. */
+const CALM = 2000;
+/** Milliseconds after which the same state is asked about again: a device that does nothing more is noticed by time alone. */
+const SAME_STATE = 10_000;
+/** How often more time is asked for where there was too little. */
+const PATIENCE = 3;
+
+/** Nothing was found because the time was over. */
+export function ranOut(answer: AdviceAnswer): boolean {
+	return answer.offers.length === 0 && !answer.complete;
+}
+
+/** Whether to ask now, of a station whose state is at `revision`. */
+export function isDue({ answer, refused, times, since }: Asked, revision: number): boolean {
+	if (since < CALM) return false;
+	if (answer === null || refused || answer.revision !== revision) return true;
+	// Asked again in the same state it has more time; what it said for good costs it nothing to say again.
+	return ranOut(answer) ? times < PATIENCE : since >= SAME_STATE;
+}

@@ -1,0 +1,75 @@
+import { describe, expect, test } from 'vitest';
+import type { AdviceAnswer, StationView, WayOffer } from '#lib/contract.ts';
+import { offer, preview } from '#lib/testing/offer.ts';
+import { alarm, view } from '#lib/testing/view.ts';
+import { nextAct, type Next, type Standing } from './next.ts';
+
+const QUESTION = { variable: 'b', believed: 'placed', possible: ['empty'], because: [] };
+const UNDECIDED = { 'robot.go': { value: true, reacts: [], quiet: [false] } };
+const ERRAND = { kind: 'reset', title: '', by: 'Eva', why: '', since: 0, ends: '' } as const;
+const HANDS = offer({ kind: 'physical', online: ['robot'] });
+const TAKE = offer({ kind: 'restart', errand: preview('back') });
+const WAY_BACK = { violated: [], threatened: [], differences: [], awaits: [], ticks: null, steps: [], breaks: [], reason: '' };
+
+function advice(...offers: WayOffer[]): AdviceAnswer {
+	return { revision: 0, offers, reasons: null, complete: true, seconds: 0 };
+}
+
+function next(over: Partial<StationView>, answer: AdviceAnswer | null = null, who: Partial<Standing> = {}): Next {
+	return nextAct(view(over), { live: true, acts: true, mine: true, advice: answer, ...who });
+}
+
+describe('what a person does next', () => {
+	test('is nothing while the station works by itself', () => expect(next({})).toBe('nothing'));
+
+	test('waits for a live view, a role, and control', () => {
+		expect(next({ mode: 'hold' }, null, { live: false })).toBe('live');
+		expect(next({ mode: 'hold' }, null, { acts: false })).toBe('viewer');
+		expect(next({ mode: 'hold' }, null, { mine: false })).toBe('control');
+	});
+
+	test('after a start: decide, answer, then start production', () => {
+		const waiting = { production: 'waiting', unconfirmed: true } as const;
+		expect(next({ ...waiting, undecided: UNDECIDED })).toBe('decide');
+		expect(next({ ...waiting, questions: [QUESTION] })).toBe('answer');
+		expect(next(waiting)).toBe('answer');
+		expect(next({ production: 'waiting' })).toBe('start');
+	});
+
+	test('at work: confirm what came back, and into restart mode where there is no plan', () => {
+		expect(next({ unconfirmed: true })).toBe('answer');
+		expect(next({ way_back: WAY_BACK })).toBe('enter');
+	});
+
+	test('is never nothing while an alarm lasts, and what it reminds of is none', () => {
+		const late = { late: alarm() };
+		expect(next({ alarms: late })).toBe('looking');
+		expect(next({ alarms: late }, advice(HANDS))).toBe('physical');
+		expect(next({ alarms: late }, advice(TAKE))).toBe('enter');
+		expect(next({ alarms: late }, advice(offer()))).toBe('look');
+		expect(next({ alarms: { force: alarm({ priority: 'low' }) } })).toBe('nothing');
+		expect(next({ alarms: { over: alarm({ ended: 995 }) } })).toBe('nothing');
+	});
+
+	test('held: into restart mode, unless the station can go on as it is', () => {
+		expect(next({ mode: 'hold' })).toBe('looking');
+		expect(next({ mode: 'hold' }, advice(offer()))).toBe('continue');
+		expect(next({ mode: 'hold' }, advice(TAKE))).toBe('enter');
+		expect(next({ mode: 'hold', way_back: WAY_BACK }, advice(offer()))).toBe('enter');
+		expect(next({ mode: 'paused', questions: [QUESTION] })).toBe('enter');
+	});
+
+	test('in restart mode: answer, take what is offered, and leave when nothing is left to do', () => {
+		const inside = { mode: 'restart' } as const;
+		expect(next({ ...inside, questions: [QUESTION] }, advice(offer()))).toBe('answer');
+		expect(next(inside, advice(TAKE, offer()))).toBe('take');
+		expect(next(inside, advice(HANDS))).toBe('physical');
+		expect(next(inside, advice())).toBe('stuck');
+		expect(next(inside, advice(offer()))).toBe('leave');
+		expect(next({ ...inside, errand: ERRAND }, advice(offer()))).toBe('errand');
+	});
+
+	test('is never told from ways back for another state', () => {
+		expect(next({ mode: 'restart', revision: 1 }, advice(offer()))).toBe('looking');
+	});
+});

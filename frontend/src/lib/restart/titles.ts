@@ -1,0 +1,16 @@
+/** What abilities, operations and resources are called, for those of the station that are known. */
+import type { StationView } from '#lib/contract.ts';
+
+type Known = Pick<StationView, 'abilities' | 'operations' | 'resources'> | null;
+
+export function abilityTitles(view: Known, names: readonly string[]): string[] {
+	return names.map((name) => view?.abilities[name]?.title ?? name);
+}
+
+export function operationTitles(view: Known, names: readonly string[]): string[] {
+	return names.map((name) => view?.operations[name]?.title ?? name);
+}
+
+export function resourceTitle(view: Known, name: string): string {
+	return view?.resources[name]?.title ?? name;
+}

@@ -1,0 +1,37 @@
+/** Offers of ways back for tests, with what a test is about put in. */
+import type { PlanPreview, WayOffer } from '#lib/contract.ts';
+
+/** A plan of so many starts of the robot, one in each tick. */
+export function preview(...abilities: string[]): PlanPreview {
+	const steps = abilities.map((ability, tick) => {
+		return { tick, ability, title: ability, resource: 'robot', human: false, restart: false };
+	});
+	return { ticks: abilities.length, steps, minimal_ticks: true, minimal_starts: true };
+}
+
+export function offer(rest: Partial<WayOffer> = {}): WayOffer {
+	return {
+		id: 'life-1',
+		revision: 7,
+		kind: 'replan',
+		title: 'Go on as it is',
+		physical: [],
+		online: [],
+		in_service: [],
+		assumed: [],
+		corrections: [],
+		errand: null,
+		ends: null,
+		operation: null,
+		needs_restart: false,
+		unsupervised: false,
+		at_rest: false,
+		breaks: [],
+		then: preview('move'),
+		goals: ['tighten'],
+		left_out: [],
+		effort: { cost: 1, corrections: 0, physical: 0, returns: 0, starts: 0, seconds: 1 },
+		obstacle: null,
+		...rest
+	};
+}
