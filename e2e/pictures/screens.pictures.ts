@@ -19,7 +19,7 @@ async function take(page: Page, name: string): Promise<void> {
 		for (const [width, height] of SCREENS) {
 			await page.setViewportSize({ width, height });
 			await page.waitForTimeout(300);
-			await page.screenshot({ path: join(FOLDER, `${name}-${width}-${colorScheme}.jpg`), type: 'jpeg', quality: 70 });
+			await page.screenshot({ path: join(FOLDER, `${name}-${width}-${colorScheme}.png`) });
 		}
 	}
 	await page.emulateMedia({ colorScheme: 'light' });
@@ -61,6 +61,8 @@ test('all screens', async ({ station, operate, watch, browse }) => {
 	await station.byHand('robot.pose := unknown');
 	await operate.goto(`${station.url}/restart`);
 	await operate.getByRole('button', { name: 'Enter restart mode' }).click();
+	await operate.getByRole('dialog').getByLabel('Reason').fill('It was pushed');
+	await operate.getByRole('dialog').getByRole('button', { name: 'Enter restart mode' }).click();
 	await operate.locator('[data-offer]').first().waitFor({ timeout: 30_000 });
 	await take(operate, 'restart');
 
