@@ -1,7 +1,6 @@
 /** A record of the run in words: what happened, on what, by whom and why. */
 import { say } from '#lib/text/text.svelte.ts';
 import { plain, valueText } from '#lib/wording/values.ts';
-import { MODES } from '#lib/wording/station.ts';
 import type { Names } from './names.ts';
 
 export interface Told {
@@ -171,7 +170,8 @@ export function anyValue(value: unknown): string {
 
 export function modeText(mode: unknown): string {
 	const name = textOf(mode);
-	return Object.hasOwn(MODES, name) ? MODES[name as keyof typeof MODES] : name;
+	const names = say().header.mode;
+	return Object.hasOwn(names, name) ? names[name as keyof typeof names] : name;
 }
 
 function list(all: readonly string[]): string {

@@ -5,7 +5,6 @@
  * `OLD_AFTER` is old, whatever the reason; the reasons that are known sooner (connection closed, controller lost, a message missing) count at
  * once.
  */
-import { say } from '#lib/text/text.svelte.ts';
 import { ageOf, type Hearing } from './hearing.ts';
 import type { Stream } from './receive.ts';
 
@@ -32,22 +31,3 @@ export function judge(stream: Told, hearing: Hearing, open: boolean, now: number
 	if (age > OLD_AFTER) return { live: false, age, cause: 'silent' };
 	return { live: true, age };
 }
-
-/** Why a view is old, as a person says it in the language of the page. */
-export const CAUSES: Readonly<Record<Cause, string>> = {
-	get connecting() {
-		return say().header.causes.connecting;
-	},
-	get closed() {
-		return say().header.causes.closed;
-	},
-	get controller() {
-		return say().header.causes.controller;
-	},
-	get gap() {
-		return say().header.causes.gap;
-	},
-	get silent() {
-		return say().header.causes.silent;
-	}
-};

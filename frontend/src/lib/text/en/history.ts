@@ -1,6 +1,6 @@
-/** History, and the journal of what people did. */
-const count = (n: number, one: string, many = `${one}s`): string => `${n} ${n === 1 ? one : many}`;
+import { count } from '../count.ts';
 
+/** History, and the journal of what people did. */
 export const history = {
 	about: 'What happened at the station, and what people did. Any moment of it can be looked at again; nothing of it can be changed.',
 	toJournal: 'All that people did, also with accounts, keys and watches, is in the Journal.',
@@ -98,7 +98,7 @@ export const history = {
 		alarm: (event: string): string => `Alarm ${event}`,
 		aside: 'Alarms set aside written down',
 		beliefs: 'Estimates written down',
-		starts: (n: number): string => count(n, 'start'),
+		starts: (n: number): string => count(n, 'start', 'starts'),
 		noPlan: 'no plan',
 		on: 'on',
 		off: 'off',
@@ -180,7 +180,7 @@ export const history = {
 		go: 'Simulate',
 		going: 'Simulating',
 		done: (seconds: number, records: number): string =>
-			`${count(records, 'record')} in ${seconds.toFixed(0)} s of simulated time`,
+			`${count(records, 'record', 'records')} in ${seconds.toFixed(0)} s of simulated time`,
 		cut: 'Only the first of them are here.',
 		caption: 'What would have happened, in order',
 		end: 'Then it would be',

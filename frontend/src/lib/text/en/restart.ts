@@ -1,16 +1,8 @@
-/** Restart. */
-const count = (n: number, one: string, many = `${one}s`): string => `${n} ${n === 1 ? one : many}`;
+import { count } from '../count.ts';
 
+/** Restart. */
 export const restart = {
 	about: 'From what happened back to production, from top to bottom. Each act is one of its own: none implies another.',
-	modes: { automatic: 'Automatic', paused: 'Paused', hold: 'Hold', restart: 'Restart' },
-	meaning: {
-		automatic: 'Operations are carried out.',
-		paused: 'What runs may finish; nothing is started.',
-		hold: 'Nothing is started, and what ran was called off where that is possible.',
-		restart: 'Operations wait. Nothing is started but what a person has looked at and taken.'
-	},
-	notStarted: 'Nothing is sent to the devices until production is started.',
 
 	/** The short notice on Operate. */
 	notice: {
@@ -21,8 +13,8 @@ export const restart = {
 			restart: 'The station is in restart mode.',
 			hold: 'The station is held.',
 			paused: 'The station is paused.',
-			undecided: (n: number): string => `${count(n, 'output')} from before the start ${n === 1 ? 'waits' : 'wait'} for a decision.`,
-			questions: (n: number): string => `${count(n, 'question')}: what is believed does not fit what is measured.`,
+			undecided: (n: number): string => `${count(n, 'output', 'outputs')} from before the start ${n === 1 ? 'waits' : 'wait'} for a decision.`,
+			questions: (n: number): string => `${count(n, 'question', 'questions')}: what is believed does not fit what is measured.`,
 			unconfirmed: 'Nobody has confirmed yet what the station believes since it started.',
 			outside: 'The station is outside its safe states.',
 			unsure: 'Whether the station is safe is not known.',
@@ -93,7 +85,7 @@ export const restart = {
 		why: 'The station believes so, but it does not go together with what is measured.',
 		so: (value: string): string => `It is so: ${value}`,
 		other: (value: string): string => `It is ${value}`,
-		more: (n: number): string => `Then ${count(n, 'more question')}. With each answer there may be fewer.`,
+		more: (n: number): string => `Then ${count(n, 'more question', 'more questions')}. With each answer there may be fewer.`,
 		answered: (name: string, value: string, by: string, at: string): string =>
 			`${name} is ${value}, ${by} said at ${at}. What is measured does not fit that: something has been done by hand, or is measured wrongly.`,
 		by: (writer: string, at: string): string => `by ${writer}, ${at}`,
@@ -171,9 +163,9 @@ export const restart = {
 			'way-back': 'back to safety',
 			goal: 'a goal by hand'
 		},
-		starts: (n: number): string => count(n, 'start'),
+		starts: (n: number): string => count(n, 'start', 'starts'),
 		seconds: (n: number): string => `≈ ${n} s`,
-		changes: (n: number): string => count(n, 'change'),
+		changes: (n: number): string => count(n, 'change', 'changes'),
 		acts: (n: number): string => count(n, 'act by hand', 'acts by hand'),
 		returns: (n: number): string => `${n} brought back`,
 		rest: 'ends at rest',
@@ -209,7 +201,7 @@ export const restart = {
 		thenPlain: 'Then, in automatic mode',
 		unknown: 'What the station does afterwards was not looked for, or not found.',
 		none: 'Nothing has to be started for it.',
-		length: (ticks: number, starts: number): string => `${count(ticks, 'tick')}, ${count(starts, 'start')}`,
+		length: (ticks: number, starts: number): string => `${count(ticks, 'tick', 'ticks')}, ${count(starts, 'start', 'starts')}`,
 		minimal: 'the fewest possible',
 		tick: 'Tick',
 		resource: 'Resource',
@@ -224,7 +216,7 @@ export const restart = {
 		title: (title: string): string => `Take: ${title}?`,
 		only: 'Nothing but this is carried out. Restart mode stays on.',
 		onlyPaused: 'Nothing but this is carried out. The station stays paused.',
-		starts: (n: number): string => `${count(n, 'start')}, in this order:`,
+		starts: (n: number): string => `${count(n, 'start', 'starts')}, in this order:`,
 		noStarts: 'No start: it only waits until the devices have done what they do.',
 		onlyCorrects: 'No start. Only what the station believes is changed.',
 		until: 'It ends when',

@@ -1,6 +1,6 @@
-/** State, and corrections of it. */
-const count = (n: number, one: string, many: string): string => `${n} ${n === 1 ? one : many}`;
+import { count } from '../count.ts';
 
+/** State, and corrections of it. */
 export const state = {
 	about: 'Every variable of the station, as it is now. What is estimated can be corrected.',
 	variables: 'Variables',

@@ -1,6 +1,5 @@
+import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
-
-const count = (n: number, one: string, many: string): string => `${n} ${n === 1 ? one : many}`;
 
 export const history: Text['history'] = {
 	about: 'Vad som hänt på stationen och vad människor gjort. Varje ögonblick kan ses på nytt; inget av det kan ändras.',

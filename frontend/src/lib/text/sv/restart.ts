@@ -1,17 +1,8 @@
+import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
-
-const count = (n: number, one: string, many: string): string => `${n} ${n === 1 ? one : many}`;
 
 export const restart: Text['restart'] = {
 	about: 'Från det som hände tillbaka till produktion, uppifrån och ned. Varje åtgärd är en egen: ingen medför någon annan.',
-	modes: { automatic: 'Automatik', paused: 'Pausad', hold: 'Stoppad', restart: 'Omstart' },
-	meaning: {
-		automatic: 'Operationerna utförs.',
-		paused: 'Det som pågår får bli klart; inget startas.',
-		hold: 'Inget startas, och det som pågick har avbrutits där det går.',
-		restart: 'Operationerna väntar. Inget startas utom det som någon har granskat och valt.'
-	},
-	notStarted: 'Inget skickas till enheterna förrän produktionen startas.',
 
 	notice: {
 		title: 'Omstart',
