@@ -16,7 +16,7 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.web.settings import Settings
 
 from .example_view import example_view
-from .running import Controller, Server
+from .running import Controller, Server, until
 
 REPOSITORY = Path(__file__).parents[3]
 TASK = example_view().tasks["7"].model_copy(update={"revision": 1})
@@ -61,6 +61,7 @@ def test_what_the_readme_types_reads_the_tasks_acknowledges_one_and_pauses(
     server: Server, controller: Controller, tmp_path: Path
 ) -> None:
     controller.show(example_view(tasks={"7": TASK}))
+    until(lambda: server.app.state.controller.view.tasks["7"].revision == TASK.revision)
     lines = snippet("README.md", "session/demonstration").replace("http://127.0.0.1:8000", server.address)
     printed = typed(lines.replace("<id>/", "7/"), tmp_path)
     assert '"kind":"demonstration"' in printed

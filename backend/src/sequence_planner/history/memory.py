@@ -17,7 +17,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.control.conduct import Conduct
 from sequence_planner.control.execution import Execution
-from sequence_planner.control.live_plan import Question
+from sequence_planner.control.live_plan import Question, Replacement
 from sequence_planner.control.pursued import Pursued
 from sequence_planner.control.start_order import Step
 from sequence_planner.control.view import PlanStatus
@@ -44,6 +44,7 @@ PLAN: Final[Table] = {
     "reason": str,
     "answer": PlanAnswer | None,
     "replanned": int,
+    "replacement": Replacement | None,
     "diagnosis": Diagnosis | None,
     "_asked": Question | None,
     "_asked_better": Question | None,
