@@ -1,6 +1,6 @@
 import { readFile } from 'node:fs/promises';
 import { examine } from '../station/barriers.ts';
-import { acknowledge } from '../station/seen.ts';
+import { acknowledge, restsOnPerson } from '../station/seen.ts';
 import { VERA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
@@ -87,7 +87,8 @@ test('the station is seen as it was, step by step, and taken along', async ({ op
 	});
 });
 
-test('a link leads to a moment, and nobody is kept from it', async ({ operate, station }) => {
+test('a link leads to a moment, and nobody is kept from it', async ({ operate, watch, station }) => {
+	await restsOnPerson(operate, watch); // before that nothing may be recorded
 	await operate.goto(`${station.url}/history?record=3`);
 	await expect(operate.getByTestId('past')).toHaveAttribute('data-record', '3');
 	await expect(operate.locator('[data-then]')).not.toHaveCount(0, PREPARED);

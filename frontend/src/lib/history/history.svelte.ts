@@ -3,6 +3,7 @@ import type { HistoryAnswer, Moment, Place, TimeLine } from '#lib/contract.ts';
 import { actsOf, type Act } from '#lib/journal/acts.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
+import { say } from '#lib/text/text.svelte.ts';
 import { actsPage } from './records.svelte.ts';
 import { USUAL, showing, within, type Window } from './window.ts';
 
@@ -16,6 +17,12 @@ interface Wish {
 	readonly number: number | null;
 	readonly time: number | null;
 	readonly act: Act | null;
+}
+
+/** Nothing is recorded yet of what was asked for, as while a station begins. */
+function notThere(): Refusal {
+	const { title, detail } = say().history.notThere;
+	return { title, detail, status: null, kind: null, retryAfter: null };
 }
 
 function placeOf(answer: HistoryAnswer | Place): Place | null {
@@ -124,8 +131,8 @@ export class History {
 			number === null
 				? await request<Place>('GET', `/api/v1/history/at?time=${time}`, { patience: SOON })
 				: await request<HistoryAnswer>('GET', `/api/v1/history?before=${number + 1}&limit=1`, { patience: SOON });
-		this.choiceRefusal = answer.ok ? null : answer.refusal;
 		const place = answer.ok ? placeOf(answer.value) : null;
+		this.choiceRefusal = answer.ok ? (place === null ? notThere() : null) : answer.refusal;
 		if (place === null || this.#wish === null) return;
 		this.act = act;
 		this.#stand(place);

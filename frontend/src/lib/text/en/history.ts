@@ -5,6 +5,7 @@ export const history = {
 	about: 'What happened at the station, and what people did. Any moment of it can be looked at again; nothing of it can be changed.',
 	toJournal: 'All that people did, also with accounts, keys and watches, is in the Journal.',
 	reading: 'Reading',
+	notThere: { title: 'Nothing is there yet', detail: 'No record is as old as that. Choose another moment, or open the link again in a moment.' },
 	line: {
 		title: 'Time line',
 		slider: 'Moment that is shown',

@@ -4,6 +4,7 @@ import type { Text } from '../text.svelte.ts';
 export const history: Text['history'] = {
 	about: 'Vad som hänt på stationen och vad människor gjort. Varje ögonblick kan ses på nytt; inget av det kan ändras.',
 	toJournal: 'Allt som människor gjort, även med konton, nycklar och klockor, finns i Journalen.',
+	notThere: { title: 'Där finns inget än', detail: 'Ingen post är så gammal. Välj ett annat ögonblick, eller öppna länken igen om en stund.' },
 	reading: 'Läser',
 	line: {
 		title: 'Tidslinje',
