@@ -170,6 +170,13 @@ async function believe({ restart, station }: Place, name: string, value: string)
 	await send('restart/leave', {});
 }
 
+/** Somebody takes a resource out of service, or puts it back. */
+async function serve({ restart, station }: Place, resource: string, inService: boolean): Promise<void> {
+	const data = { in_service: inService, reason: 'it squeaks' };
+	const answer = await restart.request.put(`${station.url}/api/v1/service/resource/${resource}`, { data });
+	expect(answer.ok(), await answer.text()).toBe(true);
+}
+
 /** The bolt pair that a person is asked to place. */
 async function requested({ operate, watch }: Place): Promise<string> {
 	const pair = variable(operate, 'operator.requested_pair');
@@ -242,25 +249,10 @@ const FAULTS: readonly Fault[] = [
 		asks: []
 	},
 	{
-		name: 'the robot is pushed between its poses',
-		strike: async ({ station, restart }) => {
-			await restart.getByRole('button', { name: 'Hold', exact: true }).click();
-			await station.fault('robot slow 10000');
-			await station.byHand('robot.pose := unknown');
-		},
-		alarm: /./,
-		hands: clear,
-		asks: []
-	},
-	{
 		name: 'a device is out of service',
-		strike: async ({ restart, station }) => {
-			const data = { in_service: false, reason: 'it squeaks' };
-			const answer = await restart.request.put(`${station.url}/api/v1/service/resource/robot`, { data });
-			expect(answer.ok(), await answer.text()).toBe(true);
-		},
-		alarm: /./,
-		hands: clear,
+		strike: (at) => serve(at, 'robot', false),
+		alarm: null,
+		hands: (at) => ({ mend: () => serve(at, 'robot', true) }),
 		asks: []
 	},
 	{
