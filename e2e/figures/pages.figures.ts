@@ -119,7 +119,7 @@ test.afterAll(() => {
 		'',
 		`Made by \`make figures\` at commit ${commit} on ${cpus().length} cores, beside all processes of the station; a page is watched for ${MINUTES} minutes.`,
 		'',
-		'Scripts that a page loads, compressed with gzip:',
+		'Scripts that a page loads, compressed as the server sends them:',
 		'',
 		'| page | scripts |',
 		'|---|---|',

@@ -1,16 +1,15 @@
 /** What a page brings over the wire. */
-import type { Page, Response } from '@playwright/test';
-import { gzipSync } from 'node:zlib';
+import type { Page, Request } from '@playwright/test';
 
-/** Kilobytes (1000 bytes) of the scripts that `page` loads while `visit` lasts, compressed as a server would with gzip. */
+/** Kilobytes (1000 bytes) of the scripts that `page` loads while `visit` lasts, as the server sends them: compressed. */
 export async function scriptsOf(page: Page, visit: () => Promise<unknown>): Promise<number> {
-	const found: Response[] = [];
-	const heard = (response: Response): void => {
-		if (response.request().resourceType() === 'script') found.push(response);
+	const found: Request[] = [];
+	const heard = (request: Request): void => {
+		if (request.resourceType() === 'script') found.push(request);
 	};
-	page.on('response', heard);
+	page.on('requestfinished', heard);
 	await visit();
-	page.off('response', heard);
-	const bodies = await Promise.all(found.map((response) => response.body()));
-	return bodies.reduce((sum, body) => sum + gzipSync(body, { level: 9 }).length, 0) / 1000;
+	page.off('requestfinished', heard);
+	const sizes = await Promise.all(found.map((request) => request.sizes()));
+	return sizes.reduce((sum, { responseBodySize }) => sum + responseBodySize, 0) / 1000;
 }
