@@ -22,6 +22,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.offer_view import OfferView
 from sequence_planner.control.offers import Offers
+from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_commands import GivenValue, TakeErrand
 from sequence_planner.control.view import Mode
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
@@ -33,7 +34,7 @@ PLACES = EnumerationType(("home", "work"))
 RESTING = "at == target and not jammed"
 
 
-def made() -> Execution:
+def made(precondition: str = "loaded") -> Execution:
     """A cart that carries things from home to work; when it is jammed, only a rescue moves it."""
     cart = automaton(
         {
@@ -54,9 +55,10 @@ def made() -> Execution:
         },
         forbidden={"too much": "loaded and delivered"},
     )
-    loaded, delivered = predicate_of(cart, "loaded"), predicate_of(cart, "delivered")
-    operation = Operation("deliver", "Deliver", loaded, delivered)
-    cart = replace(cart, operations={"deliver": operation})
+    begins, delivered = predicate_of(cart, precondition), predicate_of(cart, "delivered")
+    operation = Operation("deliver", "Deliver", begins, delivered)
+    at = replace(cart.variables["at"], resource="station")
+    cart = replace(cart, operations={"deliver": operation}, variables={**cart.variables, "at": at})
     return Execution(cart, synthesise(cart))
 
 
@@ -119,8 +121,8 @@ async def refused_later(slug: str, asking: Awaitable[object], status: int = 409)
 
 
 @asynccontextmanager
-async def desk() -> AsyncIterator[Desk]:
-    execution = made()
+async def desk(precondition: str = "loaded") -> AsyncIterator[Desk]:
+    execution = made(precondition)
     adviser = Adviser(execution.automaton, execution.supervisor)
     try:
         yield Desk(adviser, execution)
@@ -280,5 +282,22 @@ def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_t
             replan = (await there.offers.advice()).offers[0]
             assert replan.kind == "replan"
             assert replan.obstacle == refused("nothing-to-take", lambda: there.take(replan))
+
+    asyncio.run(scenario())
+
+
+def test_a_resource_comes_back_where_nobody_knows_whether_an_operation_can_begin() -> None:
+    async def scenario() -> None:
+        async with desk("loaded and at == work") as there:
+            execution = there.execution
+            execution.start_production()
+            there.tick("work")
+            there.correct(loaded=True)
+            execution.tick({"at": None}, there.now, silent=frozenset({"station"}))
+            assert not execution.active
+            (offer,) = (await there.offers.advice()).offers
+            assert (offer.kind, offer.online, offer.goals) == ("physical", ["station"], ["deliver"])
+            execution.set_service(ServiceKind.OPERATION, "deliver", False, "Eva", "not today", there.now)
+            assert [offer.kind for offer in (await there.offers.advice()).offers] == ["replan"]
 
     asyncio.run(scenario())

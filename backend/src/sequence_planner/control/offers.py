@@ -100,6 +100,7 @@ class Offers:
             last=self._last_known.values,
             impossible=self._impossible(),
             fixed=frozenset(execution.conduct.forces),
+            waiting=_waiting_goals(execution),
         )
         if self._asked is None or self._asked.of != (revision, request) or self._asked.answer.done():
             of = revision, request
@@ -231,6 +232,14 @@ def hopeful_goals(execution: Execution) -> Goals:
     if execution.production is not Production.STARTED:
         return goals_of(execution.automaton, sorted(execution.active))
     return execution.pursued.of(execution.active & execution.pursued.hopeful)
+
+
+def _waiting_goals(execution: Execution) -> Goals:
+    """The goals of operations that are not active, and will be once their preconditions hold."""
+    if execution.production is not Production.STARTED:
+        return ()
+    idle = execution.active | execution.conduct.idle_operations
+    return goals_of(execution.automaton, sorted(execution.automaton.operations.keys() - idle))
 
 
 def violated_goals(execution: Execution) -> Goals:

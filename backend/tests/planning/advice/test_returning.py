@@ -7,6 +7,7 @@ from pathlib import Path
 from sequence_planner.automaton.structure import Kind
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import replace
 from sequence_planner.planning.advice.advisor import Advisor
 from sequence_planner.planning.advice.offer import OfferKind
 from sequence_planner.planning.advice.request import AdviceRequest
@@ -57,3 +58,42 @@ def test_a_robot_in_whose_place_somebody_works_comes_back_for_what_only_it_can_d
         "robot.previous_pose": "HomeJOINTPose",
         "robot.moving": False,
     }
+
+
+def test_where_no_operation_is_active_because_values_are_unknown_their_resource_comes_back() -> None:
+    """A tight pair was loosened and the planning scene is away: whether it can be tightened is not known."""
+    station = prepare_station(MODEL).automaton
+    supervisor = synthesise(station)
+    bolts = [name for name in station.names(Kind.ESTIMATED) if name.startswith("bolts[")]
+    state: dict[str, Value | None] = {
+        **initial_state(station),
+        **dict.fromkeys(bolts, "tightened"),
+        "bolts[AtBoltPair1TCPPose]": "placed",
+        "ladder_frame": "on_engine",
+        "engine.engine_in_place": True,
+        "engine.tag_is_read": True,
+        "end_effector.tool": "ATLASTOOL",
+        "end_effector.rsp_is_locked": True,
+        "nutrunner.activate_lift": False,
+        "nutrunner.lift_state": "floats",
+        "scene.attached": None,
+        "scene.wanted": "ATLASTOOL",
+    }
+    away = Circumstances(offline=frozenset({"scene"}))
+    request = AdviceRequest(
+        synchronise(station, state),
+        (),
+        away,
+        last={"scene.attached": "ATLASTOOL"},
+        waiting=goals_of(station, sorted(station.operations)),
+        deadline=60,
+    )
+    (offer,) = Advisor(station, supervisor).advise(request).offers
+    assert (offer.kind, offer.online, offer.corrections) == (OfferKind.PHYSICAL, ("scene",), ())
+    assert offer.goals == ("tighten_bolt_pair(AtBoltPair1TCPPose)",)
+    goals = goals_of(station, offer.goals)
+    carried_out(Stopped(station, supervisor, request.state, goals, away), offer)
+    alone = replace(request, circumstances=Circumstances(), state=synchronise(station, {**state, **request.last}))
+    assert [offer.kind for offer in Advisor(station, supervisor).advise(replace(alone, waiting=())).offers] == [
+        OfferKind.REPLAN
+    ]

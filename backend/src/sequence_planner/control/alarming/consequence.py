@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.view import Mode, PlanStatus, Production
+from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.planning.plan import Circumstances
 from sequence_planner.planning.relaxed.relaxation import reachable
@@ -45,8 +46,10 @@ class Consequences:
         """Of resources that cannot be used: what the plan without them leaves out."""
         execution = self._execution
         begun = execution.production is Production.STARTED
-        if not begun or not execution.active or not execution.conduct.executes_operations:
+        if not begun or not execution.conduct.executes_operations:
             return self.waiting(())
+        if not execution.active:
+            return self._open(resources) or self.waiting(())
         plan, them = execution.plan, "it" if len(resources) == 1 else "them"
         if plan.status is PlanStatus.NONE:
             return f"There is no plan without {them}. {self.waiting(execution.active)}"
@@ -54,6 +57,23 @@ class Consequences:
             return f"A plan without {them} is being looked for. {self.waiting(execution.active)}"
         waiting = self.held_up(resources) | execution.active.intersection(plan.answer.left_out)
         return self.waiting(waiting) if waiting else f"The work goes on without {them}."
+
+    def _open(self, resources: Collection[str]) -> str:
+        """That it is not known whether operations can begin, since values of these resources are not."""
+        execution, automaton = self._execution, self._execution.automaton
+        unknown = {
+            name
+            for name, declared in automaton.variables.items()
+            if declared.resource in resources and execution.state[name] is None
+        }
+        titles = [
+            f"“{operation.title}”"
+            for name, operation in automaton.operations.items()
+            if name not in execution.conduct.idle_operations
+            and evaluate(operation.precondition, execution.state) is None
+            and unknown.intersection(_read(automaton, variables(operation.precondition)))
+        ]
+        return f"Whether {listed(titles)} can begin is not known." if titles else ""
 
     def held_up(self, resources: Collection[str]) -> frozenset[str]:
         """The active operations that what is left of the plan cannot complete while these resources do nothing.

@@ -10,6 +10,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.immutable import replace
+from sequence_planner.planning.advice.beginning import beginnings
 from sequence_planner.planning.advice.changes import Changes
 from sequence_planner.planning.advice.consultation import Consultation, Station
 from sequence_planner.planning.advice.fewest import MOST_OFFERS, FewestActs
@@ -68,8 +69,14 @@ class Advisor:
         consultation = Consultation(station, here, budget.part(_SHARE), request.violated)
 
         def search() -> Iterator[Offer]:
-            yield from consultation.as_it_is()
             aside = only_written(self._automaton, request.stalled)
+            if not here.goals and request.waiting:
+                acts = station.options.acts(here, request.last, request.fixed, aside)
+                begins = [*beginnings(consultation, self._changes, acts, request.waiting, request.impossible)]
+                if begins:  # else nothing would be wrong with waiting for good
+                    yield from begins
+                    return
+            yield from consultation.as_it_is()
             acts = [] if consultation.goes_on else station.options.acts(here, request.last, request.fixed, aside)
             awaited = written_by(self._automaton, request.stalled)
             fewest = FewestActs(consultation, self._changes, request.impossible, self._most, awaited)

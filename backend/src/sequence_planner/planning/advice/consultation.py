@@ -91,7 +91,7 @@ class Consultation:
     def without_some(self) -> Iterator[Offer]:
         """Production goes on as it is, without the goals of lowest priority."""
         if not self.goes_on and self.prover.is_safe(self.here.state):
-            some = self._some(self.here)
+            some = self.some(self.here)
             if some is not None and some[2].goals:
                 yield self.making.offer(OfferKind.REPLAN, self.here, some[0], left_out=some[1])
 
@@ -153,7 +153,7 @@ class Consultation:
     def without_goals(self) -> Iterator[Offer]:
         """Where nothing else helps: errands after which some goals are given up."""
         for dead in self._dead_ends:
-            some = self._some(dead.end)
+            some = self.some(dead.end)
             if some is not None and (some[2].goals or dead.errand.walk.unsupervised or self._was_outside):
                 then, left_out, _ = some
                 yield self.making.offer(dead.kind, dead.end, then, dead.acts, dead.errand, dead.operation, left_out)
@@ -162,7 +162,7 @@ class Consultation:
     def _was_outside(self) -> bool:
         return not self.prover.is_safe(self.here.state)
 
-    def _some(self, here: Situation) -> tuple[Plan, tuple[Goal, ...], Situation] | None:
+    def some(self, here: Situation) -> tuple[Plan, tuple[Goal, ...], Situation] | None:
         """A plan for as many goals as can be, those of lowest priority given up first; which, and for which it is."""
         left_out: list[Goal] = []
         while (least := here.least()) is not None:

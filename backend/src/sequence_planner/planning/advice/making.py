@@ -51,7 +51,7 @@ class Making:
         unsupervised = errand is not None and errand.walk.unsupervised
         ticks = (*(() if plan is None else plan.ticks), *(() if then is None else then.ticks))
         given_up = [*_of(left_out), *(name for name in self._violated if name != operation)]
-        reached = [*_of(self._here.goals), *(name for name in self._violated if name == operation)]
+        reached = [*_of(self._here.goals or end.goals), *(name for name in self._violated if name == operation)]
         effort = Effort(
             changes=len(corrections),
             physical=sum(act.kind is ActKind.DEVICE for act in acts),

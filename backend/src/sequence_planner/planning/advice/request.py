@@ -20,7 +20,8 @@ class AdviceRequest(Immutable):
     The advisor decides itself where restart abilities may start. Effects that are `stalled` should have happened by
     now, and are not counted on as long as nothing changes for them. `last` has what unknown measured variables were
     when they were known last. The formulas of `violated` goals were, and their operations must be reset first. No
-    correction or physical change makes an `impossible` pair of values, and none is one of a `fixed` variable.
+    correction or physical change makes an `impossible` pair of values, and none is one of a `fixed` variable. `waiting`
+    are the goals of operations that become active as soon as their preconditions hold.
     """
 
     state: State
@@ -31,6 +32,7 @@ class AdviceRequest(Immutable):
     impossible: frozenset[Pairing] = frozenset()
     fixed: frozenset[str] = frozenset()
     violated: Goals = ()
+    waiting: Goals = ()
     deadline: float = 1.8
     longest: int = 60
 
