@@ -9,13 +9,14 @@ from pathlib import Path
 from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.checking.connections import Connections
 from sequence_planner.collection import collection_put_off
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.model.flow_documents import ExampleDocument
 from sequence_planner.model.loading import Station, load_station
 from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.pipelines.building import build_pipelines, load_messages
-from sequence_planner.pipelines.examples import PipelineExample
+from sequence_planner.pipelines.examples import PipelineExample, failures, loading_failures
 from sequence_planner.pipelines.flow_building import flow_name
 from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.pipelines.inference import with_inferred_variables
@@ -32,6 +33,15 @@ class ReadyStation:
     registry: MessageRegistry
     ros_1: frozenset[str] = frozenset()
     examples: tuple[PipelineExample, ...] = ()
+
+    @property
+    def connections(self) -> Connections:
+        """What topics, services and actions feed and carry."""
+        return Connections(frozenset(self.pipelines.feeds), self.pipelines.carried)
+
+    def failures(self) -> list[Finding]:
+        """What is wrong with the pipelines as they run: stages that cannot be loaded, and else examples that fail."""
+        return loading_failures(self.pipelines) or failures(self.examples)
 
 
 @collection_put_off()

@@ -659,6 +659,128 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Draft
+         * @description The draft of the model: its files, and the last changes.
+         */
+        get: operations["draft_api_v1_model_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/changes": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Change
+         * @description Carry edits out; the files that are others now.
+         *
+         *     An edit of a part that somebody else has changed meanwhile is refused with `part-changed`, and nothing is done.
+         */
+        post: operations["change_api_v1_model_changes_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Check
+         * @description What is found in the draft, as far as that has come.
+         */
+        get: operations["check_api_v1_model_check_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/files": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Files
+         * @description Files of the draft with what they hold; all of them where no `path` is named.
+         */
+        get: operations["files_api_v1_model_files_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/redo": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Redo
+         * @description Do again what you took back last; the files that are others now.
+         */
+        post: operations["redo_api_v1_model_redo_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/undo": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Undo
+         * @description Take back your last change that is not taken back yet; the files that are others now.
+         */
+        post: operations["undo_api_v1_model_undo_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/operations": {
         parameters: {
             query?: never;
@@ -1574,6 +1696,26 @@ export interface components {
          */
         ActorKind: "person" | "demonstration" | "watch" | "key" | "system";
         /**
+         * AddEntry
+         * @description Add an entry at the end, or beside a sibling. Mappings on the way that are not there yet are made.
+         */
+        AddEntry: {
+            /** After */
+            after?: string | number | null;
+            /** Before */
+            before?: string | number | null;
+            /** File */
+            file: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "add";
+            /** Path */
+            path: (string | number)[];
+            value: components["schemas"]["JsonValue"];
+        };
+        /**
          * AdviceView
          * @description Ways on from the state of `revision`, the least effort first; without any, `reasons` says why as far as known.
          *
@@ -1797,16 +1939,38 @@ export interface components {
             types: string[];
         };
         /**
+         * ChangeBody
+         * @description Edits that are carried out together, or not at all; `title` says what they do, for the list of changes.
+         */
+        ChangeBody: {
+            /** Edits */
+            edits: (components["schemas"]["SetEntry"] | components["schemas"]["AddEntry"] | components["schemas"]["RemoveEntry"] | components["schemas"]["MoveEntry"] | components["schemas"]["WriteText"])[];
+            /** Title */
+            title: string;
+        };
+        /**
+         * ChangeKind
+         * @description What a change is.
+         * @enum {string}
+         */
+        ChangeKind: "edit" | "undo" | "redo" | "taken";
+        /**
          * ChangeView
-         * @description A variable that gets another value; `now` is null where it is unknown.
+         * @description A change of the draft; `of` is the number of the one that it undoes or does again. Time is in seconds since the
+         *     epoch.
          */
         ChangeView: {
-            /** Name */
-            name: string;
-            /** Now */
-            now: boolean | number | string | null;
-            /** Then */
-            then: boolean | number | string;
+            /** By */
+            by: string;
+            kind: components["schemas"]["ChangeKind"];
+            /** Number */
+            number: number;
+            /** Of */
+            of: number | null;
+            /** Time */
+            time: number;
+            /** Title */
+            title: string;
         };
         /**
          * ChangerView
@@ -1824,6 +1988,29 @@ export interface components {
             running: boolean;
             /** Title */
             title: string;
+        };
+        /**
+         * CheckState
+         * @description How far a check has come.
+         * @enum {string}
+         */
+        CheckState: "waiting" | "checking" | "done" | "failed";
+        /**
+         * CheckView
+         * @description What is known of the draft after change `number`; `doing` is what is being looked for, or why nothing is.
+         *
+         *     `findings` of severity error make it unusable; `summary` and `analysis` are null where it is.
+         */
+        CheckView: {
+            analysis: components["schemas"]["AnalysisDocument"] | null;
+            /** Doing */
+            doing: string;
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Number */
+            number: number;
+            state: components["schemas"]["CheckState"];
+            summary: components["schemas"]["SummaryView"] | null;
         };
         /**
          * Checkpoint
@@ -2031,6 +2218,26 @@ export interface components {
             safe: boolean | number | string;
         };
         /**
+         * DraftView
+         * @description The draft after its change `number`: its files by path, and its last changes, newest first.
+         *
+         *     `undo` and `redo` are the titles of what whoever asks could take back, or do again.
+         */
+        DraftView: {
+            /** Changes */
+            changes: components["schemas"]["sequence_planner__workshop__view__ChangeView"][];
+            /** Files */
+            files: {
+                [key: string]: components["schemas"]["FileMark"];
+            };
+            /** Number */
+            number: number;
+            /** Redo */
+            redo: string | null;
+            /** Undo */
+            undo: string | null;
+        };
+        /**
          * DroppedStepView
          * @description A start that the plan before had, and this one has not.
          */
@@ -2188,6 +2395,49 @@ export interface components {
             expected: string;
             /** Field */
             field: string;
+        };
+        /**
+         * FileMark
+         * @description A file of the draft; `digest` is another one as soon as its text is, and null where it was taken away.
+         */
+        FileMark: {
+            /** Digest */
+            digest: string | null;
+            state: components["schemas"]["FileState"];
+        };
+        /**
+         * FileState
+         * @description How a file of the draft differs from that of the station.
+         * @enum {string}
+         */
+        FileState: "same" | "changed" | "new" | "removed";
+        /**
+         * FileView
+         * @description A file of the draft: its text, and what it holds where that can be read; else `wrong` says why not.
+         *
+         *     `content` is null for what is no YAML.
+         */
+        FileView: {
+            content: components["schemas"]["JsonValue"];
+            /** Digest */
+            digest: string;
+            /** Path */
+            path: string;
+            /** Text */
+            text: string;
+            wrong: components["schemas"]["FindingDocument"] | null;
+        };
+        /**
+         * FilesView
+         * @description Files of the draft after its change `number`, by path; null is one that is not there.
+         */
+        FilesView: {
+            /** Files */
+            files: {
+                [key: string]: components["schemas"]["FileView"] | null;
+            };
+            /** Number */
+            number: number;
         };
         /**
          * FindingDocument
@@ -2555,6 +2805,26 @@ export interface components {
             record: components["schemas"]["RunRecordView"];
         };
         /**
+         * MoveEntry
+         * @description Put an entry elsewhere among its siblings: to the end, or beside one of them; `was` is its value.
+         */
+        MoveEntry: {
+            /** After */
+            after?: string | number | null;
+            /** Before */
+            before?: string | number | null;
+            /** File */
+            file: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "move";
+            /** Path */
+            path: (string | number)[];
+            was: components["schemas"]["JsonValue"];
+        };
+        /**
          * NetworkSnapshot
          * @description The ROS graph as it is now.
          */
@@ -2675,13 +2945,13 @@ export interface components {
          */
         OfferView: {
             /** Assumed */
-            assumed: components["schemas"]["ChangeView"][];
+            assumed: components["schemas"]["sequence_planner__control__offer_view__ChangeView"][];
             /** At Rest */
             at_rest: boolean;
             /** Breaks */
             breaks: components["schemas"]["SpecificationView"][];
             /** Corrections */
-            corrections: components["schemas"]["ChangeView"][];
+            corrections: components["schemas"]["sequence_planner__control__offer_view__ChangeView"][];
             effort: components["schemas"]["EffortView"];
             /** Ends */
             ends: string | null;
@@ -2705,7 +2975,7 @@ export interface components {
             /** Operation */
             operation: string | null;
             /** Physical */
-            physical: components["schemas"]["ChangeView"][];
+            physical: components["schemas"]["sequence_planner__control__offer_view__ChangeView"][];
             /** Revision */
             revision: number;
             then: components["schemas"]["PlanPreviewView"] | null;
@@ -3233,6 +3503,22 @@ export interface components {
             time: number;
         };
         /**
+         * RemoveEntry
+         * @description Take an entry out; `was` is its value.
+         */
+        RemoveEntry: {
+            /** File */
+            file: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "remove";
+            /** Path */
+            path: (string | number)[];
+            was: components["schemas"]["JsonValue"];
+        };
+        /**
          * ReplacementView
          * @description A plan took the place of another: when, why, and what went with it. The steps say if they are new.
          */
@@ -3403,6 +3689,23 @@ export interface components {
             /** Resource */
             resource: string;
             state: components["schemas"]["WatchState"];
+        };
+        /**
+         * SetEntry
+         * @description Give an entry another value; `was` is the one it had.
+         */
+        SetEntry: {
+            /** File */
+            file: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "set";
+            /** Path */
+            path: (string | number)[];
+            value: components["schemas"]["JsonValue"];
+            was: components["schemas"]["JsonValue"];
         };
         /**
          * ShelveBody
@@ -3812,6 +4115,22 @@ export interface components {
          */
         StreamMessage: components["schemas"]["Snapshot"] | components["schemas"]["Delta"] | components["schemas"]["Link"] | components["schemas"]["StreamError"];
         /**
+         * SummaryView
+         * @description How much there is in a model that can be used.
+         */
+        SummaryView: {
+            /** Abilities */
+            abilities: number;
+            /** Operations */
+            operations: number;
+            /** Specifications */
+            specifications: number;
+            /** Title */
+            title: string;
+            /** Variables */
+            variables: number;
+        };
+        /**
          * SuppressBody
          * @description Which alarm is taken out of service, and why.
          */
@@ -4152,6 +4471,84 @@ export interface components {
             revision: number;
             /** Summary */
             summary: string;
+            /** Title */
+            title: string;
+        };
+        /**
+         * WorkshopSnapshot
+         * @description The draft of the model and its check as they are now.
+         */
+        WorkshopSnapshot: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "workshop";
+            workshop: components["schemas"]["WorkshopView"];
+        };
+        /**
+         * WorkshopStreamMessage
+         * @description Any message of `/api/v1/model/stream`.
+         */
+        WorkshopStreamMessage: components["schemas"]["WorkshopSnapshot"] | components["schemas"]["StreamError"];
+        /**
+         * WorkshopView
+         * @description What all who look at the draft are shown: its files, and what the check of it has found so far.
+         */
+        WorkshopView: {
+            check: components["schemas"]["CheckView"];
+            /** Files */
+            files: {
+                [key: string]: components["schemas"]["FileMark"];
+            };
+            last: components["schemas"]["ChangeView"] | null;
+            /** Number */
+            number: number;
+        };
+        /**
+         * WriteText
+         * @description Give a file the text that `was` has become; null is no file. What others did to other lines stays.
+         */
+        WriteText: {
+            /** File */
+            file: string;
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "text";
+            /** Text */
+            text: string | null;
+            /** Was */
+            was: string | null;
+        };
+        /**
+         * ChangeView
+         * @description A variable that gets another value; `now` is null where it is unknown.
+         */
+        sequence_planner__control__offer_view__ChangeView: {
+            /** Name */
+            name: string;
+            /** Now */
+            now: boolean | number | string | null;
+            /** Then */
+            then: boolean | number | string;
+        };
+        /**
+         * ChangeView
+         * @description A change of the draft; `of` is the number of the one that it undoes or does again. Time is in seconds since the
+         *     epoch.
+         */
+        sequence_planner__workshop__view__ChangeView: {
+            /** By */
+            by: string;
+            kind: components["schemas"]["ChangeKind"];
+            /** Number */
+            number: number;
+            /** Of */
+            of: number | null;
+            /** Time */
+            time: number;
             /** Title */
             title: string;
         };
@@ -5607,6 +6004,216 @@ export interface operations {
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    draft_api_v1_model_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DraftView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_api_v1_model_changes_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ChangeBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FilesView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    check_api_v1_model_check_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CheckView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    files_api_v1_model_files_get: {
+        parameters: {
+            query?: {
+                path?: string[] | null;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FilesView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    redo_api_v1_model_redo_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FilesView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    undo_api_v1_model_undo_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FilesView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
                 headers: {

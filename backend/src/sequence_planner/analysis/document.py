@@ -11,6 +11,7 @@ from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.warning import ModelWarning
 from sequence_planner.expressions.printing import print_expression
+from sequence_planner.model.source import Finding
 from sequence_planner.synthesis.guards import Guard
 from sequence_planner.synthesis.traces import Trace
 
@@ -127,6 +128,19 @@ def findings_of(automaton: Automaton, warnings: Iterable[ModelWarning]) -> list[
         )
         for warning in warnings
     ]
+
+
+def error_document(finding: Finding) -> FindingDocument:
+    """Something that makes a model unusable."""
+    return FindingDocument(
+        severity="error",
+        kind="unusable",
+        file=finding.place.file,
+        line=finding.place.line,
+        column=finding.place.column,
+        message=finding.message,
+        trace=None,
+    )
 
 
 def _guard(guard: Guard) -> GuardDocument:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import typer
 
-from sequence_planner.analysis.document import FindingDocument, findings_of
+from sequence_planner.analysis.document import FindingDocument, error_document, findings_of
 from sequence_planner.checking.checks import check_automaton
 from sequence_planner.checking.warning import ModelWarning, place
 from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, analysed
@@ -15,8 +15,6 @@ from sequence_planner.cli.loading import Model, load_model
 from sequence_planner.cli.options import FINDINGS, UNUSABLE, AnyModel, AsJson, print_json
 from sequence_planner.collection import collection_put_off
 from sequence_planner.model.source import Finding, ModelError
-from sequence_planner.pipelines.examples import failures, loading_failures
-from sequence_planner.station import ReadyStation
 
 
 @dataclass(frozen=True)
@@ -56,14 +54,9 @@ def check(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = F
         raise typer.Exit(FINDINGS)
 
 
-def _failures(station: ReadyStation) -> list[Finding]:
-    """What is wrong with the pipelines as they run: stages that cannot be loaded, and then examples that fail."""
-    return loading_failures(station.pipelines) or failures(station.examples)
-
-
 def check_model(model: Model, deadline: float) -> Checked:
     """All that can be found in a model that can be used. Raises `ModelError` for pipelines that fail as they run."""
-    if model.station is not None and (failed := _failures(model.station)):
+    if model.station is not None and (failed := model.station.failures()):
         raise ModelError(failed)
     automaton = model.automaton
     with collection_put_off():
@@ -83,15 +76,7 @@ def _say(checked: Checked) -> None:
 
 def unusable(finding: Finding) -> dict[str, object]:
     """A finding that makes a model unusable, as a document."""
-    return FindingDocument(
-        severity="error",
-        kind="unusable",
-        file=finding.place.file,
-        line=finding.place.line,
-        column=finding.place.column,
-        message=finding.message,
-        trace=None,
-    ).model_dump()
+    return error_document(finding).model_dump()
 
 
 def _summary(checked: Checked) -> dict[str, object]:

@@ -26,10 +26,7 @@ class Model:
     @property
     def connections(self) -> Connections | None:
         """What topics, services and actions feed and carry."""
-        if self.station is None:
-            return None
-        pipelines = self.station.pipelines
-        return Connections(frozenset(pipelines.feeds), pipelines.carried)
+        return None if self.station is None else self.station.connections
 
 
 def load_model(path: Path) -> Model:

@@ -93,6 +93,11 @@ def move(text: str, path: EntryPath, *, before: str | int | None = None, after: 
     )
 
 
+def value_at(text: str, path: EntryPath) -> Content:
+    """The value of the entry at `path`, with texts that know nothing of their places. Raises `EditError`."""
+    return _at(plain(_content(text)), path)
+
+
 def _replace_mapping(text: str, path: EntryPath, old: dict[str, Content], new: Mapping[str, Content]) -> str:
     for key in [str(key) for key in old if key in new]:
         text = replace(text, (*path, key), new[key])
@@ -150,7 +155,7 @@ def _content(text: str) -> Content:
 
 def _verified(text: str, new: str, change: Callable[[Content], Content]) -> str:
     """`new`, if its content is that of `text` with `change` made to it."""
-    expected = change(_plain(_content(text)))
+    expected = change(plain(_content(text)))
     try:
         found = read_text(new, "line").content
     except ModelError as error:
@@ -160,10 +165,13 @@ def _verified(text: str, new: str, change: Callable[[Content], Content]) -> str:
     return new
 
 
-def _plain(content: Content) -> Content:
+def plain(content: Content) -> Content:
+    """The same with texts and names that know nothing of their places."""
     if isinstance(content, dict):
-        return {str(key): _plain(value) for key, value in content.items()}
-    return [_plain(value) for value in content] if isinstance(content, list) else content
+        return {str(key): plain(value) for key, value in content.items()}
+    if isinstance(content, list):
+        return [plain(value) for value in content]
+    return str(content) if isinstance(content, str) else content
 
 
 def _at(content: Content, path: EntryPath) -> Content:

@@ -27,6 +27,7 @@ from sequence_planner.web import (
     health,
     history,
     keys,
+    model,
     modes,
     openapi_document,
     people,
@@ -56,6 +57,7 @@ from sequence_planner.web.settings import Settings
 from sequence_planner.web.static import PageFiles
 from sequence_planner.web.sweeper import Sweeper
 from sequence_planner.web.watch_show import WatchShow
+from sequence_planner.web.workshop import Workshop
 
 PREFIX = "/api/v1"
 PARTS = (
@@ -83,6 +85,7 @@ PARTS = (
     watch_stream.router,
     audit.router,
     history.router,
+    model.router,
     openapi_document.router,
 )
 
@@ -112,8 +115,9 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         office = await run_in_threadpool(IdentityOffice.open, settings.database, demonstration=settings.demonstration)
         app.state.identity = office
-        model = settings.model
-        app.state.history = looking_back = None if model is None else HistoryProcess(model, settings.database)
+        folder = settings.model
+        app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
+        app.state.workshop = shop = None if folder is None else Workshop(office, folder, settings.stream)
         parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller))
         running = [asyncio.create_task(each.run()) for each in parts]
         try:
@@ -124,6 +128,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
             await asyncio.gather(*running, return_exceptions=True)
             if looking_back is not None:
                 looking_back.close()
+            if shop is not None:
+                await shop.close()
             await run_in_threadpool(office.close)
 
     app = StationServer(

@@ -19,6 +19,7 @@ from sequence_planner.web.settings import LOOPBACK_NAMES, Endpoint, SettingsErro
 
 READING = ("GET", "HEAD", "OPTIONS")
 LARGEST_BODY = 64 * 1024  # bytes
+LARGER_BODIES = {"/api/v1/model/changes": 4 * 1024 * 1024}  # files of a model, as they were and as they shall be
 BODY_SECONDS = 20.0  # in which a body must have come
 
 
@@ -36,9 +37,11 @@ class Guard:
             await self.app(scope, receive, send)
             return
         headers = Headers(scope=scope)
-        refused = _framing(headers) or self._host(scope, headers) or self._origin(scope, headers) or _length(headers)
+        largest = LARGER_BODIES.get(scope["path"], LARGEST_BODY)
+        wrong = _framing(headers) or self._host(scope, headers) or self._origin(scope, headers)
+        refused = wrong or _length(headers, largest)
         if refused is None:
-            await self.app(scope, _bounded(receive), send)
+            await self.app(scope, _bounded(receive, largest), send)
             return
         response = problem_response(
             refused.status_code, refused.slug, refused.title, refused.detail, headers=refused.headers
@@ -77,13 +80,13 @@ def _framing(headers: Headers) -> ProblemFound | None:
     return ProblemFound(400, "two-lengths", "The length is said twice", detail, {"Connection": "close"})
 
 
-def _length(headers: Headers) -> ProblemFound | None:
+def _length(headers: Headers, largest: int) -> ProblemFound | None:
     announced = headers.get("content-length", "0")
-    return _too_large() if announced.isdecimal() and int(announced) > LARGEST_BODY else None
+    return _too_large(largest) if announced.isdecimal() and int(announced) > largest else None
 
 
-def _too_large() -> ProblemFound:
-    detail = f"A body may have {LARGEST_BODY} bytes at most."
+def _too_large(largest: int) -> ProblemFound:
+    detail = f"A body may have {largest} bytes at most."
     return ProblemFound(413, "body-too-large", "The body is too large", detail)
 
 
@@ -103,7 +106,7 @@ def _means_loopback(host: str) -> bool:
         return False
 
 
-def _bounded(receive: Receive) -> Receive:
+def _bounded(receive: Receive, largest: int) -> Receive:
     """Count a body that did not say its length as it comes, and stop reading when it is too large or too slow."""
     size, complete = 0, False
     due = asyncio.get_running_loop().time() + BODY_SECONDS
@@ -118,8 +121,8 @@ def _bounded(receive: Receive) -> Receive:
             raise ProblemFound(408, "body-too-slow", "The body did not come in time", detail) from None
         complete = not message.get("more_body", False)
         size += len(message.get("body", b""))
-        if size > LARGEST_BODY:
-            raise _too_large()
+        if size > largest:
+            raise _too_large(largest)
         return message
 
     return bounded

@@ -1,4 +1,5 @@
-"""What is said on the WebSockets that show one document again and again: the ROS graph, and what passes the pipelines.
+"""What is said on the WebSockets that show one document again and again: the ROS graph, what passes the
+pipelines, and the draft of the model.
 
 Each message has the whole document. A client may ask for it again with `resync`, as on `/api/v1/stream`.
 """
@@ -12,6 +13,7 @@ from pydantic import Field, RootModel
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.pipeline_view import FlowsView
 from sequence_planner.web.stream_messages import ControllerState, StreamError, StreamPart
+from sequence_planner.workshop.view import WorkshopView
 
 
 class NetworkSnapshot(StreamPart):
@@ -28,6 +30,13 @@ class FlowsSnapshot(StreamPart):
     flows: FlowsView
 
 
+class WorkshopSnapshot(StreamPart):
+    """The draft of the model and its check as they are now."""
+
+    kind: Literal["workshop"]
+    workshop: WorkshopView
+
+
 class Silence(StreamPart):
     """There is nothing to show: the controller is not heard, or is still preparing the station."""
 
@@ -41,3 +50,7 @@ class NetworkStreamMessage(RootModel[Annotated[NetworkSnapshot | Silence | Strea
 
 class FlowsStreamMessage(RootModel[Annotated[FlowsSnapshot | Silence | StreamError, Field(discriminator="kind")]]):
     """Any message of `/api/v1/pipelines/stream`."""
+
+
+class WorkshopStreamMessage(RootModel[Annotated[WorkshopSnapshot | StreamError, Field(discriminator="kind")]]):
+    """Any message of `/api/v1/model/stream`."""

@@ -18,7 +18,7 @@ from pydantic.json_schema import models_json_schema
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import Access, allowed, declared
 from sequence_planner.web.cookies import NAME, SESSION_COOKIE, WATCH_COOKIE
-from sequence_planner.web.looking_messages import FlowsStreamMessage, NetworkStreamMessage
+from sequence_planner.web.looking_messages import FlowsStreamMessage, NetworkStreamMessage, WorkshopStreamMessage
 from sequence_planner.web.openapi_refusals import describe_refusals
 from sequence_planner.web.problems import Problem
 from sequence_planner.web.stream_messages import ClientMessage, StreamMessage
@@ -60,6 +60,7 @@ def describe(app: FastAPI) -> dict[str, Any]:
             (StreamMessage, "serialization"),
             (NetworkStreamMessage, "serialization"),
             (FlowsStreamMessage, "serialization"),
+            (WorkshopStreamMessage, "serialization"),
             (WatchStreamMessage, "serialization"),
             (ClientMessage, "validation"),
             (Problem, "serialization"),

@@ -1,0 +1,113 @@
+"""The model while it is edited: the draft that all engineers of the station share, and what is found in it.
+
+Nothing of the station that runs is touched by it.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter, Depends, Query, WebSocket
+from fastapi.requests import HTTPConnection
+from pydantic import Field
+
+from sequence_planner.identity.roles import Role, Scope
+from sequence_planner.model.paths import EditError
+from sequence_planner.web.access import allowed
+from sequence_planner.web.body import Body
+from sequence_planner.web.problems import ProblemFound, refused
+from sequence_planner.web.request_parts import JSON_ONLY, Actor
+from sequence_planner.web.stream import serve
+from sequence_planner.web.workshop import Workshop
+from sequence_planner.workshop.check_view import CheckView
+from sequence_planner.workshop.edits import Edit, FilePath, PartChangedError
+from sequence_planner.workshop.view import DraftView, FilesView
+
+MOST_EDITS = 500  # of one change
+VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
+ENGINEER = allowed(Role.ENGINEER)
+
+router = APIRouter(prefix="/model", tags=["model"], responses=refused(409, 503))
+
+
+async def workshop(connection: HTTPConnection) -> Workshop:
+    """The workshop of the station. Raises `ProblemFound` where the server does not know its model."""
+    found: Workshop | None = connection.app.state.workshop
+    if found is None:
+        detail = "This server does not know where the station's model is. Start it with `sequence-planner run MODEL`."
+        raise ProblemFound(409, "no-model", "The model is not known", detail)
+    return found
+
+
+TheWorkshop = Annotated[Workshop, Depends(workshop)]
+
+
+class ChangeBody(Body):
+    """Edits that are carried out together, or not at all; `title` says what they do, for the list of changes."""
+
+    title: Annotated[str, Field(min_length=1, max_length=300)]
+    edits: Annotated[list[Edit], Field(min_length=1, max_length=MOST_EDITS)]
+
+
+@router.get("", dependencies=[VIEWER])
+async def draft(shop: TheWorkshop, actor: Actor) -> DraftView:
+    """The draft of the model: its files, and the last changes."""
+    return await shop.view(actor)
+
+
+@router.get("/files", dependencies=[VIEWER])
+async def files(shop: TheWorkshop, path: Annotated[list[FilePath] | None, Query(max_length=500)] = None) -> FilesView:
+    """Files of the draft with what they hold; all of them where no `path` is named."""
+    return await shop.files(path)
+
+
+@router.get("/check", dependencies=[VIEWER])
+async def check(shop: TheWorkshop) -> CheckView:
+    """What is found in the draft, as far as that has come."""
+    return await shop.checked()
+
+
+@router.post("/changes", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
+async def change(body: ChangeBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+    """Carry edits out; the files that are others now.
+
+    An edit of a part that somebody else has changed meanwhile is refused with `part-changed`, and nothing is done.
+    """
+    try:
+        return await shop.change(body.edits, actor, body.title)
+    except EditError as error:
+        raise _refusal(error) from error
+
+
+@router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
+async def undo(shop: TheWorkshop, actor: Actor) -> FilesView:
+    """Take back your last change that is not taken back yet; the files that are others now."""
+    try:
+        return await shop.undo(actor)
+    except EditError as error:
+        raise _refusal(error) from error
+
+
+@router.post("/redo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
+async def redo(shop: TheWorkshop, actor: Actor) -> FilesView:
+    """Do again what you took back last; the files that are others now."""
+    try:
+        return await shop.redo(actor)
+    except EditError as error:
+        raise _refusal(error) from error
+
+
+@router.websocket("/stream", dependencies=[VIEWER])
+async def stream(websocket: WebSocket) -> None:
+    """Serve one client: the draft and its check, whenever they change."""
+    shop = await workshop(websocket)
+    await shop.open()
+    await serve(websocket, shop.latest)
+
+
+def _refusal(error: EditError) -> ProblemFound:
+    text = f"{str(error)[:1].upper()}{str(error)[1:]}."
+    if isinstance(error, PartChangedError):
+        detail = f"{text} Nothing was changed: look at what it is now, and repeat yours if it is still wanted."
+        return ProblemFound(409, "part-changed", "It was changed meanwhile", detail)
+    return ProblemFound(422, "edit-refused", "It cannot be changed so", text)

@@ -1,0 +1,135 @@
+"""The server's workshop: the one draft of its station, kept in the database and checked whenever it changes."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from sqlalchemy import Connection
+from starlette.concurrency import run_in_threadpool
+
+from sequence_planner.actor import Actor
+from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.latest import Latest
+from sequence_planner.web.looking_messages import WorkshopSnapshot
+from sequence_planner.web.settings import StreamLimits
+from sequence_planner.workshop import draft as drafts
+from sequence_planner.workshop.check_process import CheckDesk
+from sequence_planner.workshop.check_view import CheckView, waiting
+from sequence_planner.workshop.draft import Draft
+from sequence_planner.workshop.edits import Edit
+from sequence_planner.workshop.files import read_files
+from sequence_planner.workshop.showing import Reader, change_view, marks
+from sequence_planner.workshop.view import DraftView, FilesView, WorkshopView
+
+MOST_SHOWN = 50  # changes
+
+
+class Workshop:
+    """The draft of the station in the folder `model`. Used from one event loop."""
+
+    def __init__(self, identity: IdentityOffice, model: Path, limits: StreamLimits) -> None:
+        self.latest = Latest(self._present, limits)
+        self._identity = identity
+        self._model = model
+        self._reader = Reader()
+        self._desk = CheckDesk(model, self._found)
+        self._check: CheckView | None = None
+        self._shown: WorkshopView | None = None
+        self._encoded: str | None = None
+        self._opening = asyncio.Lock()
+
+    async def close(self) -> None:
+        """End what is being checked."""
+        await self._desk.close()
+
+    async def open(self) -> Draft:
+        """The draft, begun if there is none yet, with what has happened to the files of the station since."""
+        async with self._opening:
+            files = await run_in_threadpool(read_files, self._model)
+            draft = await self._identity.read(drafts.read)
+            if not draft.number or draft.base != files:
+                now = self._identity.now()
+                draft, _ = await self._identity.write(lambda connection: drafts.take_up(connection, files, now))
+            await self._noticed(draft)
+        return draft
+
+    async def view(self, by: Actor) -> DraftView:
+        """The draft, for somebody who could undo what they did."""
+        draft = await self.open()
+
+        def read(connection: Connection) -> DraftView:
+            done, undone = drafts.stacks(connection, by)
+            return DraftView(
+                number=draft.number,
+                files=marks(draft),
+                changes=[change_view(each) for each in drafts.changes(connection, MOST_SHOWN)],
+                undo=done[-1].title if done else None,
+                redo=undone[-1].title if undone else None,
+            )
+
+        return await self._identity.read(read)
+
+    async def files(self, paths: Sequence[str] | None = None) -> FilesView:
+        """Files of the draft; all of them where none are named."""
+        draft = await self.open()
+        chosen = list(draft.files) if paths is None else paths
+        found = await run_in_threadpool(self._reader.views, draft, chosen)
+        return FilesView(number=draft.number, files=found)
+
+    async def change(self, edits: Sequence[Edit], by: Actor, title: str) -> FilesView:
+        """Carry edits out; the files that are others now. Raises `EditError`."""
+        return await self._changed(lambda connection, now: drafts.change(connection, edits, by, now, title), by)
+
+    async def undo(self, by: Actor) -> FilesView:
+        """Take back what somebody did last. Raises `EditError`."""
+        return await self._changed(lambda connection, now: drafts.undo(connection, by, now), by)
+
+    async def redo(self, by: Actor) -> FilesView:
+        """Do again what somebody took back last. Raises `EditError`."""
+        return await self._changed(lambda connection, now: drafts.redo(connection, by, now), by)
+
+    async def checked(self) -> CheckView:
+        """What is known of the draft."""
+        draft = await self.open()
+        return self._check or waiting(draft.number)
+
+    async def _changed(self, work: Callable[[Connection, float], Draft], by: Actor) -> FilesView:
+        await self.open()
+        now = self._identity.now()
+
+        def write(connection: Connection) -> tuple[Draft, Draft]:
+            return drafts.read(connection), work(connection, now)
+
+        before, after = await self._identity.write(write, by=by)
+        await self._noticed(after)
+        touched = [
+            path
+            for path in sorted(before.files.keys() | after.files.keys())
+            if before.files.get(path) != after.files.get(path)
+        ]
+        found = await run_in_threadpool(self._reader.views, after, touched)
+        return FilesView(number=after.number, files=found)
+
+    async def _noticed(self, draft: Draft) -> None:
+        """Show the draft, and check it, where it is another one."""
+        if self._shown is not None and self._shown.number == draft.number:
+            return
+        changes = await self._identity.read(lambda connection: drafts.changes(connection, 1))
+        last = change_view(changes[0]) if changes else None
+        self._shown = WorkshopView(number=draft.number, files=marks(draft), last=last, check=waiting(draft.number))
+        self._desk.check(draft.number, draft.files)
+
+    def _found(self, check: CheckView) -> None:
+        self._check = check
+        if self._shown is not None:
+            self._shown = self._shown.model_copy(update={"check": check})
+        self._encoded = None
+        self.latest.tell()
+
+    def _present(self) -> str:
+        if self._encoded is None:
+            assert self._shown is not None  # nobody listens before it was opened
+            self._encoded = WorkshopSnapshot(kind="workshop", workshop=self._shown).model_dump_json()
+        return self._encoded

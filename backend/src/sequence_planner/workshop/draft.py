@@ -1,0 +1,237 @@
+"""The draft of a station: its files while engineers edit them, all of them the same one.
+
+Each change is kept with who made it and what the files were before, so that it can be undone; undoing is a change too.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import StrEnum
+
+from sqlalchemy import Connection, Row, Select, delete, func, insert, select, update
+
+from sequence_planner.actor import SYSTEM, Actor
+from sequence_planner.model.paths import EditError
+from sequence_planner.workshop.edits import Edit, PartChangedError, WriteText, applied
+from sequence_planner.workshop.files import Files
+from sequence_planner.workshop.merging import MergeConflictError, merged
+from sequence_planner.workshop.tables import DRAFT_CHANGES, DRAFT_FILES
+
+MOST_CHANGES = 1000  # that are kept
+
+# Of each file that differs what it was and what it is; none is no file.
+Differences = Mapping[str, tuple[str | None, str | None]]
+
+
+class ChangeKind(StrEnum):
+    """What a change is."""
+
+    EDIT = "edit"
+    UNDO = "undo"
+    REDO = "redo"
+    TAKEN = "taken"  # what somebody has done to the files of the station
+
+
+@dataclass(frozen=True)
+class Change:
+    """A change of the draft, without what it did; `of` is the number of the one that it undoes or does again."""
+
+    number: int
+    time: float
+    by_id: str
+    by_name: str
+    kind: ChangeKind
+    of: int | None
+    title: str
+
+
+@dataclass(frozen=True)
+class Draft:
+    """The draft after its change `number`; `base` are the files that it began from."""
+
+    number: int
+    files: Files
+    base: Files
+
+
+def digest(text: str) -> str:
+    """A short mark of a text, another one as soon as it changes."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def read(connection: Connection) -> Draft:
+    """The draft; number 0 and no files before it was begun."""
+    number = connection.execute(select(func.max(DRAFT_CHANGES.c.number))).scalar() or 0
+    rows = connection.execute(select(DRAFT_FILES).order_by(DRAFT_FILES.c.path)).all()
+    return Draft(
+        number,
+        {row.path: row.text for row in rows if row.text is not None},
+        {row.path: row.base for row in rows if row.base is not None},
+    )
+
+
+def take_up(connection: Connection, files: Files, now: float) -> tuple[Draft, list[str]]:
+    """Let the draft be one of the station that consists of `files`, with what was edited brought together with what
+    has happened to them since. Where both changed the same lines the draft stays as it is; these files are returned.
+    """
+    draft, conflicts = read(connection), list[str]()
+    if draft.number and draft.base == files:
+        return draft, conflicts
+    after = dict(draft.files)
+    for path in sorted(draft.base.keys() | files.keys()):
+        try:
+            text = merged(draft.base.get(path), files.get(path), draft.files.get(path))
+        except MergeConflictError:
+            conflicts.append(path)
+            continue
+        if text is None:
+            after.pop(path, None)
+        else:
+            after[path] = text
+    title = "The files of the station" if not draft.number else "The files of the station have changed"
+    _write(connection, draft, after, SYSTEM, now, ChangeKind.TAKEN, None, title)
+    rebase(connection, files)
+    return read(connection), conflicts
+
+
+def rebase(connection: Connection, files: Files) -> None:
+    """From now on the draft counts as begun from `files`."""
+    draft = read(connection)
+    for path in draft.files.keys() | draft.base.keys() | files.keys():
+        _put(connection, path, draft.files.get(path), files.get(path))
+
+
+def change(connection: Connection, edits: Sequence[Edit], by: Actor, now: float, title: str) -> Draft:
+    """Carry edits out, all of them or none. Raises `EditError`."""
+    draft = read(connection)
+    try:
+        after = applied(draft.files, edits)
+    except PartChangedError as error:
+        who = _last_of(connection, error.file)
+        if who is None or who.by_id == by.id:
+            raise
+        raise PartChangedError(error.file, error.path, f"{error}, by {who.by_name}") from error
+    return _write(connection, draft, after, by, now, ChangeKind.EDIT, None, title)
+
+
+def undo(connection: Connection, by: Actor, now: float) -> Draft:
+    """Take back the last change of the same person that was not taken back yet, wherever others have not changed the
+    same lines since. Raises `EditError`.
+    """
+    found, _ = stacks(connection, by)
+    if not found:
+        raise EditError("there is nothing of yours to undo")
+    return _again(connection, found[-1], by, now, ChangeKind.UNDO)
+
+
+def redo(connection: Connection, by: Actor, now: float) -> Draft:
+    """Do again what the same person took back last. Raises `EditError`."""
+    _, found = stacks(connection, by)
+    if not found:
+        raise EditError("there is nothing of yours to do again")
+    return _again(connection, found[-1], by, now, ChangeKind.REDO)
+
+
+def changes(connection: Connection, limit: int) -> list[Change]:
+    """The last changes, newest first."""
+    rows = connection.execute(_known().order_by(DRAFT_CHANGES.c.number.desc()).limit(limit))
+    return [_change(row) for row in rows]
+
+
+def stacks(connection: Connection, by: Actor) -> tuple[list[Change], list[Change]]:
+    """The changes that somebody can undo, and those that they can do again; the last of each comes first to it."""
+    mine = (DRAFT_CHANGES.c.by_id == by.id) & (DRAFT_CHANGES.c.kind != ChangeKind.TAKEN.value)
+    done: list[Change] = []
+    undone: list[Change] = []
+    known: dict[int, Change] = {}
+    for row in connection.execute(_known().where(mine).order_by(DRAFT_CHANGES.c.number)):
+        each = _change(row)
+        known[each.number] = each
+        match each.kind:
+            case ChangeKind.UNDO if done and done[-1].number == each.of:
+                undone.append(done.pop())
+            case ChangeKind.REDO if undone and undone[-1].number == each.of:
+                done.append(undone.pop())
+            case ChangeKind.EDIT:
+                done.append(each)
+                undone.clear()
+            case _:  # what it was about is not kept any more
+                continue
+    return done, undone
+
+
+def _again(connection: Connection, of: Change, by: Actor, now: float, kind: ChangeKind) -> Draft:
+    draft = read(connection)
+    written = connection.execute(select(DRAFT_CHANGES.c.files).where(DRAFT_CHANGES.c.number == of.number)).scalar_one()
+    differences: dict[str, list[str | None]] = json.loads(written)
+    edits = [
+        WriteText(file=path, was=after, text=before)
+        if kind is ChangeKind.UNDO
+        else WriteText(file=path, was=before, text=after)
+        for path, (before, after) in differences.items()
+    ]
+    return _write(connection, draft, applied(draft.files, edits), by, now, kind, of.number, of.title)
+
+
+def _write(
+    connection: Connection,
+    draft: Draft,
+    after: Files,
+    by: Actor,
+    now: float,
+    kind: ChangeKind,
+    of: int | None,
+    title: str,
+) -> Draft:
+    differences = {
+        path: (draft.files.get(path), after.get(path))
+        for path in sorted(draft.files.keys() | after.keys())
+        if draft.files.get(path) != after.get(path)
+    }
+    if not differences and (draft.number or kind is not ChangeKind.TAKEN):
+        return draft
+    number = draft.number + 1
+    connection.execute(
+        insert(DRAFT_CHANGES).values(
+            number=number,
+            time=now,
+            by_id=by.id,
+            by_name=by.name,
+            kind=kind.value,
+            of=of,
+            title=title[:300],
+            files=json.dumps(differences),
+        )
+    )
+    connection.execute(delete(DRAFT_CHANGES).where(DRAFT_CHANGES.c.number <= number - MOST_CHANGES))
+    for path, (_, text) in differences.items():
+        _put(connection, path, text, draft.base.get(path))
+    return Draft(number, after, draft.base)
+
+
+def _put(connection: Connection, path: str, text: str | None, base: str | None) -> None:
+    here = DRAFT_FILES.c.path == path
+    if text is None and base is None:
+        connection.execute(delete(DRAFT_FILES).where(here))
+    elif connection.execute(update(DRAFT_FILES).where(here).values(text=text, base=base)).rowcount == 0:
+        connection.execute(insert(DRAFT_FILES).values(path=path, text=text, base=base))
+
+
+def _last_of(connection: Connection, path: str) -> Change | None:
+    """The last change of a file."""
+    mark = json.dumps(path) + ": ["
+    found = _known().where(DRAFT_CHANGES.c.files.contains(mark, autoescape=True))
+    row = connection.execute(found.order_by(DRAFT_CHANGES.c.number.desc()).limit(1)).first()
+    return None if row is None else _change(row)
+
+
+def _known() -> Select[tuple[object, ...]]:
+    """Changes, without what they did."""
+    return select(*(column for column in DRAFT_CHANGES.columns if column.name != "files"))
+
+
+def _change(row: Row[tuple[object, ...]]) -> Change:
+    return Change(row.number, row.time, row.by_id, row.by_name, ChangeKind(row.kind), row.of, row.title)

@@ -1,0 +1,98 @@
+"""The files of a model as texts: what an engineer may write in a browser, and how it is read from a folder and written.
+
+Python stages are none of them: these come only from files on the server.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+
+from sequence_planner.model.loading import DEFINITIONS, FILES
+from sequence_planner.model.paths import EditError
+from sequence_planner.model.saving import BYTE_ORDER_MARK
+
+# Texts by their paths below the model's folder, such as `resources/robot.yaml`.
+Files = Mapping[str, str]
+
+LONGEST_FILE = 1_000_000  # characters
+MOST_FILES = 2_000
+STAGES = "stages"
+
+_NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
+_DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
+_PATH = re.compile(rf"{'|'.join(map(re.escape, FILES))}|resources/{_NAME}\.yaml|{_DEFINITIONS}")
+
+
+def check_path(path: str) -> None:
+    """Raises `EditError` for a path that is none of a model's files."""
+    if not _PATH.fullmatch(path):
+        raise EditError(
+            f"`{path}` is no file of a model: these are {', '.join(FILES)}, resources/<name>.yaml, and "
+            "messages/<package>/msg/<Name>.msg (or srv, or action)"
+        )
+
+
+def check_text(path: str, text: str) -> None:
+    """Raises `EditError` for a text that is too long, or that no file could hold."""
+    if len(text) > LONGEST_FILE:
+        raise EditError(f"{path} has {len(text)} characters, and a file of a model has at most {LONGEST_FILE}")
+    try:
+        text.encode("utf-8")
+    except UnicodeEncodeError:
+        raise EditError(f"{path} holds half a character, which no file can") from None
+
+
+def read_files(folder: Path) -> dict[str, str]:
+    """The files of the model in `folder`; those that are no UTF-8 text are left out. Raises `OSError`."""
+    files: dict[str, str] = {}
+    for path in sorted(folder.rglob("*")):
+        name = path.relative_to(folder).as_posix()
+        if _PATH.fullmatch(name) and path.is_file() and len(files) < MOST_FILES:
+            try:
+                files[name] = path.read_bytes().decode("utf-8").removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n")
+            except UnicodeDecodeError:
+                continue
+    return files
+
+
+def write_files(files: Files, folder: Path, stages: Path | None = None) -> None:
+    """Make `folder` hold these files; `stages` is a model whose Python stages belong to them."""
+    for name, text in files.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8", newline="")
+    if stages is not None and (stages / STAGES).is_dir():
+        shutil.copytree(stages / STAGES, folder / STAGES, dirs_exist_ok=True)
+
+
+def put_in_place(files: Files, folder: Path) -> None:
+    """Let the model in `folder` consist of these files. Whoever reads one of them finds the old or the new text, never
+    a part. Other files of the folder stay. Raises `OSError`.
+    """
+    before = read_files(folder)
+    for name, text in files.items():
+        if before.get(name) != text:
+            _put(folder / name, text)
+    for name in before.keys() - files.keys():
+        (folder / name).unlink(missing_ok=True)
+
+
+def _put(path: Path, text: str) -> None:
+    target = path.resolve()  # a link stays a link
+    target.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    try:
+        with os.fdopen(handle, "wb") as file:
+            file.write(text.encode("utf-8"))
+            file.flush()
+            os.fsync(file.fileno())
+        Path(name).chmod(target.stat().st_mode & 0o777 if target.exists() else 0o644)
+        Path(name).replace(target)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise

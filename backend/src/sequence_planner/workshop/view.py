@@ -1,0 +1,83 @@
+"""What is shown of the draft."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+from pydantic import JsonValue
+
+from sequence_planner.analysis.document import FindingDocument
+from sequence_planner.control.view_part import View
+from sequence_planner.workshop.check_view import CheckView
+from sequence_planner.workshop.draft import ChangeKind
+
+
+class FileState(StrEnum):
+    """How a file of the draft differs from that of the station."""
+
+    SAME = "same"
+    CHANGED = "changed"
+    NEW = "new"
+    REMOVED = "removed"
+
+
+class FileMark(View):
+    """A file of the draft; `digest` is another one as soon as its text is, and null where it was taken away."""
+
+    digest: str | None
+    state: FileState
+
+
+class FileView(View):
+    """A file of the draft: its text, and what it holds where that can be read; else `wrong` says why not.
+
+    `content` is null for what is no YAML.
+    """
+
+    path: str
+    digest: str
+    text: str
+    content: JsonValue
+    wrong: FindingDocument | None
+
+
+class ChangeView(View):
+    """A change of the draft; `of` is the number of the one that it undoes or does again. Time is in seconds since the
+    epoch.
+    """
+
+    number: int
+    time: float
+    by: str
+    kind: ChangeKind
+    of: int | None
+    title: str
+
+
+class DraftView(View):
+    """The draft after its change `number`: its files by path, and its last changes, newest first.
+
+    `undo` and `redo` are the titles of what whoever asks could take back, or do again.
+    """
+
+    number: int
+    files: dict[str, FileMark]
+    changes: list[ChangeView]
+    undo: str | None
+    redo: str | None
+
+
+class FilesView(View):
+    """Files of the draft after its change `number`, by path; null is one that is not there."""
+
+    number: int
+    files: dict[str, FileView | None]
+
+
+class WorkshopView(View):
+    """What all who look at the draft are shown: its files, and what the check of it has found so far."""
+
+    number: int
+    files: dict[str, FileMark]
+    last: ChangeView | None
+    check: CheckView
