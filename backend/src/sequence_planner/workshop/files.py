@@ -25,6 +25,7 @@ STAGES = "stages"
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
+_NO_TEXT = re.compile("[\0\ud800-\udfff]")
 _PATH = re.compile(rf"{'|'.join(map(re.escape, FILES))}|resources/{_NAME}\.yaml|{_DEFINITIONS}")
 
 
@@ -41,10 +42,8 @@ def check_text(path: str, text: str) -> None:
     """Raises `EditError` for a text that is too long, or that no file could hold."""
     if len(text) > LONGEST_FILE:
         raise EditError(f"{path} has {len(text)} characters, and a file of a model has at most {LONGEST_FILE}")
-    try:
-        text.encode("utf-8")
-    except UnicodeEncodeError:
-        raise EditError(f"{path} holds half a character, which no file can") from None
+    if (wrong := _NO_TEXT.search(text)) is not None:
+        raise EditError(f"{path} would hold the character {ord(wrong[0]):#06x}, which no text does")
 
 
 def read_files(folder: Path) -> dict[str, str]:
