@@ -2,9 +2,9 @@
 
 Controller and server are started again when they die. Of the controller a spare is kept, a process that has imported
 all that it needs and waits: half of what a start takes is over then. Emulated devices are not started again: like real
-ones they stay away until somebody brings them back. Production is started without a person only once; a controller that
-had to be started again waits for one. None of them outlives this process, even if it is killed: each holds a pipe from
-it (see `lifeline`).
+ones they stay away until somebody brings them back, but where another model was deployed they begin anew with it.
+Production is started without a person only once; a controller that had to be started again waits for one. None of them
+outlives this process, even if it is killed: each holds a pipe from it (see `lifeline`).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from pathlib import Path
 
 from sequence_planner.announcement import announced, answers, first_start
 from sequence_planner.control.unix_socket import LONGEST_PATH
-from sequence_planner.lifeline import DEMONSTRATION_DATABASE, NEEDED
+from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.web.binding import check_demonstration, check_free
@@ -75,6 +75,7 @@ class Part:
         self._due = 0.0  # on the clock of `time.monotonic`, as is `_begun`
         self._begun = 0.0
         self._again = False
+        self.deployed = False  # it has made room for another model
 
     @property
     def steady(self) -> bool:
@@ -106,10 +107,15 @@ class Part:
             return 0
         if code == UNUSABLE and not self._again and not self.steady:
             return code
-        if self.steady:
+        if self.steady or code == DEPLOYED:
             self._pause = FIRST_PAUSE
         self._forget()
         self._again = True
+        if code == DEPLOYED:
+            self.deployed = True
+            if not self._follow(now):
+                self.spawn()
+            return 0
         if self._follow(now):
             _say(f"the {self.name} ended with code {code}, and its spare goes on")
             return 0
@@ -227,6 +233,9 @@ class _Launcher:
                 code = self._notice_emulator() or self._controller.look_after() or self._server.look_after()
                 if code:
                     return code
+                if self._controller.deployed:
+                    self._controller.deployed = False
+                    self._begin_emulator_anew()
             return 0
         finally:
             self._stop.set()
@@ -235,6 +244,13 @@ class _Launcher:
                 part.terminate()
             for part in parts:
                 part.end()
+
+    def _begin_emulator_anew(self) -> None:
+        """Another model may have other devices."""
+        if self._request.emulator:
+            self._emulator.terminate()
+            self._emulator.end()
+            self._emulator.spawn()
 
     def _notice_emulator(self) -> int:
         """Say that the emulated devices have ended. The exit code when they refuse to run beside others."""

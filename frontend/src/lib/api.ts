@@ -721,6 +721,49 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model/comparison": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Comparison
+         * @description How two versions differ, in text and in behaviour: revisions by their ids, the draft, or what runs.
+         */
+        get: operations["comparison_api_v1_model_comparison_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/deployments": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Deploy
+         * @description Let the checked revision that the draft is take the place of the model that runs.
+         *
+         *     The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
+         *     production.
+         */
+        post: operations["deploy_api_v1_model_deployments_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/model/files": {
         parameters: {
             query?: never;
@@ -755,6 +798,70 @@ export interface paths {
          * @description Do again what you took back last; the files that are others now.
          */
         post: operations["redo_api_v1_model_redo_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/revisions": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Revisions
+         * @description All revisions, and which of them run and are edited.
+         */
+        get: operations["revisions_api_v1_model_revisions_get"];
+        put?: never;
+        /**
+         * Save
+         * @description Save the draft as a revision; refused where somebody has changed it since (`draft-moved`).
+         */
+        post: operations["save_api_v1_model_revisions_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/revisions/{id}/restore": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Restore
+         * @description Let the draft become a revision again, which can be undone; the files that are others now.
+         */
+        post: operations["restore_api_v1_model_revisions__id__restore_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/transfer": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Transfer
+         * @description Whether the station could take the draft as it is now.
+         */
+        get: operations["transfer_api_v1_model_transfer_get"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -1883,6 +1990,19 @@ export interface components {
             records: components["schemas"]["Record"][];
         };
         /**
+         * BehaviourDifference
+         * @description An ability that can start in one of the models only: after which starts in the one, `gained`, or in the other,
+         *     `lost`; null where there is no such state.
+         */
+        BehaviourDifference: {
+            /** Ability */
+            ability: string;
+            /** Gained */
+            gained: string[] | null;
+            /** Lost */
+            lost: string[] | null;
+        };
+        /**
          * BeliefView
          * @description Why an estimated variable is believed to have its value.
          *
@@ -1973,6 +2093,18 @@ export interface components {
             title: string;
         };
         /**
+         * Changed
+         * @description What a part says of itself, `before` and `after`; null is nothing.
+         */
+        Changed: {
+            /** After */
+            after: string | null;
+            /** Before */
+            before: string | null;
+            /** Part */
+            part: string;
+        };
+        /**
          * ChangerView
          * @description Who could change a variable: an ability, which may be running, or a person.
          *
@@ -2029,6 +2161,26 @@ export interface components {
          * @description Any message from a client.
          */
         ClientMessage: components["schemas"]["Resync"];
+        /**
+         * ComparisonView
+         * @description How two models differ: in their texts, by path as `diff -u` shows it, and in what they do.
+         *
+         *     The rest is null where one of them cannot be used; `obstacle` says why.
+         */
+        ComparisonView: {
+            /** Behaviour */
+            behaviour: components["schemas"]["BehaviourDifference"][] | null;
+            /** Obstacle */
+            obstacle: string | null;
+            /** Parts */
+            parts: components["schemas"]["PartDifference"][] | null;
+            /** Plans */
+            plans: components["schemas"]["PlanDifference"][] | null;
+            /** Text */
+            text: {
+                [key: string]: string;
+            };
+        };
         /**
          * ConditionView
          * @description Something that has to be otherwise. `involved` alone keep it from being true, and none of them could be spared.
@@ -2191,6 +2343,18 @@ export interface components {
          */
         DemonstrationBody: Record<string, never>;
         /**
+         * DeploymentBody
+         * @description The revision that the draft is, after its change `number`, takes the place of the model that runs.
+         */
+        DeploymentBody: {
+            /** Number */
+            number: number;
+            /** Reason */
+            reason: string;
+            /** Revision */
+            revision: string;
+        };
+        /**
          * DiagnosisView
          * @description Why there is no plan at all: nothing is possible as long as all `members` stay as they are.
          *
@@ -2205,6 +2369,12 @@ export interface components {
             /** Minimal */
             minimal: boolean;
         };
+        /**
+         * Difference
+         * @description What has become of a part.
+         * @enum {string}
+         */
+        Difference: "new" | "gone" | "changed";
         /**
          * DifferenceView
          * @description A variable that has another value in the nearest safe state.
@@ -3108,6 +3278,19 @@ export interface components {
             code: string;
         };
         /**
+         * PartDifference
+         * @description A part of the model that is new, gone, or another one; `kind` is what it is, such as `ability`.
+         */
+        PartDifference: {
+            /** Kind */
+            kind: string;
+            /** Name */
+            name: string;
+            /** Parts */
+            parts: components["schemas"]["Changed"][];
+            state: components["schemas"]["Difference"];
+        };
+        /**
          * PasswordBody
          * @description One's own password as it is, and as it is to be.
          */
@@ -3306,6 +3489,18 @@ export interface components {
             tick: number;
             /** Time */
             time: number;
+        };
+        /**
+         * PlanDifference
+         * @description The starts by which an operation reaches its goal from the initial state; null without it, or a plan.
+         */
+        PlanDifference: {
+            /** After */
+            after: string[] | null;
+            /** Before */
+            before: string[] | null;
+            /** Operation */
+            operation: string;
         };
         /**
          * PlanPreviewView
@@ -3565,6 +3760,14 @@ export interface components {
             time: number;
         };
         /**
+         * RestoreBody
+         * @description The draft, after its change `number`, becomes the revision.
+         */
+        RestoreBody: {
+            /** Number */
+            number: number;
+        };
+        /**
          * Resync
          * @description The client wants a new snapshot.
          */
@@ -3574,6 +3777,55 @@ export interface components {
              * @constant
              */
             kind: "resync";
+        };
+        /**
+         * RevisionBody
+         * @description The draft after its change `number` is saved under a name.
+         */
+        RevisionBody: {
+            /**
+             * Message
+             * @default
+             */
+            message: string;
+            /** Name */
+            name: string;
+            /** Number */
+            number: number;
+        };
+        /**
+         * RevisionView
+         * @description A saved revision of the model; `running` and `draft` say that the station runs it, and that the draft is it.
+         *
+         *     Time is in seconds since the epoch.
+         */
+        RevisionView: {
+            /** By */
+            by: string;
+            /** Draft */
+            draft: boolean;
+            /** Id */
+            id: string;
+            /** Message */
+            message: string;
+            /** Name */
+            name: string;
+            /** Running */
+            running: boolean;
+            /** Time */
+            time: number;
+        };
+        /**
+         * RevisionsView
+         * @description All revisions, newest first; `saved` says whether the draft is one of them, `running` whether the station is.
+         */
+        RevisionsView: {
+            /** Revisions */
+            revisions: components["schemas"]["RevisionView"][];
+            /** Running */
+            running: boolean;
+            /** Saved */
+            saved: boolean;
         };
         /**
          * Role
@@ -4141,6 +4393,18 @@ export interface components {
             reason: string;
         };
         /**
+         * Taken
+         * @description A variable whose value does not go on as it is; `before` is null where it is new, `after` where it is gone.
+         */
+        Taken: {
+            /** After */
+            after: boolean | number | string | null;
+            /** Before */
+            before: boolean | number | string | null;
+            /** Name */
+            name: string;
+        };
+        /**
          * TaskProblemView
          * @description What keeps somebody from doing a task; `why` may be empty.
          */
@@ -4246,6 +4510,26 @@ export interface components {
             };
             /** Steps */
             steps: components["schemas"]["StepDocument"][];
+        };
+        /**
+         * TransferView
+         * @description Whether a station in its present state can take another model: `legal` says that the state is safe there.
+         *
+         *     `changes` are the variables that are new, gone, or of other values; they begin as the model says. Where it is not
+         *     legal, `violated` are the specifications that the state would violate, and `ways` the starts, first to last, of
+         *     ways into the safe states.
+         */
+        TransferView: {
+            /** Changes */
+            changes: components["schemas"]["Taken"][];
+            /** Legal */
+            legal: boolean;
+            /** Obstacle */
+            obstacle: string | null;
+            /** Violated */
+            violated: string[];
+            /** Ways */
+            ways: string[][];
         };
         /**
          * TypedEdgeView
@@ -6123,6 +6407,87 @@ export interface operations {
             };
         };
     };
+    comparison_api_v1_model_comparison_get: {
+        parameters: {
+            query: {
+                old: string;
+                new?: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ComparisonView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    deploy_api_v1_model_deployments_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["DeploymentBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     files_api_v1_model_files_get: {
         parameters: {
             query?: {
@@ -6181,6 +6546,160 @@ export interface operations {
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    revisions_api_v1_model_revisions_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RevisionsView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    save_api_v1_model_revisions_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RevisionBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RevisionView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    restore_api_v1_model_revisions__id__restore_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RestoreBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FilesView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    transfer_api_v1_model_transfer_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["TransferView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {

@@ -18,8 +18,9 @@ from sequence_planner.cli.parts import (
     prepare,
     until_interrupted,
 )
+from sequence_planner.control.deploying import DeployedError
 from sequence_planner.control.process import Running, control
-from sequence_planner.lifeline import is_needed
+from sequence_planner.lifeline import DEPLOYED, is_needed
 
 
 def controller(
@@ -41,6 +42,10 @@ def controller(
     network = Network(station, transport, rosbridge)
     url = database_url(model, database)
     try:
-        until_interrupted(lambda connect: control(Running(station, socket, connect, emulated, start, url)), network)
+        until_interrupted(
+            lambda connect: control(Running(station, model, socket, connect, emulated, start, url)), network
+        )
     except SynthesisEndedError as error:
         refuse(str(error))
+    except DeployedError:
+        raise typer.Exit(DEPLOYED) from None

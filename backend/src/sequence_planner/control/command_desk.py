@@ -28,6 +28,7 @@ from sequence_planner.control.mode_desk import ModeDesk
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.offers import Offers
 from sequence_planner.control.overrides import Overrides
+from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.restart_commands import (
     ConfirmEstimates,
     CorrectEstimates,
@@ -64,6 +65,8 @@ class CommandDesk:
                 self.start_production()
             case TaskCommand():
                 self.tasks.carry_out(command, moment.epoch)
+            case Deploy():
+                self.modes.require_standing()
             case SetOverride(name=name, fields=fields, actor=actor):
                 self.overrides.set(name, fields, actor.name, moment.monotonic)
             case ClearOverride(name=name):

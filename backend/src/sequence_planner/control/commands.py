@@ -16,6 +16,7 @@ from sequence_planner.control.alarm_commands import (
 from sequence_planner.control.command_base import CommandBase, CommandRefused
 from sequence_planner.control.override_view import FieldValue
 from sequence_planner.control.production_commands import (
+    Deploy,
     EnterRestart,
     LeaveRestart,
     SetMode,
@@ -95,6 +96,7 @@ Command = Annotated[
     | EnterRestart
     | LeaveRestart
     | StartProduction
+    | Deploy
     | SetStepping
     | TakeStep
     | SetService

@@ -16,7 +16,7 @@ from sequence_planner.control.production_commands import (
     TakeStep,
 )
 from sequence_planner.control.restart_commands import StopErrand
-from sequence_planner.control.view import Mode
+from sequence_planner.control.view import Mode, Production
 
 ModeCommand = SetMode | EnterRestart | LeaveRestart | SetStepping | TakeStep | SetService | StopErrand
 
@@ -49,6 +49,16 @@ class ModeDesk:
             case StopErrand():
                 if execution.errand is not None:
                     execution.stop_errand(by, moment)
+
+    def require_standing(self) -> None:
+        """Raises `CommandRefused` where something is under way, or may be started."""
+        execution = self._execution
+        if execution.errand is not None or execution.plan.order.running:
+            detail = "Abilities are under way. Pause the station, and wait until they have finished, or hold it."
+            raise CommandRefused("under-way", "Something is under way", detail)
+        if execution.production is Production.STARTED and execution.mode is Mode.AUTOMATIC:
+            detail = "Operations are executed automatically. Pause the station first."
+            raise CommandRefused("in-automatic", "The station is at work", detail)
 
     def _set_mode(self, mode: Mode, by: str, moment: Moment) -> None:
         execution = self._execution

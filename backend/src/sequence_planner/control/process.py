@@ -23,6 +23,7 @@ from sequence_planner.control.belief import KIND as BELIEFS
 from sequence_planner.control.belief import beliefs_from
 from sequence_planner.control.commands import Command, CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
+from sequence_planner.control.deploying import Deploying
 from sequence_planner.control.known import Known
 from sequence_planner.control.link import ControllerLink, Handle
 from sequence_planner.control.moment import Moment
@@ -30,6 +31,7 @@ from sequence_planner.control.network_graph import network_steps
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.preparation import Preparation, analyse, preparing_view
+from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.recording import Recording
 from sequence_planner.control.view import Production, StationIdentity
 from sequence_planner.control.view_part import View
@@ -53,10 +55,11 @@ class Running:
 
     `start` starts production without a person, for demonstrations: as soon as emulated devices and nothing else are
     there to be commanded. These have just begun, so nothing is believed of them from before. `database` is the URL of
-    where commands are recorded.
+    where commands are recorded, `model` the folder that the station was read from.
     """
 
     station: ReadyStation
+    model: Path
     socket: Path
     connect: Callable[[str], Transport]
     emulated: bool
@@ -68,7 +71,8 @@ async def control(running: Running) -> None:
     """Run the controller until cancelled. Without a supervisor it only shows why there is none.
 
     Raises `SynthesisEndedError` when that could not be computed, `TransportError` when the network cannot be joined or
-    somebody else commands the devices, and `StorageError` when the database cannot be used.
+    somebody else commands the devices, `StorageError` when the database cannot be used, and `DeployedError` once
+    another model is in place.
     """
     preparation = Preparation()
     database = Database.open(running.database)
@@ -97,11 +101,18 @@ async def _run(
     What fails at finding that out, or at taking command then, ends all that is `living`.
     """
     alone = living.create_task(_require_sole_command(running))
+    deploying = Deploying(running.model, running.socket)
+    living.create_task(deploying.end())
 
     async def act(command: Command) -> None:
         if preparation.controller is None or not preparation.controller.commands:
-            raise preparation.refusal()
-        await preparation.controller.command(command)
+            # What has no supervisor does not run, so another model may take its place at once.
+            if preparation.trouble is None or not isinstance(command, Deploy):
+                raise preparation.refusal()
+        else:
+            await preparation.controller.command(command)
+        if isinstance(command, Deploy):
+            await deploying.carry_out(command)
 
     async def handle(command: Command) -> None:
         await recording.carry_out(command, preparation.tasks, act)

@@ -73,6 +73,24 @@ class TakeStep(CommandBase):
     for_control: ClassVar[bool] = True
 
 
+class Deploy(CommandBase):
+    """Let another model take the place of the one that runs, and begin anew with it. Its files lie in the folder
+    `staged` beside the controller's socket; `revision` and `name` are those it was saved under.
+    """
+
+    kind: Literal["deploy"] = "deploy"
+    for_control: ClassVar[bool] = True
+    reason: str = Field(min_length=1, max_length=LONGEST_REASON)
+    revision: str = Field(pattern=r"^[0-9a-f]{40}$")
+    name: str = Field(max_length=200)
+    staged: str = Field(pattern=r"^deploy-[0-9a-f]{16}$")
+
+    @property
+    def subject(self) -> str:
+        """The revision."""
+        return f"revision {self.name}"
+
+
 class SetService(CommandBase):
     """Take a resource, an ability or an operation out of service, or put it back."""
 

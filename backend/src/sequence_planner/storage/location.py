@@ -8,7 +8,20 @@ import re
 from pathlib import Path
 from urllib.parse import quote
 
+from sequence_planner.storage.address import SqliteFile, address
 from sequence_planner.storage.error import StorageError
+
+
+def revisions_folder(url: str, model: Path) -> Path:
+    """Where the revisions of the model are kept: beside the file of SQLite, or else where that would be.
+
+    Raises `StorageError` for a URL that names no database.
+    """
+    place = address(url)
+    if not isinstance(place, SqliteFile):
+        place = address(default_url(model))
+        assert isinstance(place, SqliteFile)
+    return place.path.with_name(f"{place.path.stem}.revisions.git")
 
 
 def default_url(model: Path) -> str:

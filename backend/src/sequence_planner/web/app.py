@@ -10,12 +10,14 @@ import asyncio
 from collections import Counter
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.history.process import HistoryProcess
+from sequence_planner.storage.location import revisions_folder
 from sequence_planner.web import (
     actions,
     alarms,
@@ -33,6 +35,7 @@ from sequence_planner.web import (
     people,
     pipelines,
     problems,
+    revisions,
     ros,
     session,
     station,
@@ -86,6 +89,7 @@ PARTS = (
     audit.router,
     history.router,
     model.router,
+    revisions.router,
     openapi_document.router,
 )
 
@@ -98,6 +102,10 @@ class StationServer(FastAPI):
         if self.openapi_schema is None:
             self.openapi_schema = describe(self)
         return self.openapi_schema
+
+
+def _workshop(office: IdentityOffice, model: Path, settings: Settings) -> Workshop:
+    return Workshop(office, model, revisions_folder(settings.database, model), settings.stream)
 
 
 def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
@@ -117,7 +125,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.identity = office
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
-        app.state.workshop = shop = None if folder is None else Workshop(office, folder, settings.stream)
+        app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
         parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller))
         running = [asyncio.create_task(each.run()) for each in parts]
         try:

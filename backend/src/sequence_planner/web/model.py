@@ -76,7 +76,7 @@ async def change(body: ChangeBody, shop: TheWorkshop, actor: Actor) -> FilesView
     try:
         return await shop.change(body.edits, actor, body.title)
     except EditError as error:
-        raise _refusal(error) from error
+        raise refusal(error) from error
 
 
 @router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
@@ -85,7 +85,7 @@ async def undo(shop: TheWorkshop, actor: Actor) -> FilesView:
     try:
         return await shop.undo(actor)
     except EditError as error:
-        raise _refusal(error) from error
+        raise refusal(error) from error
 
 
 @router.post("/redo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
@@ -94,7 +94,7 @@ async def redo(shop: TheWorkshop, actor: Actor) -> FilesView:
     try:
         return await shop.redo(actor)
     except EditError as error:
-        raise _refusal(error) from error
+        raise refusal(error) from error
 
 
 @router.websocket("/stream", dependencies=[VIEWER])
@@ -105,7 +105,8 @@ async def stream(websocket: WebSocket) -> None:
     await serve(websocket, shop.latest)
 
 
-def _refusal(error: EditError) -> ProblemFound:
+def refusal(error: EditError) -> ProblemFound:
+    """The problem that says why an edit is not made."""
     text = f"{str(error)[:1].upper()}{str(error)[1:]}."
     if isinstance(error, PartChangedError):
         detail = f"{text} Nothing was changed: look at what it is now, and repeat yours if it is still wanted."

@@ -18,21 +18,36 @@ from sequence_planner.workshop import draft as drafts
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckView, waiting
 from sequence_planner.workshop.draft import Draft
-from sequence_planner.workshop.edits import Edit
-from sequence_planner.workshop.files import read_files
+from sequence_planner.workshop.edits import Edit, WriteText
+from sequence_planner.workshop.files import Files, read_files
+from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
 from sequence_planner.workshop.showing import Reader, change_view, marks
-from sequence_planner.workshop.view import DraftView, FilesView, WorkshopView
+from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, RevisionView, WorkshopView
 
 MOST_SHOWN = 50  # changes
 
 
-class Workshop:
-    """The draft of the station in the folder `model`. Used from one event loop."""
+def _revision_view(revision: Revision, running: str, edited: str) -> RevisionView:
+    return RevisionView(
+        id=revision.id,
+        name=revision.name,
+        message=revision.message,
+        by=revision.by,
+        time=revision.time,
+        running=revision.tree == running,
+        draft=revision.tree == edited,
+    )
 
-    def __init__(self, identity: IdentityOffice, model: Path, limits: StreamLimits) -> None:
+
+class Workshop:
+    """The draft of the station in the folder `model`, and its `revisions`. Used from one event loop."""
+
+    def __init__(self, identity: IdentityOffice, model: Path, revisions: Path, limits: StreamLimits) -> None:
         self.latest = Latest(self._present, limits)
+        self.folder = model
         self._identity = identity
-        self._model = model
+        self._revisions = Revisions(revisions)
+        self._keeping = asyncio.Lock()
         self._reader = Reader()
         self._desk = CheckDesk(model, self._found)
         self._check: CheckView | None = None
@@ -47,7 +62,7 @@ class Workshop:
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since."""
         async with self._opening:
-            files = await run_in_threadpool(read_files, self._model)
+            files = await run_in_threadpool(read_files, self.folder)
             draft = await self._identity.read(drafts.read)
             if not draft.number or draft.base != files:
                 now = self._identity.now()
@@ -94,6 +109,42 @@ class Workshop:
         """What is known of the draft."""
         draft = await self.open()
         return self._check or waiting(draft.number)
+
+    async def revised(self) -> RevisionsView:
+        """All revisions."""
+        draft = await self.open()
+
+        def read() -> RevisionsView:
+            edited, running = tree_of(draft.files), tree_of(draft.base)
+            views = [_revision_view(each, running, edited) for each in self._revisions.all()]
+            return RevisionsView(
+                revisions=views,
+                saved=any(each.draft for each in views),
+                running=any(each.running for each in views),
+            )
+
+        return await run_in_threadpool(read)
+
+    async def files_of(self, revision: str) -> dict[str, str]:
+        """The files of a revision. Raises `EditError` where there is none."""
+        return await run_in_threadpool(self._revisions.files, revision)
+
+    async def save(self, draft: Draft, name: str, message: str, by: Actor) -> RevisionView:
+        """Save the draft under a name. Raises `EditError`."""
+        async with self._keeping:
+            saved = await run_in_threadpool(
+                self._revisions.save, draft.files, draft.base, name, message, by, self._identity.now()
+            )
+        return _revision_view(saved, tree_of(draft.base), saved.tree)
+
+    async def restore(self, draft: Draft, files: Files, name: str, by: Actor) -> FilesView:
+        """Let the draft become these files, those of the revision `name`; the files that are others now."""
+        edits = [
+            WriteText(file=path, was=draft.files.get(path), text=files.get(path))
+            for path in sorted(draft.files.keys() | files.keys())
+            if draft.files.get(path) != files.get(path)
+        ]
+        return await self.change(edits, by, f"Back to “{name}”")
 
     async def _changed(self, work: Callable[[Connection, float], Draft], by: Actor) -> FilesView:
         await self.open()

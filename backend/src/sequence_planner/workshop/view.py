@@ -74,6 +74,29 @@ class FilesView(View):
     files: dict[str, FileView | None]
 
 
+class RevisionView(View):
+    """A saved revision of the model; `running` and `draft` say that the station runs it, and that the draft is it.
+
+    Time is in seconds since the epoch.
+    """
+
+    id: str
+    name: str
+    message: str
+    by: str
+    time: float
+    running: bool
+    draft: bool
+
+
+class RevisionsView(View):
+    """All revisions, newest first; `saved` says whether the draft is one of them, `running` whether the station is."""
+
+    revisions: list[RevisionView]
+    saved: bool
+    running: bool
+
+
 class WorkshopView(View):
     """What all who look at the draft are shown: its files, and what the check of it has found so far."""
 

@@ -1,0 +1,183 @@
+"""Revisions of the model: saved under a name, compared, taken back into the draft, and deployed once checked."""
+
+from __future__ import annotations
+
+import asyncio
+import secrets
+import shutil
+from pathlib import Path as Folder
+from typing import Annotated
+
+from fastapi import APIRouter, Path, Query
+from pydantic import Field
+from starlette.concurrency import run_in_threadpool
+
+from sequence_planner.control.production_commands import Deploy
+from sequence_planner.identity.roles import Role, Scope
+from sequence_planner.journal.entry import LONGEST_REASON
+from sequence_planner.model.paths import EditError
+from sequence_planner.web.access import allowed
+from sequence_planner.web.body import Body
+from sequence_planner.web.model import TheWorkshop, refusal
+from sequence_planner.web.problems import ProblemFound, refused
+from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, LiveView
+from sequence_planner.web.workshop import Workshop
+from sequence_planner.workshop.comparison_view import ComparisonView, TransferView
+from sequence_planner.workshop.draft import Draft
+from sequence_planner.workshop.files import Files, write_files
+from sequence_planner.workshop.processes import WorkEndedError, working
+from sequence_planner.workshop.view import FilesView, RevisionsView, RevisionView
+
+DRAFT, RUNNING = "draft", "running"
+PATIENCE = 60.0  # seconds for a comparison, or for whether the station can take a model
+VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
+ENGINEER = allowed(Role.ENGINEER)
+HASH = "[0-9a-f]{40}"
+
+router = APIRouter(prefix="/model", tags=["model"], responses=refused(409, 503))
+Id = Annotated[str, Path(pattern=f"^{HASH}$")]
+Version = Annotated[str, Query(pattern=f"^({DRAFT}|{RUNNING}|{HASH})$")]
+Number = Annotated[int, Field(ge=0, le=2**53 - 1, strict=True)]
+
+
+class RevisionBody(Body):
+    """The draft after its change `number` is saved under a name."""
+
+    number: Number
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+    message: Annotated[str, Field(max_length=5000)] = ""
+
+
+class RestoreBody(Body):
+    """The draft, after its change `number`, becomes the revision."""
+
+    number: Number
+
+
+class DeploymentBody(Body):
+    """The revision that the draft is, after its change `number`, takes the place of the model that runs."""
+
+    revision: Annotated[str, Field(pattern=f"^{HASH}$")]
+    number: Number
+    reason: Annotated[str, Field(min_length=1, max_length=LONGEST_REASON)]
+
+
+@router.get("/revisions", dependencies=[VIEWER])
+async def revisions(shop: TheWorkshop) -> RevisionsView:
+    """All revisions, and which of them run and are edited."""
+    return await shop.revised()
+
+
+@router.post("/revisions", status_code=201, dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
+async def save(body: RevisionBody, shop: TheWorkshop, actor: Actor) -> RevisionView:
+    """Save the draft as a revision; refused where somebody has changed it since (`draft-moved`)."""
+    draft = await _at(shop, body.number)
+    try:
+        return await shop.save(draft, body.name, body.message, actor)
+    except EditError as error:
+        raise refusal(error) from error
+
+
+@router.post("/revisions/{id}/restore", dependencies=[ENGINEER, JSON_ONLY], responses=refused(404))
+async def restore(id: Id, body: RestoreBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+    """Let the draft become a revision again, which can be undone; the files that are others now."""
+    draft = await _at(shop, body.number)
+    files = await _files(shop, id)
+    return await shop.restore(draft, files, (await _known(shop, id)).name, actor)
+
+
+@router.get("/comparison", dependencies=[VIEWER], responses=refused(404, 504))
+async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> ComparisonView:
+    """How two versions differ, in text and in behaviour: revisions by their ids, the draft, or what runs."""
+    files = await _files(shop, old), await _files(shop, new)
+    found = await _worked("compared", *files, shop.folder)
+    assert isinstance(found, ComparisonView)
+    return found
+
+
+@router.get("/transfer", dependencies=[VIEWER], responses=refused(504))
+async def transfer(shop: TheWorkshop, view: LiveView) -> TransferView:
+    """Whether the station could take the draft as it is now."""
+    return await _fitted(shop, view)
+
+
+@router.post("/deployments", status_code=204, dependencies=[ENGINEER, JSON_ONLY], responses=refused(404, 422, 504))
+async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: Controller, view: LiveView) -> None:
+    """Let the checked revision that the draft is take the place of the model that runs.
+
+    The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
+    production.
+    """
+    draft = await _at(shop, body.number)
+    known = await _known(shop, body.revision)
+    if not known.draft:
+        detail = "What is deployed is the draft, once it was saved: take the revision back into the draft first."
+        raise ProblemFound(409, "not-the-draft", "The draft is not this revision", detail)
+    check = await shop.checked()
+    if check.number != draft.number or not check.deployable:
+        detail = "Only a model whose check has ended without errors, and with a supervisor, is deployed. See Check."
+        raise ProblemFound(409, "not-checked", "The draft is not checked", detail)
+    fits = await _fitted(shop, view)
+    if not fits.legal:
+        why = fits.obstacle or f"It would violate: {'; '.join(fits.violated) or 'no way would lead to rest'}"
+        detail = f"In its present state the station would be outside the safe states of this model. {why}."
+        raise ProblemFound(409, "not-legal", "The station cannot take it now", detail)
+    staged = client.path.parent / f"deploy-{secrets.token_hex(8)}"
+    await run_in_threadpool(_stage, draft.files, staged)
+    try:
+        await client.send(
+            Deploy(actor=actor, reason=body.reason, revision=known.id, name=known.name, staged=staged.name)
+        )
+    finally:
+        await run_in_threadpool(shutil.rmtree, staged, True)
+
+
+async def _at(shop: Workshop, number: int) -> Draft:
+    draft = await shop.open()
+    if draft.number != number:
+        detail = "Somebody has changed the draft since you looked at it. Look at it again, then repeat this."
+        raise ProblemFound(409, "draft-moved", "The draft has changed", detail)
+    return draft
+
+
+async def _known(shop: Workshop, id: str) -> RevisionView:
+    found = next((each for each in (await shop.revised()).revisions if each.id == id), None)
+    if found is None:
+        raise ProblemFound(404, "no-revision", "There is no such revision", "Look at the revisions that there are.")
+    return found
+
+
+async def _files(shop: Workshop, version: str) -> Files:
+    if version == DRAFT:
+        return (await shop.open()).files
+    if version == RUNNING:
+        return (await shop.open()).base
+    await _known(shop, version)
+    return await shop.files_of(version)
+
+
+async def _fitted(shop: Workshop, view: LiveView) -> TransferView:
+    draft = await shop.open()
+    present = {name: variable.value for name, variable in view.variables.items()}
+    found = await _worked("fitted", draft.files, shop.folder, present)
+    assert isinstance(found, TransferView)
+    return found
+
+
+async def _worked(name: str, *arguments: object) -> object:
+    """What a task of the workshop finds."""
+    try:
+        async with asyncio.timeout(PATIENCE), working("tasks", name, *arguments) as found:
+            async for each in found:
+                return each
+    except TimeoutError:
+        detail = f"It took more than {PATIENCE:g} s and was given up. Try again when less is going on."
+        raise ProblemFound(504, "workshop-late", "There was no answer in time", detail) from None
+    except WorkEndedError as error:
+        raise ProblemFound(503, "workshop-failed", "It could not be found out", f"{error} Try again.") from error
+    raise AssertionError
+
+
+def _stage(files: Files, folder: Folder) -> None:
+    folder.mkdir(mode=0o700)
+    write_files(files, folder)

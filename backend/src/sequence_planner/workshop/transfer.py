@@ -1,0 +1,50 @@
+"""Whether a station in its present state can take another model, and how it gets to where it can."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.expressions.evaluation import evaluate
+from sequence_planner.expressions.types import Value, contains
+from sequence_planner.planning.advice.advisor import Advisor
+from sequence_planner.planning.advice.request import AdviceRequest
+from sequence_planner.workshop.comparison_view import Taken, TransferView
+
+ADVISING = 5.0  # seconds
+
+
+def transferred(automaton: Automaton, present: Mapping[str, Value | None]) -> State:
+    """The state in which another model begins: what it has in common with the `present` one goes on, if its values are
+    those of the model; what is unknown stays so.
+    """
+    kept = {
+        name: present[name]
+        for name, declared in automaton.variables.items()
+        if name in present and (present[name] is None or contains(declared.type, present[name]))
+    }
+    return synchronise(automaton, {**initial_state(automaton), **kept})
+
+
+def transfer(automaton: Automaton, supervisor: Supervisor, present: Mapping[str, Value | None]) -> TransferView:
+    """What would come of it."""
+    state = transferred(automaton, present)
+    names = dict.fromkeys((*automaton.variables, *present))
+    changes = [
+        Taken(name=name, before=present.get(name), after=state[name] if name in automaton.variables else None)
+        for name in names
+        if name not in present or name not in automaton.variables or present[name] != state[name]
+    ]
+    legal = supervisor.safe.includes(state)
+    violated = [
+        specification.title
+        for specification in automaton.specifications.values()
+        if evaluate(specification.forbidden, state) is not False
+    ]
+    ways: list[list[str]] = []
+    if not legal:
+        advice = Advisor(automaton, supervisor).advise(AdviceRequest(state, (), deadline=ADVISING))
+        ways = [[name for _, name in offer.errand.starts] for offer in advice.offers if offer.errand is not None]
+    return TransferView(legal=legal, changes=changes, violated=violated, ways=ways, obstacle=None)
