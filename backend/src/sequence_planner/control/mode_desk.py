@@ -5,6 +5,7 @@ from __future__ import annotations
 from sequence_planner.control.command_base import CommandRefused
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.offer_refusals import errand_under_way
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.production_commands import (
     EnterRestart,
@@ -51,11 +52,10 @@ class ModeDesk:
                     execution.stop_errand(by, moment)
 
     def require_standing(self) -> None:
-        """Raises `CommandRefused` where something is under way, or may be started."""
+        """Raises `CommandRefused` where something may be started."""
         execution = self._execution
-        if execution.errand is not None or execution.plan.order.running:
-            detail = "Abilities are under way. Pause the station, and wait until they have finished, or hold it."
-            raise CommandRefused("under-way", "Something is under way", detail)
+        if execution.errand is not None:
+            raise errand_under_way(execution.errand)
         if execution.production is Production.STARTED and execution.mode is Mode.AUTOMATIC:
             detail = "Operations are executed automatically. Pause the station first."
             raise CommandRefused("in-automatic", "The station is at work", detail)
@@ -80,8 +80,7 @@ class ModeDesk:
             detail = "Leave restart mode first; to go on is another decision."
             raise CommandRefused("in-restart", "The station is in restart mode", detail)
         if execution.errand is not None:
-            detail = f"{execution.errand.title} is being carried out. Wait for its end, or stop it."
-            raise CommandRefused("errand-under-way", "Something else is being carried out", detail)
+            raise errand_under_way(execution.errand)
         if situation is not None and situation.certain:
             detail = f"{self._outside.describe(situation)} Enter restart mode and see which ways lead back."
             raise CommandRefused("outside-safe-states", "The station is outside its safe states", detail)

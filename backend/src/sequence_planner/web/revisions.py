@@ -119,8 +119,7 @@ async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: 
         raise ProblemFound(409, "not-checked", "The draft is not checked", detail)
     fits = await _fitted(shop, view)
     if not fits.legal:
-        why = fits.obstacle or f"It would violate: {'; '.join(fits.violated) or 'no way would lead to rest'}"
-        detail = f"In its present state the station would be outside the safe states of this model. {why}."
+        detail = _why_not(fits)
         raise ProblemFound(409, "not-legal", "The station cannot take it now", detail)
     staged = client.path.parent / f"deploy-{secrets.token_hex(8)}"
     await run_in_threadpool(_stage, draft.files, staged)
@@ -159,7 +158,8 @@ async def _files(shop: Workshop, version: str) -> Files:
 async def _fitted(shop: Workshop, view: LiveView) -> TransferView:
     draft = await shop.open()
     present = {name: variable.value for name, variable in view.variables.items()}
-    found = await _worked("fitted", draft.files, shop.folder, present)
+    running = [name for name, ability in view.abilities.items() if ability.running_since is not None]
+    found = await _worked("fitted", draft.base, draft.files, shop.folder, present, running)
     assert isinstance(found, TransferView)
     return found
 
@@ -176,6 +176,15 @@ async def _worked(name: str, *arguments: object) -> object:
     except WorkEndedError as error:
         raise ProblemFound(503, "workshop-failed", "It could not be found out", f"{error} Try again.") from error
     raise AssertionError
+
+
+def _why_not(fits: TransferView) -> str:
+    if fits.obstacle is not None:
+        return f"{fits.obstacle}."
+    if fits.under_way:
+        return f"{', '.join(fits.under_way)}: this runs now, and is another one there. Wait until it has finished."
+    why = f"It would violate: {'; '.join(fits.violated)}" if fits.violated else "From there nothing could come to rest"
+    return f"In its present state the station would be outside the safe states of this model. {why}."
 
 
 def _stage(files: Files, folder: Folder) -> None:

@@ -72,15 +72,17 @@ class Taken(View):
 
 
 class TransferView(View):
-    """Whether a station in its present state can take another model: `legal` says that the state is safe there.
+    """Whether a station in its present state can take another model: `legal` says that the state is safe there, and
+    that what runs now is the same there.
 
     `changes` are the variables that are new, gone, or of other values; they begin as the model says. Where it is not
-    legal, `violated` are the specifications that the state would violate, and `ways` the starts, first to last, of
-    ways into the safe states.
+    legal, `violated` are the specifications that the state would violate, `under_way` the abilities that run now and
+    would go on as other ones or as none, and `ways` the starts, first to last, of ways into the safe states.
     """
 
     legal: bool
     changes: list[Taken]
     violated: list[str]
+    under_way: list[str]
     ways: list[list[str]]
     obstacle: str | None

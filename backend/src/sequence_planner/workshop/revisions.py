@@ -32,7 +32,7 @@ _UNWRITABLE = re.compile(r"[<>\x00-\x1f]")
 
 @dataclass(frozen=True)
 class Revision:
-    """A saved revision: `id` is the hash of its commit, `tree` that of its files. Time is in seconds since the epoch."""
+    """A saved revision: `id` is the hash of its commit, `tree` that of its files. Times are seconds since the epoch."""
 
     id: str
     name: str

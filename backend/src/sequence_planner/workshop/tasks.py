@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.analysis import analyses
+from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.types import Value
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import prepare_station
@@ -45,24 +46,30 @@ def compared(old: Files, new: Files, stages: Path | None, folder: Path) -> Itera
 
 
 def fitted(
-    files: Files, stages: Path | None, present: Mapping[str, Value | None], folder: Path
+    old: Files,
+    new: Files,
+    stages: Path | None,
+    present: Mapping[str, Value | None],
+    running: Collection[str],
+    folder: Path,
 ) -> Iterator[TransferView]:
-    """Whether a station in its `present` state can take a model; `folder` is empty."""
+    """Whether a station in its `present` state, with abilities `running`, can take `new`; `folder` is empty."""
     try:
-        meant = _meant("the model", files, stages, folder / "new")
+        after = _meant("the model", new, stages, folder / "new")
     except Unusable as error:
-        yield TransferView(legal=False, changes=[], violated=[], ways=[], obstacle=str(error))
+        yield TransferView(legal=False, changes=[], violated=[], under_way=[], ways=[], obstacle=str(error))
         return
-    yield transfer(meant.automaton, meant.supervisor, present)
+    try:
+        before = _automaton(old, stages, folder / "old")
+    except ModelError:
+        before = None
+    yield transfer(before, after.automaton, after.supervisor, present, running)
 
 
 def _meant(what: str, files: Files, stages: Path | None, folder: Path) -> Meant:
     """What a model means. Raises `Unusable`."""
-    folder.mkdir()
-    write_files(files, folder, stages)
     try:
-        with contextlib.chdir(folder):
-            automaton = prepare_station(Path()).automaton
+        automaton = _automaton(files, stages, folder)
     except ModelError as error:
         raise Unusable(f"{what} cannot be used: {error.findings[0]}") from error
     found = None
@@ -71,3 +78,11 @@ def _meant(what: str, files: Files, stages: Path | None, folder: Path) -> Meant:
             return Meant(automaton, found.supervisor, found.guards)
     why = "; ".join(warning.message for warning in (found.warnings if found else None) or ())
     raise Unusable(f"{what} has no supervisor: {why}")
+
+
+def _automaton(files: Files, stages: Path | None, folder: Path) -> Automaton:
+    """Raises `ModelError`."""
+    folder.mkdir()
+    write_files(files, folder, stages)
+    with contextlib.chdir(folder):
+        return prepare_station(Path()).automaton

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
@@ -28,8 +28,14 @@ def transferred(automaton: Automaton, present: Mapping[str, Value | None]) -> St
     return synchronise(automaton, {**initial_state(automaton), **kept})
 
 
-def transfer(automaton: Automaton, supervisor: Supervisor, present: Mapping[str, Value | None]) -> TransferView:
-    """What would come of it."""
+def transfer(
+    old: Automaton | None,
+    automaton: Automaton,
+    supervisor: Supervisor,
+    present: Mapping[str, Value | None],
+    running: Collection[str],
+) -> TransferView:
+    """What would come of it, with abilities `running` as the `old` model has them; None for one that cannot be used."""
     state = transferred(automaton, present)
     names = dict.fromkeys((*automaton.variables, *present))
     changes = [
@@ -37,14 +43,23 @@ def transfer(automaton: Automaton, supervisor: Supervisor, present: Mapping[str,
         for name in names
         if name not in present or name not in automaton.variables or present[name] != state[name]
     ]
-    legal = supervisor.safe.includes(state)
+    before = {} if old is None else old.abilities
+    under_way = [name for name in running if name not in before or automaton.abilities.get(name) != before[name]]
+    safe = supervisor.safe.includes(state)
     violated = [
         specification.title
         for specification in automaton.specifications.values()
         if evaluate(specification.forbidden, state) is not False
     ]
     ways: list[list[str]] = []
-    if not legal:
+    if not safe:
         advice = Advisor(automaton, supervisor).advise(AdviceRequest(state, (), deadline=ADVISING))
         ways = [[name for _, name in offer.errand.starts] for offer in advice.offers if offer.errand is not None]
-    return TransferView(legal=legal, changes=changes, violated=violated, ways=ways, obstacle=None)
+    return TransferView(
+        legal=safe and not under_way,
+        changes=changes,
+        violated=violated,
+        under_way=under_way,
+        ways=ways,
+        obstacle=None,
+    )
