@@ -139,6 +139,8 @@ def _added(text: str, edit: AddEntry, path: EntryPath) -> str:
     content, depth = editing.value_at(text, ()), 0
     while depth < len(path) - 1 and isinstance(content, dict) and content.get(str(path[depth])) is not None:
         content, depth = content[str(path[depth])], depth + 1
+    if isinstance(content, list) and isinstance(path[depth], str):
+        raise EditError(f"`{shown_path(path[:depth])}` is a list: its entries have no names")
     if depth == len(path) - 1 or isinstance(content, list):
         return editing.insert(text, path, edit.value, before=edit.before, after=edit.after)
     value: JsonValue = edit.value

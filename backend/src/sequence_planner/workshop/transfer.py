@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.types import Value, contains
+from sequence_planner.immutable import replace
 from sequence_planner.planning.advice.advisor import Advisor
 from sequence_planner.planning.advice.request import AdviceRequest
 from sequence_planner.workshop.comparison_view import Taken, TransferView
@@ -44,7 +45,7 @@ def transfer(
         if name not in present or name not in automaton.variables or present[name] != state[name]
     ]
     before = {} if old is None else old.abilities
-    under_way = [name for name in running if name not in before or automaton.abilities.get(name) != before[name]]
+    under_way = [name for name in running if not _same(before.get(name), automaton.abilities.get(name))]
     safe = supervisor.safe.includes(state)
     violated = [
         specification.title
@@ -63,3 +64,8 @@ def transfer(
         ways=ways,
         obstacle=None,
     )
+
+
+def _same(one: Ability | None, other: Ability | None) -> bool:
+    """Whether they are the same but for what people call them."""
+    return one is not None and other is not None and replace(one, title="") == replace(other, title="")
