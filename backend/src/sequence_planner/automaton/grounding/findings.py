@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 
 from sequence_planner.expressions.place import Place
+from sequence_planner.expressions.syntax import Span
 from sequence_planner.expressions.types import EnumerationType
 from sequence_planner.model.source import Finding, SourceText
 
@@ -22,6 +23,10 @@ class Findings:
     def add(self, where: SourceText | Place, message: str) -> None:
         """Note what is wrong at `where`."""
         self.all.append(Finding(where.place if isinstance(where, SourceText) else where, message))
+
+    def add_within(self, text: SourceText, span: Span, message: str) -> None:
+        """Note what is wrong at a part of `text`."""
+        self.all.append(Finding(text.at(span), message))
 
 
 def instance_name(name: str, binding: Binding, indexed: bool = False) -> str:
