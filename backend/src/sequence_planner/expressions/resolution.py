@@ -130,6 +130,11 @@ def resolve_assignment(action: Assignment, scope: Scope) -> Assignment:
     return Assignment(target, value, condition, action.span)
 
 
+def type_of(expression: Expression, scope: Scope) -> Type:
+    """The type of an expression with names. Raises `ExpressionError`."""
+    return _typed(expression, scope, None)[1]
+
+
 def suggestion(word: str, candidates: Iterable[str], likeness: float = 0.5) -> str:
     """`; did you mean ...?` with the nearest of `candidates`, or nothing."""
     near = difflib.get_close_matches(word, list(dict.fromkeys(candidates)), n=1, cutoff=likeness)
