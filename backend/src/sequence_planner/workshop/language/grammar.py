@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -24,6 +25,8 @@ EQUALITIES = ("==", "!=")
 ORDERS = ("<", "<=", ">", ">=")
 JUNCTIONS = ("and", "or", "implies")
 _CLOSING = {")": "(", "}": "{", "]": "["}
+_LAST = re.compile(r"(\w+|\S)\s*\Z")
+_BEFORE_OPERAND = frozenset({*JUNCTIONS, "not", "if", "in"})
 _BOUNDS = frozenset({*EQUALITIES, *ORDERS, *JUNCTIONS, "not", "in", "if", ":=", "{", ","})
 
 
@@ -56,17 +59,14 @@ class Beginning:
     def wants_name(self) -> bool:
         """Whether a name can stand next; where what is before makes no sense, as far as its last word tells."""
         if self._is_broken:
-            last = self.text.rstrip()[-1:]
-            ends_name = (last.isalnum() or last in "_)]}") and not (
-                self.tokens and self.tokens[-1].kind in {"and", "or", "implies", "not", "if", "in"}
-            )
-            return not ends_name
+            last = _LAST.search(self.text)
+            return last is None or last[1] in _BEFORE_OPERAND or not (last[1][-1].isalnum() or last[1] in ")]}_")
         return self.fits("x")
 
     @cached_property
     def wants_target(self) -> bool:
         """Whether the variable that an action writes can stand next."""
-        return self.kind is FieldKind.ACTION and not self.tokens
+        return self.kind is FieldKind.ACTION and not self.text.strip()
 
     def words(self) -> list[str]:
         """The operators and other words of the language that can stand next."""
@@ -88,7 +88,13 @@ class Beginning:
 
     def _joining_words(self) -> list[str]:
         """What can stand behind an operand."""
+        begin = self._begin_before(len(self.tokens))
         operand = self._type_before(len(self.tokens))
+        if begin and self.tokens[begin - 1].kind == ":=":
+            target = self._type_before(begin - 1)
+            if target is not None and target != BOOLEAN:  # what it is compared with, or joined to, is no value of it
+                signs = ("+", "-", "if") if isinstance(target, IntegerRange) else ("if",)
+                return [sign for sign in signs if self.fits(sign)]
         compares, is_truth = self.fits("=="), operand is None or operand == BOOLEAN
         is_number = operand is None or isinstance(operand, IntegerRange)
         found: list[str] = []
@@ -134,8 +140,8 @@ class Beginning:
                 depth -= 1
         return None
 
-    def _type_before(self, at: int) -> Type | None:
-        """The type of the operand that ends before the word `at`."""
+    def _begin_before(self, at: int) -> int:
+        """The first word of the operand that ends before the word `at`."""
         begin, depth = at, 0
         while begin > 0:
             kind = self.tokens[begin - 1].kind
@@ -146,6 +152,11 @@ class Beginning:
             if depth < 0 or (depth == 0 and kind in _BOUNDS):
                 break
             begin -= 1
+        return begin
+
+    def _type_before(self, at: int) -> Type | None:
+        """The type of that operand."""
+        begin = self._begin_before(at)
         if begin == at:
             return None
         written = self.text[self.tokens[begin].start : self.tokens[at - 1].end]
