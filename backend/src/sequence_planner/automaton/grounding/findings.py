@@ -44,7 +44,7 @@ def with_arguments(name: str, values: Iterable[str], indexed: bool = False) -> s
 
 def without_arguments(name: str) -> str:
     """The name of what a ground instance is one of."""
-    return re.sub(r"[\[(][^\])]*[\])]", "", name)
+    return re.sub(r"[\[(][^\])]*[\])]", "", name) if "(" in name or "[" in name else name
 
 
 def readable(title: SourceText | None, name: str, binding: Binding) -> str:
