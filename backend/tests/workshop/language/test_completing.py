@@ -5,11 +5,10 @@ from __future__ import annotations
 import pytest
 
 from sequence_planner.expressions.lexer import tokens
-from sequence_planner.expressions.syntax import ExpressionError
+from sequence_planner.expressions.parser import can_go_on
 from sequence_planner.model.reading import EntryPath
 from sequence_planner.workshop.language import Completion, FieldKind, Lexicon, NameKind, complete
 from sequence_planner.workshop.language.completion import MOST_OPTIONS
-from sequence_planner.workshop.language.grammar import PARSERS
 
 from .drafts import STATIONS, Text, draft
 
@@ -65,16 +64,8 @@ def test_what_is_inserted_leaves_a_text_that_can_be_read_on(station: str) -> Non
         for token in tokens(each.text)[:-1:3]:
             found = complete(drafted.lexicon, each.field, each.text[: token.start], token.start)
             for insert in inserts(found)[::5]:
-                assert can_go_on(each.field.kind, each.text[: found.start] + insert), (str(each), insert)
-
-
-def can_go_on(kind: FieldKind, text: str) -> bool:
-    """Whether a text is right, or what is wrong is that it ends."""
-    try:
-        PARSERS[kind](text)
-    except ExpressionError as error:
-        return error.span.start >= len(text)
-    return True
+                kind, text = each.field.kind, each.text[: found.start] + insert
+                assert can_go_on(text, kind is FieldKind.ACTION, kind is FieldKind.FORMULA), (str(each), insert)
 
 
 def test_in_place_of_a_name_stands_another() -> None:

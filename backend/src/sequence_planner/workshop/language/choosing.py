@@ -56,7 +56,7 @@ def _enumerations(lexicon: Lexicon) -> Iterator[Option]:
 def _abilities(lexicon: Lexicon, field: Field) -> Iterator[Option]:
     """Each ability, and those with parameters one by one as well."""
     sight = Sight(lexicon, field)
-    for seen in list(abilities(sight.families())):
+    for seen in abilities(sight.families):
         title = seen.family.title or ""
         if seen.family.arguments:
             yield option(seen.family.name, NameKind.ABILITY, title)

@@ -3,23 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 from sequence_planner.expressions.lexer import INFIX_LETTERS, PREFIX_LETTERS, Token, tokens
-from sequence_planner.expressions.parser import parse, parse_assignment, parse_formula
+from sequence_planner.expressions.parser import can_go_on, parse
 from sequence_planner.expressions.resolution import Scope, type_of
 from sequence_planner.expressions.syntax import ExpressionError
 from sequence_planner.expressions.types import BOOLEAN, IntegerRange, Type
 from sequence_planner.workshop.language.field import FieldKind
-
-PARSERS: dict[FieldKind, Callable[[str], object]] = {
-    FieldKind.CONDITION: parse,
-    FieldKind.FORMULA: parse_formula,
-    FieldKind.ACTION: parse_assignment,
-    FieldKind.ABILITY: parse,
-}
 
 EQUALITIES = ("==", "!=")
 ORDERS = ("<", "<=", ">", ">=")
@@ -37,15 +29,14 @@ class Beginning:
     text: str
     kind: FieldKind
     scope: Scope
+    _fitting: dict[str, bool] = field(default_factory=dict, compare=False, repr=False)
 
     def fits(self, word: str) -> bool:
         """Whether `word` can stand next, if the right words follow."""
-        whole = f"{self.text} {word}"
-        try:
-            PARSERS[self.kind](whole)
-        except ExpressionError as error:
-            return error.span.start >= len(whole)
-        return True
+        if word not in self._fitting:
+            is_action, is_formula = self.kind is FieldKind.ACTION, self.kind is FieldKind.FORMULA
+            self._fitting[word] = can_go_on(f"{self.text} {word}", is_action, is_formula)
+        return self._fitting[word]
 
     @cached_property
     def tokens(self) -> tuple[Token, ...]:

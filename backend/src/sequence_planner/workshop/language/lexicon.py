@@ -19,7 +19,7 @@ from sequence_planner.pipelines.building import load_messages
 from sequence_planner.pipelines.inference import variables_inferred
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.workshop.language.field import Field
-from sequence_planner.workshop.language.names import Family, families_of
+from sequence_planner.workshop.language.names import Family, Visible, families_of, seen_from
 from sequence_planner.workshop.language.resource_fields import field_of_resource, placed
 from sequence_planner.workshop.language.station_fields import (
     field_of_operation,
@@ -35,6 +35,7 @@ class Lexicon:
     def __init__(self, station: Station, registry: MessageRegistry | None = None) -> None:
         self._written = station
         self._registry = registry
+        self._seen: dict[str | None, tuple[Visible, ...]] = {}
 
     @classmethod
     def of(cls, station: Station, registry: MessageRegistry | None = None) -> Lexicon:
@@ -70,6 +71,12 @@ class Lexicon:
     def family(self) -> Mapping[str, Family]:
         """What each full name is one of."""
         return {name: family for family in self.families for name in family.instances(self.declarations.enumerations)}
+
+    def seen_from(self, resource: str | None) -> tuple[Visible, ...]:
+        """The same as they are seen from a resource, or from the station as a whole."""
+        if resource not in self._seen:
+            self._seen[resource] = tuple(seen_from(resource, self.families))
+        return self._seen[resource]
 
     def field(self, file: str, path: EntryPath, parameters: Mapping[str, str] | None = None) -> Field | None:
         """What stands at an entry of a file of the station, or None where no names stand.

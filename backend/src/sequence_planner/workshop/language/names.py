@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import cached_property
 from itertools import product
+from typing import NamedTuple
 
 from sequence_planner.automaton.grounding.declarations import FLAGS, OPERATION, Declarations
 from sequence_planner.automaton.grounding.findings import with_arguments
@@ -53,10 +55,16 @@ class Family:
     initial: Value | None = None
     title: str | None = None
 
-    @property
+    @cached_property
     def skeleton(self) -> str:
         """The full name without arguments."""
         return self.name + self.suffix
+
+    @cached_property
+    def step(self) -> str:
+        """The resource, or what stands for the operations, with its dot; empty for a variable of the station."""
+        head, dot, _ = self.name.partition(".")
+        return head + dot if dot else ""
 
     def instance(self, words: tuple[str, ...]) -> str:
         """The full name with these arguments."""
@@ -66,6 +74,36 @@ class Family:
         """All full names."""
         for words in product(*(enumerations[argument].values for argument in self.arguments)):
             yield self.instance(words)
+
+
+class Visible(NamedTuple):
+    """A family as it is seen from a resource: `short` is what its name is there without arguments.
+
+    `own` says whether it belongs to that resource; the lower its `distance`, the likelier is it meant.
+    """
+
+    family: Family
+    short: str
+    own: bool
+    distance: int
+
+    @property
+    def long(self) -> str:
+        """The full name without arguments."""
+        return self.family.skeleton
+
+
+# Whose names come first, where all fit what is typed as well.
+_DISTANCES = {NameKind.FLAG: 2, NameKind.ACTIVITY: 4}
+
+
+def seen_from(resource: str | None, families: Iterable[Family]) -> Iterator[Visible]:
+    """All families as they are seen from a resource, or from the station as a whole."""
+    for family in families:
+        own = resource is not None and family.owner == resource
+        short = family.skeleton[len(family.step) :] if own else family.skeleton
+        far = 0 if own else 1 if family.owner is None else 4
+        yield Visible(family, short, own, far + _DISTANCES.get(family.kind, 0))
 
 
 def families_of(station: Station, declarations: Declarations) -> Iterator[Family]:

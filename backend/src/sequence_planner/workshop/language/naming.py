@@ -4,25 +4,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 
 from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.findings import without_arguments
 from sequence_planner.workshop.language.completion import MOST_OPTIONS, Option, option
 from sequence_planner.workshop.language.matching import NO_MATCH, likeness
-from sequence_planner.workshop.language.names import NameKind
-from sequence_planner.workshop.language.visible import Sight, Visible
+from sequence_planner.workshop.language.names import NameKind, Visible
+from sequence_planner.workshop.language.visible import Sight
 
 _BRACKET = re.compile(r"[(\[]")
-# Whose names come first, where all fit what is typed as well.
-_NEARNESS = {NameKind.FLAG: 2, NameKind.ACTIVITY: 4}
-
-
-@dataclass(frozen=True)
-class _Match:
-    rank: tuple[int, int]
-    seen: Visible
-    long: bool
+Match = tuple[int, Visible, bool]  # how well a family fits what is typed, and whether it is its full name that does
 
 
 def name_options(
@@ -32,7 +23,7 @@ def name_options(
     bracket = _BRACKET.search(typed)
     if bracket is not None:
         return [(0, each) for each in _with_arguments(sight, typed, wanted)]
-    matches = sorted(_matches(sight, typed, wanted), key=lambda match: match.rank)
+    matches = sorted(_matches(sight, typed, wanted), key=lambda match: (match[0], match[1].distance))
     for level in range(4):
         found = _at_level(sight, matches, typed, level, room)
         if len(found) <= room:
@@ -42,7 +33,7 @@ def name_options(
 
 def resource_steps(sight: Sight, typed: str, wanted: Callable[[Visible], bool]) -> list[tuple[int, Option]]:
     """The resources, as the beginnings of their full names."""
-    owners = dict.fromkeys(_step(seen) for seen in sight.families() if wanted(seen))
+    owners = dict.fromkeys(seen.family.step for seen in sight.families if wanted(seen))
     ranked = ((likeness(typed, owner), owner) for owner in owners if owner)
     return sorted(
         ((rank, _step_option(owner)) for rank, owner in ranked if rank < NO_MATCH),
@@ -50,34 +41,32 @@ def resource_steps(sight: Sight, typed: str, wanted: Callable[[Visible], bool]) 
     )
 
 
-def _matches(sight: Sight, typed: str, wanted: Callable[[Visible], bool]) -> Iterator[_Match]:
-    for seen in sight.families():
-        if not wanted(seen):
-            continue
-        short = likeness(typed, seen.short)
-        long = likeness(typed, seen.long) if seen.own and short else NO_MATCH
-        best = min(short, long)
-        if best < NO_MATCH:
-            far = 0 if seen.own else 1 if seen.family.owner is None else 4
-            yield _Match((best, far + _NEARNESS.get(seen.family.kind, 0)), seen, long < short)
+def _matches(sight: Sight, typed: str, wanted: Callable[[Visible], bool]) -> Iterator[Match]:
+    for seen in sight.families:
+        if wanted(seen):
+            short = likeness(typed, seen.short)
+            long = likeness(typed, seen.long) if short and seen.own else NO_MATCH
+            if short < NO_MATCH or long < NO_MATCH:
+                yield min(short, long), seen, long < short
 
 
-def _at_level(sight: Sight, matches: list[_Match], typed: str, level: int, room: int) -> list[tuple[int, Option]]:
+def _at_level(sight: Sight, matches: list[Match], typed: str, level: int, room: int) -> list[tuple[int, Option]]:
     """The options where `level` 0 writes all out, 1 leaves out the arguments of other resources, 2 all arguments,
     and 3 all that other resources have.
     """
     found: dict[str, tuple[int, Option]] = {}
-    for match in matches:
-        seen, step = match.seen, _step(match.seen)
-        if level == 3 and not seen.own and step and not typed.startswith(step):
-            found.setdefault(step, (match.rank[0], _step_option(step)))
-        elif seen.family.arguments and level and (level > 1 or not seen.own):
-            stub = _stub(seen, match.long)
-            found.setdefault(stub, (match.rank[0], option(stub, seen.family.kind, "…")))
+    for rank, seen, long in matches:
+        family = seen.family
+        if level == 3 and not seen.own and family.step and not typed.startswith(family.step):
+            if family.step not in found:
+                found[family.step] = rank, _step_option(family.step)
+        elif family.arguments and level and (level > 1 or not seen.own):
+            stub = _stub(seen, long)
+            found.setdefault(stub, (rank, option(stub, family.kind, "…")))
         else:
-            for form in sight.forms(seen, match.long):
-                found.setdefault(form, (match.rank[0], option(form, seen.family.kind, seen.family.type)))
-        if len(found) > room and level < 3:
+            for form in sight.forms(seen, long):
+                found.setdefault(form, (rank, option(form, family.kind, family.type)))
+        if len(found) > room:
             break
     return list(found.values())
 
@@ -86,7 +75,7 @@ def _with_arguments(sight: Sight, typed: str, wanted: Callable[[Visible], bool])
     """The names that begin with what is typed, which has arguments, or the beginning of some."""
     head = typed[: typed.index(next(sign for sign in typed if sign in "(["))]
     begun = _bare(typed)
-    for seen in sight.families():
+    for seen in sight.families:
         if not seen.family.arguments or not wanted(seen):
             continue
         long = seen.family.name == head
@@ -108,9 +97,3 @@ def _stub(seen: Visible, long: bool) -> str:
 
 def _step_option(step: str) -> Option:
     return option(step, NameKind.OPERATION if step == f"{OPERATION}." else NameKind.RESOURCE)
-
-
-def _step(seen: Visible) -> str:
-    """The resource of a name, with its dot, or what stands for the operations."""
-    head, dot, _ = seen.family.name.partition(".")
-    return head + dot if dot else ""

@@ -2,36 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice, product
 
 from sequence_planner.automaton.grounding.findings import with_arguments
+from sequence_planner.expressions.likeness import beginning_with
 from sequence_planner.expressions.resolution import Scope
 from sequence_planner.expressions.types import EnumerationType
 from sequence_planner.workshop.language.field import Field
 from sequence_planner.workshop.language.lexicon import Lexicon
-from sequence_planner.workshop.language.names import Family, NameKind
+from sequence_planner.workshop.language.names import Family, NameKind, Visible
 
 _MOST_FORMS = 2000  # of one family
-
-
-@dataclass(frozen=True)
-class Visible:
-    """A family as a field sees it: `short` is what its name is without arguments, `long` the same in full.
-
-    `own` says whether it belongs to the resource of the field.
-    """
-
-    family: Family
-    short: str
-    own: bool
-
-    @property
-    def long(self) -> str:
-        """The full name without arguments."""
-        return self.family.skeleton
 
 
 class Sight:
@@ -63,9 +46,8 @@ class Sight:
     def flags(self) -> Iterator[str]:
         """The flags of the field's own ability, by their bare names."""
         if self._field.ability:
-            for name in self.scope.variables:
-                if name.startswith(self.scope.prefixes[0]):
-                    yield name.removeprefix(self.scope.prefixes[0])
+            own = self.scope.prefixes[0]
+            yield from (name.removeprefix(own) for name in beginning_with(own, self.scope.names))
 
     def values(self) -> Iterator[tuple[str, str]]:
         """Each value of each enumeration, with the enumeration."""
@@ -73,13 +55,10 @@ class Sight:
             for value in type_.values:
                 yield value, name
 
-    def families(self) -> Iterator[Visible]:
+    @property
+    def families(self) -> tuple[Visible, ...]:
         """All families that have a name here."""
-        own = f"{self._field.resource}." if self._field.resource else None
-        for family in self._lexicon.families:
-            is_own = own is not None and family.name.startswith(own)
-            short = family.skeleton.removeprefix(own) if own and is_own else family.skeleton
-            yield Visible(family, short, is_own)
+        return self._lexicon.seen_from(self._field.resource)
 
     def forms(self, seen: Visible, long: bool = False) -> Iterator[str]:
         """The names of a family as they can be written here: one for each choice of values or parameters."""
@@ -113,7 +92,7 @@ class Sight:
         return None
 
 
-def abilities(families: Iterator[Visible]) -> Iterator[Visible]:
+def abilities(families: Iterable[Visible]) -> Iterator[Visible]:
     """One of the families of each ability."""
     for seen in families:
         if seen.family.kind is NameKind.FLAG and seen.family.suffix == ".executing":
