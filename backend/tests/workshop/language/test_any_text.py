@@ -12,13 +12,9 @@ from sequence_planner.workshop.language.view import CompletionView, HoverView, O
 
 from .drafts import draft, with_text
 
-WORDS = st.sampled_from(
-    [
-        *"robot pose bolts pair bolt_pair_1 executing move_to_position home F U and not in if true".split(),
-        *":= == < + - ( ) [ ] { } . , 1 # é 𝒳".split(),
-        *"  ",
-    ]
-)
+NAMES = ("robot", "pose", "bolts", "pair", "bolt_pair_1", "executing", "move_to_position", "home", "F", "U")
+SIGNS = (":=", "==", *"<+-()[]{}.,1#é𝒳", " ", " ")
+WORDS = st.sampled_from((*NAMES, *SIGNS, "and", "not", "in", "if", "true"))
 TYPED = st.lists(WORDS, max_size=14).map("".join)
 FIELDS = st.sampled_from(sorted({str(each): each.field for each in draft("bolt_tightening").texts}.items())[::3])
 
