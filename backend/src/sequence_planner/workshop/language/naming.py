@@ -12,6 +12,9 @@ from sequence_planner.workshop.language.matching import NO_MATCH, likeness
 from sequence_planner.workshop.language.names import NameKind, Visible
 from sequence_planner.workshop.language.visible import Sight
 
+_LEVELS = 5
+_MOST_INSTANCES = 8  # of one declaration that are written out before its bracket is typed
+_NO_VARIABLES = (NameKind.FLAG, NameKind.ACTIVITY)
 _BRACKET = re.compile(r"[(\[]")
 Match = tuple[int, Visible, bool]  # how well a family fits what is typed, and whether it is its full name that does
 
@@ -24,7 +27,7 @@ def name_options(
     if bracket is not None:
         return [(0, each) for each in _with_arguments(sight, typed, wanted)]
     matches = sorted(_matches(sight, typed, wanted), key=lambda match: (match[0], match[1].distance))
-    for level in range(4):
+    for level in range(_LEVELS):
         found = _at_level(sight, matches, typed, level, room)
         if len(found) <= room:
             return found
@@ -51,20 +54,25 @@ def _matches(sight: Sight, typed: str, wanted: Callable[[Visible], bool]) -> Ite
 
 
 def _at_level(sight: Sight, matches: list[Match], typed: str, level: int, room: int) -> list[tuple[int, Option]]:
-    """The options where `level` 0 writes all out, 1 leaves out the arguments of other resources, 2 all arguments,
-    and 3 all that other resources have.
+    """The options where `level` 0 writes all out but long lists of arguments, 1 leaves out the arguments of other
+    resources, 2 all arguments, 3 what is no variable of other resources, and 4 all that other resources have.
     """
     found: dict[str, tuple[int, Option]] = {}
     for rank, seen, long in matches:
         family = seen.family
-        if level == 3 and not seen.own and family.step and not typed.startswith(family.step):
+        is_far = not seen.own and family.step and not typed.startswith(family.step)
+        if is_far and (level == 4 or (level == 3 and family.kind in _NO_VARIABLES)):
             if family.step not in found:
                 found[family.step] = rank, _step_option(family.step)
         elif family.arguments and level and (level > 1 or not seen.own):
             stub = _stub(seen, long)
             found.setdefault(stub, (rank, option(stub, family.kind, "…")))
         else:
-            for form in sight.forms(seen, long):
+            forms = list(sight.forms(seen, long))
+            if len(forms) > _MOST_INSTANCES:
+                forms = [form for form in forms[:_MOST_INSTANCES] if sight.has_parameter(form)]
+                found.setdefault(_stub(seen, long), (rank, option(_stub(seen, long), family.kind, "…")))
+            for form in forms:
                 found.setdefault(form, (rank, option(form, family.kind, family.type)))
         if len(found) > room:
             break

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice, product
@@ -69,6 +70,10 @@ class Sight:
                 tuple(map(self._value, words))
             ):
                 yield written
+
+    def has_parameter(self, form: str) -> bool:
+        """Whether a parameter is among the arguments of a name."""
+        return any(word in self.parameters for word in re.findall(r"\w+", form))
 
     def _arguments(self, family: Family) -> Iterator[tuple[str, ...]]:
         if not family.arguments:
