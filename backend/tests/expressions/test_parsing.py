@@ -7,8 +7,8 @@ from collections.abc import Iterator
 import pytest
 from hypothesis import given
 
-from sequence_planner.expressions.lexer import MOST_DIGITS
-from sequence_planner.expressions.parser import MOST_NESTED, MOST_SUMS, parse, parse_assignment
+from sequence_planner.expressions.lexer import MOST_DIGITS, tokens
+from sequence_planner.expressions.parser import MOST_NESTED, MOST_SUMS, can_go_on, parse, parse_assignment
 from sequence_planner.expressions.printing import print_assignment, print_expression
 from sequence_planner.expressions.syntax import (
     Arithmetic,
@@ -183,3 +183,28 @@ def bracketed(tree: Expression) -> str:
         case "Membership":
             return f"({inside[0]} in {{{', '.join(inside[1:])}}})"
     return f"({f' {type(tree).__name__.lower()} '.join(inside)})"
+
+
+@given(written)
+def test_every_beginning_of_a_text_can_go_on(tree: Expression) -> None:
+    text = print_expression(tree)
+    for word in tokens(text):
+        assert can_go_on(text[: word.start])
+        assert not can_go_on(f"{text[: word.start]} , ,")
+
+
+@pytest.mark.parametrize(
+    ("text", "action", "temporal", "goes_on"),
+    [
+        ("a :=", True, False, True),
+        ("a :=", False, False, False),
+        ("1", True, False, False),
+        ("F a", False, False, False),
+        ("F a", False, True, True),
+        ("a U", False, True, True),
+        ("a  ", False, False, True),
+        ("a && ", False, False, False),
+    ],
+)
+def test_only_what_fits_can_go_on(text: str, action: bool, temporal: bool, goes_on: bool) -> None:
+    assert can_go_on(text, action, temporal) is goes_on

@@ -81,6 +81,15 @@ def parse_formula(text: str) -> Expression:
     return _Parser(text, temporal=True).whole(_Parser.expression)
 
 
+def can_go_on(text: str, action: bool = False, temporal: bool = False) -> bool:
+    """Whether a predicate, an `action` or a `temporal` formula can begin with `text`, or be it."""
+    try:
+        _Parser(text, temporal).whole(_Parser.assignment if action else _Parser.expression)
+    except ExpressionError as error:
+        return error.span.start >= len(text.rstrip())
+    return True
+
+
 # An ability's texts are read once for all of its instances.
 
 

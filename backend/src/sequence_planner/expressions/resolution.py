@@ -6,10 +6,11 @@ the whole station. A name beside a value of an enumeration may also be one of th
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable, Mapping
+from functools import cached_property
 
 from sequence_planner.expressions.lexer import KEYWORDS, PREFIX_LETTERS
+from sequence_planner.expressions.likeness import beginning_with, nearest, nearest_of
 from sequence_planner.expressions.parser import temporal_refused
 from sequence_planner.expressions.syntax import (
     And,
@@ -75,12 +76,15 @@ class Scope(Immutable):
     def _argument(self, word: str) -> str:
         return self.parameters[word][0] if word in self.parameters else word
 
-    def visible(self) -> Iterable[str]:
-        """All names that could have been meant here, shortest form first."""
-        for prefix in self.prefixes:
-            yield from (name.removeprefix(prefix) for name in self.variables if name.startswith(prefix))
-        yield from self.variables
-        yield from self.parameters
+    @cached_property
+    def names(self) -> tuple[str, ...]:
+        """The full names of all variables."""
+        return tuple(self.variables)
+
+    def short(self, beginning: str = "") -> list[str]:
+        """What names that begin so are here without a prefix."""
+        found = ((prefix, beginning_with(prefix + beginning, self.names)) for prefix in self.prefixes)
+        return [name.removeprefix(prefix) for prefix, names in found for name in names]
 
 
 def resolve_predicate(expression: Expression, scope: Scope) -> Expression:
@@ -130,10 +134,19 @@ def resolve_assignment(action: Assignment, scope: Scope) -> Assignment:
     return Assignment(target, value, condition, action.span)
 
 
+def type_of(expression: Expression, scope: Scope) -> Type:
+    """The type of an expression with names. Raises `ExpressionError`."""
+    return _typed(expression, scope, None)[1]
+
+
 def suggestion(word: str, candidates: Iterable[str], likeness: float = 0.5) -> str:
     """`; did you mean ...?` with the nearest of `candidates`, or nothing."""
-    near = difflib.get_close_matches(word, list(dict.fromkeys(candidates)), n=1, cutoff=likeness)
-    return f"; did you mean `{near[0]}`?" if near else ""
+    return _said(nearest(word, candidates, likeness))
+
+
+def _said(*near: tuple[float, str] | None) -> str:
+    found = [each for each in near if each is not None]
+    return f"; did you mean `{max(found)[1]}`?" if found else ""
 
 
 def _truth(expression: Expression, scope: Scope) -> Expression:
@@ -248,19 +261,24 @@ def _meant(name: Name, scope: Scope, values: Iterable[str]) -> str:
         return f"; write {word.lower()}"
     if (last := name.path[-1].name) in values:
         return f"; did you mean `{last}`?"
-    visible = list(dict.fromkeys(scope.visible()))
-    flags = [other for other in visible if other.startswith(word + ".") and "." not in other[len(word) + 1 :]]
+    begun = dict.fromkeys((*scope.short(word + "."), *beginning_with(word + ".", scope.names)))
+    flags = [other for other in begun if "." not in other[len(word) + 1 :]]
     if 0 < len(flags) < 4:  # an ability or operation, and no resource
         return f"; write {' or '.join(flags)}"
-    if near := suggestion(word, [*values, *visible], 0.7):
+    own = [*values, *scope.short(), *scope.parameters]
+    if near := _suggestion_of(word, own, scope.names, 0.7):
         return near
     if values:
-        return suggestion(word, [*values, *visible]) or f"; write one of {', '.join(values)}"
+        return _suggestion_of(word, own, scope.names, 0.5) or f"; write one of {', '.join(values)}"
     owners = [other for other, type_ in scope.variables.items() if word in _names(type_)]
     for prefix in (*scope.prefixes, ""):
         if (owner := next((other for other in owners if other.startswith(prefix)), None)) is not None:
             return f"; a value stands beside its variable, as in `{owner.removeprefix(prefix)} == {word}`"
-    return suggestion(word, visible)
+    return _suggestion_of(word, own, scope.names, 0.5)
+
+
+def _suggestion_of(word: str, own: Iterable[str], names: tuple[str, ...], likeness: float) -> str:
+    return _said(nearest(word, own, likeness), nearest_of(word, names, likeness))
 
 
 def _names(type_: Type) -> tuple[str, ...]:

@@ -29,13 +29,19 @@ MOST_VALUES = 256  # of an integer that becomes a variable by itself: those of e
 
 def with_inferred_variables(station: Station, registry: MessageRegistry) -> Station:
     """`station` with its variables completed. Raises `ModelError` for topics of unknown message types."""
+    completed, findings = variables_inferred(station, registry)
+    if findings:
+        raise ModelError(findings)
+    return completed
+
+
+def variables_inferred(station: Station, registry: MessageRegistry) -> tuple[Station, list[Finding]]:
+    """`station` with its variables completed as far as they can be, and what is wrong with its topics."""
     findings: list[Finding] = []
     for document in station.resources.values():
         findings += client_findings(document, registry)
     resources = {name: _completed(document, registry, findings) for name, document in station.resources.items()}
-    if findings:
-        raise ModelError(findings)
-    return with_goal_states(replace(station, resources=resources))
+    return with_goal_states(replace(station, resources=resources)), findings
 
 
 def _completed(document: ResourceDocument, registry: MessageRegistry, findings: list[Finding]) -> ResourceDocument:

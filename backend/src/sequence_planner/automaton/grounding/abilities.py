@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from sequence_planner.automaton.grounding.declarations import FLAGS
 from sequence_planner.automaton.grounding.findings import Binding, instance_name, readable
-from sequence_planner.automaton.grounding.meaning import Meaning
+from sequence_planner.automaton.grounding.meaning import Meaning, Writing
 from sequence_planner.automaton.structure import Ability, Effect, HumanTask, Kind, Timeouts
 from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import Scope, suggestion
-from sequence_planner.expressions.syntax import TRUE, conjunction
+from sequence_planner.expressions.syntax import TRUE, Expression, conjunction
 from sequence_planner.expressions.types import BOOLEAN
-from sequence_planner.model.documents import AbilityDocument, EffectDocument, TimeoutsDocument
+from sequence_planner.model.documents import AbilityDocument, EffectDocument, Predicate, TimeoutsDocument
 from sequence_planner.model.source import SourceText
 
 _COMMANDS = (Kind.OUTPUT, Kind.ESTIMATED)
+START = Writing("a start", _COMMANDS)
+FINISH = Writing("a finish", _COMMANDS)
+CANCEL = Writing("a cancel", _COMMANDS)
+EFFECT = Writing("an effect", (Kind.MEASURED,))
 
 
 def ground_abilities(meaning: Meaning) -> tuple[dict[str, Ability], tuple[Effect, ...]]:
@@ -50,20 +54,18 @@ def _ability(
         title=readable(document.title, name, binding),
         enabled=enabled,
         start_guard=start_guard,
-        start_actions=meaning.actions(
-            document.start.do, scope, conjunction(enabled, start_guard), _COMMANDS, "a start"
-        ),
+        start_actions=meaning.actions(document.start.do, scope, conjunction(enabled, start_guard), START),
         executing=meaning.predicate(document.executing, scope),
         finished=meaning.predicate(document.finished, scope),
         finish_guard=finish_guard,
         finish_actions=()
         if finish is None or finish_guard is None
-        else meaning.actions(finish.do, scope, finish_guard, _COMMANDS, "a finish"),
+        else meaning.actions(finish.do, scope, finish_guard, FINISH),
         restart=document.restart,
         human=_human(meaning, resource, document, binding),
         timeouts=_timeouts(document.timeouts),
         duration=document.duration,
-        cancel_actions=meaning.actions(cancelled, scope, TRUE, _COMMANDS, "a cancel"),
+        cancel_actions=meaning.actions(cancelled, scope, TRUE, CANCEL),
     )
 
 
@@ -75,22 +77,33 @@ def _human(meaning: Meaning, resource: str, document: AbilityDocument, binding: 
     if document.human is None:
         return None
     text = document.human.acknowledgement
+    check_acknowledgement(meaning, resource, text)
+    return HumanTask(readable(document.human.task, "", binding), f"{resource}.{text}")
+
+
+def check_acknowledgement(meaning: Meaning, resource: str, text: SourceText) -> None:
+    """Note an acknowledgement that is no measured `bool` of the resource."""
     variables = meaning.declarations.variables
     variable = variables.get(f"{resource}.{text}")
     if variable is None or variable.kind is not Kind.MEASURED or variable.type != BOOLEAN:
         candidates = [v for v in variables.values() if v.resource == resource and v.type == BOOLEAN]
         own = [v.name.removeprefix(f"{resource}.") for v in candidates if v.kind is Kind.MEASURED]
         meaning.findings.add(text, f"`{text}` must be a measured bool of `{resource}`{suggestion(text, own)}")
-    return HumanTask(readable(document.human.task, "", binding), f"{resource}.{text}")
 
 
 def _effect(meaning: Meaning, name: str, resource: str, document: EffectDocument, scope: Scope) -> Effect:
-    guard = meaning.predicate(document.when, scope)
-    if isinstance(document.when, SourceText):
-        meaning.check_observable(document.when, guard)
-    actions = meaning.actions(document.do, scope, guard, (Kind.MEASURED,), "an effect")
+    guard = observable_condition(meaning, document.when, scope)
+    actions = meaning.actions(document.do, scope, guard, EFFECT)
     shortest, longest = document.takes
     return Effect(name, resource, document.kind, guard, actions, shortest, longest, document.fault)
+
+
+def observable_condition(meaning: Meaning, text: Predicate, scope: Scope) -> Expression:
+    """The condition of an effect."""
+    guard = meaning.predicate(text, scope)
+    if isinstance(text, SourceText):
+        meaning.check_observable(text, guard)
+    return guard
 
 
 def _note_places(meaning: Meaning, ability: str, name: SourceText, document: AbilityDocument) -> None:

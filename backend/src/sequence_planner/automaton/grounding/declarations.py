@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import re
 from collections.abc import Iterator
 from itertools import product
@@ -44,6 +45,14 @@ class Declarations:
         self._read_variables()
         self._declare_flags()
         self._declare_activities()
+
+    def noting(self, findings: Findings, types: dict[str, Type] | None = None) -> Declarations:
+        """The same names, and what is found by them from now on is noted in `findings`; `types` replaces theirs."""
+        other = copy.copy(self)
+        other._findings = findings
+        if types is not None:
+            other.types = types
+        return other
 
     def abilities(self) -> Iterator[tuple[str, SourceText, AbilityDocument, Binding]]:
         """Each ground ability: its resource, its name as written, its document, and the values of its parameters."""
@@ -128,7 +137,7 @@ class Declarations:
     def _read_variable(self, resource: str | None, name: SourceText, document: VariableDocument, kind: Kind) -> None:
         self.check_name(name)
         full = name if resource is None else f"{resource}.{name}"
-        type_ = self._type(name, document.type, kind)
+        type_ = self.type_of(name, document.type, kind)
         if name in FLAGS:
             self._findings.add(name, f"`{name}` is a flag of every ability: give the variable another name")
         self.check_parameters(document.each)
@@ -138,21 +147,15 @@ class Declarations:
         if type_ is None or not bindings:
             self.broken.add(full)
             return
-        initial: Value = document.initial if document.initial is not None else type_.domain[0]
-        if isinstance(initial, SourceText):
-            initial = str(initial)
-        if not contains(type_, initial):
-            where = document.initial if isinstance(document.initial, SourceText) else name
-            near = suggestion(str(initial), map(str, type_.domain))
-            message = f"`{initial}` is no initial value of `{full}`, which ranges over {type_}{near}"
-            self._findings.add(where, message)
+        initial = self.initial_of(name, full, document.initial, type_)
         for binding in bindings:
             ground_name = instance_name(full, binding, indexed=True)
             self.variables[ground_name] = VariableDeclaration(ground_name, type_, kind, initial, resource)
             self.types[ground_name] = type_
             self.places[ground_name] = name.place
 
-    def _type(self, name: SourceText, text: SourceText | None, kind: Kind) -> Type | None:
+    def type_of(self, name: SourceText, text: SourceText | None, kind: Kind) -> Type | None:
+        """The type of the variable `name` that `text` means; if it means none, that is noted."""
         if text is None:
             what = "write type: bool, a range such as 0..3, or an enumeration"
             why = "" if kind is Kind.ESTIMATED else f", and no field of a topic has one for `{name}`"
@@ -168,6 +171,18 @@ class Declarations:
             self._findings.add(text, message)
             return None
         return self.enumerations[text]
+
+    def initial_of(self, name: SourceText, full: str, written: Value | None, type_: Type) -> Value:
+        """The initial value of the variable `full`; if the `written` one is none of its type, that is noted."""
+        initial: Value = written if written is not None else type_.domain[0]
+        if isinstance(initial, SourceText):
+            initial = str(initial)
+        if not contains(type_, initial):
+            where = written if isinstance(written, SourceText) else name
+            near = suggestion(str(initial), map(str, type_.domain))
+            message = f"`{initial}` is no initial value of `{full}`, which ranges over {type_}{near}"
+            self._findings.add(where, message)
+        return initial
 
     def _range(self, text: SourceText, low: int, high: int) -> IntegerRange | None:
         if low > high:

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 
 from sequence_planner.expressions.place import Place
+from sequence_planner.expressions.syntax import Span
 from sequence_planner.expressions.types import EnumerationType
 from sequence_planner.model.source import Finding, SourceText
 
@@ -23,6 +24,10 @@ class Findings:
         """Note what is wrong at `where`."""
         self.all.append(Finding(where.place if isinstance(where, SourceText) else where, message))
 
+    def add_within(self, text: SourceText, span: Span, message: str) -> None:
+        """Note what is wrong at a part of `text`."""
+        self.all.append(Finding(text.at(span), message))
+
 
 def instance_name(name: str, binding: Binding, indexed: bool = False) -> str:
     """The name of a ground instance: `move_to_position(home)`, or `bolts[bolt_pair_1]` for a variable."""
@@ -39,7 +44,7 @@ def with_arguments(name: str, values: Iterable[str], indexed: bool = False) -> s
 
 def without_arguments(name: str) -> str:
     """The name of what a ground instance is one of."""
-    return re.sub(r"[\[(][^\])]*[\])]", "", name)
+    return re.sub(r"[\[(][^\])]*[\])]", "", name) if "(" in name or "[" in name else name
 
 
 def readable(title: SourceText | None, name: str, binding: Binding) -> str:

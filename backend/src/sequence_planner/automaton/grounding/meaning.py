@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from typing import NamedTuple
 
 from sequence_planner.automaton.grounding.declarations import OPERATION, Declarations
 from sequence_planner.automaton.grounding.findings import Binding, Findings, without_arguments
@@ -35,6 +36,13 @@ def _not_a_variable(name: str) -> str:
     return "the activity of an operation" if name.startswith(f"{OPERATION}.") else "a flag of an ability"
 
 
+class Writing(NamedTuple):
+    """What writes, in words, and the kinds of variables that it may write."""
+
+    what: str
+    kinds: tuple[Kind, ...]
+
+
 class Meaning:
     """Texts in the light of what is declared. What is wrong with one is noted, and it then means nothing (`false`)."""
 
@@ -56,9 +64,9 @@ class Meaning:
         return self._condition(text, scope, lambda written: resolve_formula(parse_formula(written), scope))
 
     def actions(
-        self, texts: Iterable[SourceText], scope: Scope, guard: Expression, allowed: tuple[Kind, ...], what: str
+        self, texts: Iterable[SourceText], scope: Scope, guard: Expression, writing: Writing
     ) -> tuple[Assignment, ...]:
-        """The actions of one transition under `guard`, on variables of the `allowed` kinds; `what` names it."""
+        """The actions of one transition, taken under `guard`."""
         actions: dict[str, Assignment] = {}
         for text in texts:
             action = self._action(text, scope)
@@ -66,17 +74,17 @@ class Meaning:
                 continue
             name = target(action)
             variable = self.declarations.variables.get(name)
-            if variable is None or variable.kind not in allowed:
+            if variable is None or variable.kind not in writing.kinds:
                 kind = _KINDS[variable.kind] if variable else _not_a_variable(name)
-                permitted = " or ".join(allowed)
+                permitted = " or ".join(writing.kinds)
                 written = text[action.target.span.start : action.target.span.end]
-                self.findings.add(text, f"{what} writes {permitted} variables, and `{written}` is {kind}")
+                self.findings.add(text, f"{writing.what} writes {permitted} variables, and `{written}` is {kind}")
             elif name in actions:
                 self.findings.add(text, f"`{name}` is written twice by one transition")
             elif action.condition != FALSE:
                 actions[name] = action
                 self._check_fits(text, action, guard)
-                if Kind.MEASURED in allowed:
+                if Kind.MEASURED in writing.kinds:
                     self.check_observable(text, action.value, action.condition or TRUE)
         return tuple(actions.values())
 
@@ -87,7 +95,7 @@ class Meaning:
             if variable is None or variable.kind is Kind.ESTIMATED:
                 written = text[seen.span.start : seen.span.end]
                 message = f"an effect depends on measured and output variables only, and `{written}` is neither"
-                self.findings.add(text.at(seen.span), message)
+                self.findings.add_within(text, seen.span, message)
 
     @property
     def activities(self) -> dict[str, VariableDeclaration]:
@@ -123,11 +131,11 @@ class Meaning:
     def _check_fits(self, text: SourceText, action: Assignment, guard: Expression) -> None:
         if (found := misfit(action, guard)) is not None:
             advice = "add a condition to the guard, or with `if` to the action, under which it fits"
-            self.findings.add(text.at(action.value.span), f"{found}: {advice}")
+            self.findings.add_within(text, action.value.span, f"{found}: {advice}")
 
     def _misread(self, text: SourceText, error: ExpressionError, scope: Scope) -> None:
         name = without_arguments(text[error.span.start : error.span.end])
         owner = name.rpartition(".")[0]  # of a flag
         broken = self.declarations.broken
         if not any(prefix + one in broken for prefix in (*scope.prefixes, "") for one in (name, owner)):
-            self.findings.add(text.at(error.span), error.message)
+            self.findings.add_within(text, error.span, error.message)

@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from graphlib import CycleError, TopologicalSorter
 
 from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.findings import instance_name, readable
-from sequence_planner.automaton.grounding.meaning import Meaning
+from sequence_planner.automaton.grounding.meaning import Meaning, Writing
 from sequence_planner.automaton.structure import Kind, Operation, WorkMaster, target
 from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.syntax import TRUE, Assignment, Constant
 from sequence_planner.model.documents import OperationDocument, Predicate, WorkMasterDocument
 from sequence_planner.model.source import SourceText
+
+BROUGHT = Writing("a new product", (Kind.ESTIMATED,))
+Steps = Mapping[SourceText, tuple[SourceText, ...]]
 
 
 def ground_operations(meaning: Meaning, documents: Mapping[SourceText, OperationDocument]) -> dict[str, Operation]:
@@ -28,16 +31,13 @@ def ground_work_masters(
     masters: dict[str, WorkMaster] = {}
     for name, document in documents.items():
         meaning.declarations.check_name(name)
-        steps = {
-            step: () if step_document is None else tuple(step_document.after)
-            for step, step_document in document.operations.items()
-        }
-        _check_steps(meaning, steps, operations)
+        steps = steps_of(document)
+        check_steps(meaning, steps, operations)
         masters[str(name)] = WorkMaster(
             str(name),
             readable(document.title, name, {}),
             {str(step): frozenset(map(str, before)) for step, before in steps.items()},
-            _brought(meaning, document),
+            brought_by(meaning, document.brings),
         )
     return masters
 
@@ -66,9 +66,16 @@ def _place(text: Predicate, otherwise: SourceText) -> Place:
     return text.place if isinstance(text, SourceText) else otherwise.place
 
 
-def _check_steps(
-    meaning: Meaning, steps: Mapping[SourceText, tuple[SourceText, ...]], operations: Mapping[str, Operation]
-) -> None:
+def steps_of(document: WorkMasterDocument) -> Steps:
+    """The operations of a job, each with those before it."""
+    return {
+        step: () if step_document is None else tuple(step_document.after)
+        for step, step_document in document.operations.items()
+    }
+
+
+def check_steps(meaning: Meaning, steps: Steps, operations: Collection[str]) -> None:
+    """Note steps that are none of the `operations`, and those that come before themselves."""
     findings = meaning.findings
     for step, before in steps.items():
         if step not in operations:
@@ -84,11 +91,11 @@ def _check_steps(
         findings.add(first, f"each of these would have to come before the next: {' → '.join(circle)}")
 
 
-def _brought(meaning: Meaning, document: WorkMasterDocument) -> tuple[Assignment, ...]:
+def brought_by(meaning: Meaning, texts: Iterable[SourceText]) -> tuple[Assignment, ...]:
     """What a new product brings: it is known beforehand, so the values are constants."""
     brought: dict[str, Assignment] = {}
-    for text in document.brings:
-        for action in meaning.actions([text], meaning.scope({}), TRUE, (Kind.ESTIMATED,), "a new product"):
+    for text in texts:
+        for action in meaning.actions([text], meaning.scope({}), TRUE, BROUGHT):
             if not isinstance(action.value, Constant) or action.condition is not None:
                 meaning.findings.add(text, "a new product brings certain values: write `variable := value`")
             if target(action) in brought:

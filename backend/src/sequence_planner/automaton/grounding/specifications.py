@@ -11,7 +11,7 @@ An ability with parameters stands for all its ground abilities in `exclusive`: o
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations, pairwise
 
 from sequence_planner.automaton.grounding.findings import Binding, instance_name, readable, without_arguments
@@ -64,18 +64,23 @@ def _parts(meaning: Meaning, document: SpecificationDocument, binding: Binding, 
     elif document.never is not None and document.during is not None:
         yield "", conjunction(meaning.predicate(document.never, scope), meaning.predicate(document.during, scope))
     elif document.exclusive is not None:
-        executing = [(str(text), _executing(meaning, text, scope)) for text in document.exclusive]
-        for (one, (_, flags)), (other, (_, others)) in combinations(zip(document.exclusive, executing, strict=True), 2):
-            if shared := sorted(set(variables(flags)) & set(variables(others))):
-                ability = shared[0].removesuffix(".executing")
-                meaning.findings.add(other, f"`{ability}` is in `{one}` as well: no ability excludes itself")
-        yield from _at_most_one(executing)
+        yield from _at_most_one(exclusive_abilities(meaning, document.exclusive, scope))
     elif document.zone is not None:
         yield from _at_most_one([_inside(meaning, *entry, binding, resources) for entry in document.zone.items()])
     elif document.order is not None:
         stages = [(_words(text), meaning.predicate(text, scope)) for text in document.order]
         for (first, before), (then, after) in pairwise(stages):
             yield f"{first} before {then}", conjunction(after, Not(before))
+
+
+def exclusive_abilities(meaning: Meaning, texts: Sequence[SourceText], scope: Scope) -> list[Part]:
+    """That each of the named abilities executes; none of them is named twice."""
+    executing = [(str(text), _executing(meaning, text, scope)) for text in texts]
+    for (one, (_, flags)), (other, (_, others)) in combinations(zip(texts, executing, strict=True), 2):
+        if shared := sorted(set(variables(flags)) & set(variables(others))):
+            ability = shared[0].removesuffix(".executing")
+            meaning.findings.add(other, f"`{ability}` is in `{one}` as well: no ability excludes itself")
+    return executing
 
 
 def _at_most_one(parts: Iterable[Part]) -> Iterator[Part]:
@@ -111,7 +116,7 @@ def _executing(meaning: Meaning, text: SourceText, scope: Scope) -> Expression:
             raise ExpressionError(f"there is no ability `{name}`{near}", named.span)
     except ExpressionError as error:
         if without_arguments(str(text)) not in meaning.declarations.broken:
-            meaning.findings.add(text.at(error.span), error.message)
+            meaning.findings.add_within(text, error.span, error.message)
         return FALSE
     flags_read = tuple(Variable(flag, BOOLEAN) for flag in found)
     return flags_read[0] if len(flags_read) == 1 else Or(flags_read)
