@@ -238,6 +238,41 @@ def test_versions_are_compared(eva: httpx.Client) -> None:
     problem(eva.get(f"{MODEL}/comparison", params={"old": "HEAD"}), 422, "invalid-request")
 
 
+START = {"file": "resources/robot.yaml", "path": ["abilities", "move_to_position", "start", "when"]}
+
+
+def language(client: httpx.Client, what: str, **asked: object) -> dict[str, Any]:
+    answer = client.post(f"{MODEL}/language/{what}", json={**START, **asked})
+    assert answer.status_code == 200, answer.text
+    found: dict[str, Any] = answer.json()
+    return found
+
+
+def test_a_text_is_checked_completed_explained_and_formatted_as_the_draft_is_now(eva: httpx.Client) -> None:
+    assert language(eva, "check", text="pose == home and  bolts[bolt_pair_1]==empty")["problems"] == []
+    (wrong,) = language(eva, "check", text="pose == hom")["problems"]
+    assert (wrong["start"], wrong["end"]) == (8, 11)
+    assert "did you mean `home`?" in wrong["message"]
+    found = language(eva, "completion", text="pose == ab", offset=10)
+    assert (found["start"], found["end"]) == (8, 10)
+    assert "above_engine" in [each["insert"] for each in found["options"]]
+    name = language(eva, "hover", text="pose == home", offset=1)["hover"]
+    assert (name["names"], name["kind"], name["declared"]["file"]) == (["robot.pose"], "measured", START["file"])
+    assert language(eva, "hover", text="pose == home", offset=5)["hover"] is None
+    assert language(eva, "format", text="pose==home   and(moving)")["text"] == "pose == home and moving"
+    made(eva, {"kind": "add", "file": START["file"], "path": ["estimated", "tired"], "value": {"type": "bool"}})
+    assert language(eva, "check", text="not tired")["problems"] == []
+
+
+def test_what_is_broken_elsewhere_is_no_fault_of_a_text(eva: httpx.Client) -> None:
+    assert language(eva, "check", text="nutrunner.tool_is_idle")["problems"] == []
+    path = "resources/nutrunner.yaml"
+    text = read(eva, "/files", path=path)["files"][path]["text"]
+    made(eva, {"kind": "text", "file": path, "was": text, "text": "abilities: ["})
+    assert language(eva, "check", text="nutrunner.tool_is_idle")["problems"] == []
+    assert language(eva, "check", text="nutrunner.tool_is_odd")["problems"]
+
+
 def test_without_a_controller_nothing_is_deployed(eva: httpx.Client) -> None:
     body = {"revision": "0" * 40, "number": 1, "reason": "to try"}
     problem(eva.post(f"{MODEL}/deployments", json=body), 503, "controller-unavailable")

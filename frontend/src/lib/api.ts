@@ -784,6 +784,86 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model/language/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Check
+         * @description What is wrong with a text, as the check of the whole draft would find it there.
+         */
+        post: operations["check_api_v1_model_language_check_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/language/completion": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Completion
+         * @description What can stand at a place in a text.
+         */
+        post: operations["completion_api_v1_model_language_completion_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/language/format": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Format Text
+         * @description The text as it is written best; one that cannot be read stays as it is.
+         */
+        post: operations["format_text_api_v1_model_language_format_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/language/hover": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Hover
+         * @description What the name at a place in a text is.
+         */
+        post: operations["hover_api_v1_model_language_hover_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/model/redo": {
         parameters: {
             query?: never;
@@ -2182,6 +2262,18 @@ export interface components {
             };
         };
         /**
+         * CompletionView
+         * @description What can stand in place of the text between `start` and `end`, the most useful first.
+         */
+        CompletionView: {
+            /** End */
+            end: number;
+            /** Options */
+            options: components["schemas"]["OptionView"][];
+            /** Start */
+            start: number;
+        };
+        /**
          * ConditionView
          * @description Something that has to be otherwise. `involved` alone keep it from being true, and none of them could be spared.
          *
@@ -2321,6 +2413,18 @@ export interface components {
             values: {
                 [key: string]: boolean | number | string;
             };
+        };
+        /**
+         * DeclarationView
+         * @description Where something is declared: a file of the station, and line and column from 1.
+         */
+        DeclarationView: {
+            /** Column */
+            column: number;
+            /** File */
+            file: string;
+            /** Line */
+            line: number;
         };
         /**
          * Delta
@@ -2698,6 +2802,14 @@ export interface components {
             why: string;
         };
         /**
+         * FormatView
+         * @description The text as it is written best, with the same meaning.
+         */
+        FormatView: {
+            /** Text */
+            text: string;
+        };
+        /**
          * GoalBody
          * @description What shall hold, in the model's language.
          */
@@ -2758,6 +2870,44 @@ export interface components {
             next: number | null;
             /** Records */
             records: components["schemas"]["RunRecordView"][];
+        };
+        /**
+         * HoverAnswer
+         * @description What stands at the place; null where no name does.
+         */
+        HoverAnswer: {
+            hover: components["schemas"]["HoverView"] | null;
+        };
+        /**
+         * HoverView
+         * @description What the name between `start` and `end` is.
+         *
+         *     `names` are the full names it has, of which the page knows the values; a reference through a parameter has one for
+         *     each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`.
+         */
+        HoverView: {
+            declared: components["schemas"]["DeclarationView"] | null;
+            /** Domain */
+            domain: (boolean | number | string)[];
+            /** End */
+            end: number;
+            /** Initial */
+            initial: boolean | number | string | null;
+            kind: components["schemas"]["NameKind"];
+            /** Name */
+            name: string;
+            /** Names */
+            names: string[];
+            /** Pattern */
+            pattern: string;
+            /** Resource */
+            resource: string | null;
+            /** Start */
+            start: number;
+            /** Title */
+            title: string | null;
+            /** Type */
+            type: string | null;
         };
         /**
          * InvolvedView
@@ -2995,6 +3145,12 @@ export interface components {
             was: components["schemas"]["JsonValue"];
         };
         /**
+         * NameKind
+         * @description What a word of a text is.
+         * @enum {string}
+         */
+        NameKind: "measured" | "output" | "estimated" | "flag" | "activity" | "parameter" | "value" | "keyword" | "resource" | "ability" | "operation" | "enumeration";
+        /**
          * NetworkSnapshot
          * @description The ROS graph as it is now.
          */
@@ -3189,6 +3345,19 @@ export interface components {
             tick: number;
             /** Time */
             time: number;
+        };
+        /**
+         * OptionView
+         * @description One thing that can be written: what is shown of it, and what is written.
+         */
+        OptionView: {
+            /** Detail */
+            detail: string;
+            /** Insert */
+            insert: string;
+            kind: components["schemas"]["NameKind"];
+            /** Label */
+            label: string;
         };
         /**
          * Outcome
@@ -3470,6 +3639,24 @@ export interface components {
             };
         };
         /**
+         * PlaceInText
+         * @description A place in it, counted in characters from its beginning.
+         */
+        PlaceInText: {
+            /** File */
+            file: string;
+            /** Offset */
+            offset: number;
+            /** Parameters */
+            parameters?: {
+                [key: string]: string;
+            } | null;
+            /** Path */
+            path: (string | number)[];
+            /** Text */
+            text: string;
+        };
+        /**
          * PlaceView
          * @description A record's number, and when it was written.
          */
@@ -3629,6 +3816,26 @@ export interface components {
             reason?: string | null;
             /** Revision */
             revision: number;
+        };
+        /**
+         * ProblemView
+         * @description One thing wrong with a text; `start` and `end` count its characters.
+         */
+        ProblemView: {
+            /** End */
+            end: number;
+            /** Message */
+            message: string;
+            /** Start */
+            start: number;
+        };
+        /**
+         * ProblemsView
+         * @description What is wrong with a text; nothing where it is none that names stand in.
+         */
+        ProblemsView: {
+            /** Problems */
+            problems: components["schemas"]["ProblemView"][];
         };
         /**
          * Production
@@ -4458,6 +4665,25 @@ export interface components {
         TemporaryPasswordBody: {
             /** Password */
             password: string;
+        };
+        /**
+         * TextAt
+         * @description A text that stands, or shall stand, at the entry `path` of a file.
+         *
+         *     `parameters` are those of its ability, operation or specification, by name with their enumerations, where it is so
+         *     new that the draft does not have it yet.
+         */
+        TextAt: {
+            /** File */
+            file: string;
+            /** Parameters */
+            parameters?: {
+                [key: string]: string;
+            } | null;
+            /** Path */
+            path: (string | number)[];
+            /** Text */
+            text: string;
         };
         /**
          * TopicView
@@ -6514,6 +6740,174 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    check_api_v1_model_language_check_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TextAt"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ProblemsView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    completion_api_v1_model_language_completion_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PlaceInText"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CompletionView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    format_text_api_v1_model_language_format_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TextAt"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FormatView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    hover_api_v1_model_language_hover_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["PlaceInText"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["HoverAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */

@@ -29,6 +29,7 @@ from sequence_planner.web import (
     health,
     history,
     keys,
+    language,
     model,
     modes,
     openapi_document,
@@ -89,6 +90,7 @@ PARTS = (
     audit.router,
     history.router,
     model.router,
+    language.router,
     revisions.router,
     openapi_document.router,
 )

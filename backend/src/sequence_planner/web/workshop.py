@@ -20,11 +20,14 @@ from sequence_planner.workshop.check_view import CheckView, waiting
 from sequence_planner.workshop.draft import Draft
 from sequence_planner.workshop.edits import Edit, WriteText
 from sequence_planner.workshop.files import Files, read_files
+from sequence_planner.workshop.processes import Answering
+from sequence_planner.workshop.questions import LanguageAnswer, LanguageQuestionKind, TextAt
 from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
 from sequence_planner.workshop.showing import Reader, change_view, marks
 from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, RevisionView, WorkshopView
 
 MOST_SHOWN = 50  # changes
+ANSWERED_WITHIN = 5.0  # seconds, for questions about a text
 
 
 def _revision_view(revision: Revision, running: str, edited: str) -> RevisionView:
@@ -50,14 +53,17 @@ class Workshop:
         self._keeping = asyncio.Lock()
         self._reader = Reader()
         self._desk = CheckDesk(model, self._found)
+        self._language = Answering("language_worker", "answering")
+        self._told: dict[str, str] = {}  # the files that the process of the language knows
         self._check: CheckView | None = None
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
         self._opening = asyncio.Lock()
 
     async def close(self) -> None:
-        """End what is being checked."""
+        """End what is being checked and answered."""
         await self._desk.close()
+        await self._language.close()
 
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since."""
@@ -145,6 +151,24 @@ class Workshop:
             if draft.files.get(path) != files.get(path)
         ]
         return await self.change(edits, by, f"Back to “{name}”")
+
+    async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> LanguageAnswer:
+        """What is answered to a question about a text. Raises `WorkEndedError`."""
+        draft = await self.open()
+
+        def question() -> object:
+            if not self._language.begun:
+                self._told = {}
+            changed: dict[str, str | None] = {
+                path: text for path, text in draft.files.items() if self._told.get(path) != text
+            }
+            changed |= dict.fromkeys(self._told.keys() - draft.files.keys())
+            self._told = dict(draft.files)
+            return changed, kind, asked
+
+        answer = await self._language.ask(question, ANSWERED_WITHIN)
+        assert isinstance(answer, LanguageAnswer)
+        return answer
 
     async def _changed(self, work: Callable[[Connection, float], Draft], by: Actor) -> FilesView:
         await self.open()

@@ -13,16 +13,20 @@ import multiprocessing
 import os
 import signal
 import tempfile
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from multiprocessing.connection import Connection
+from multiprocessing.context import ForkServerProcess
 from pathlib import Path
+from typing import Any
 
 from sequence_planner.lifeline import end_without_parent
 
 _CONTEXT = multiprocessing.get_context("forkserver")
-_CONTEXT.set_forkserver_preload(["sequence_planner.workshop.checking", "sequence_planner.workshop.tasks"])
+_CONTEXT.set_forkserver_preload([f"{__package__}.{each}" for each in ("checking", "tasks", "language_worker")])
 _NICENESS = 5  # ticks come first
+_PREFIX = "sequence-planner-workshop-"  # of folders
+_NO_ANSWER = "the process has ended without an answer; is memory short?"
 
 
 class WorkEndedError(Exception):
@@ -36,7 +40,7 @@ async def working(module: str, name: str, *arguments: object) -> AsyncIterator[A
     It is called with `arguments` and the path of an empty folder. Iterating raises `WorkEndedError` when the process
     ends too early.
     """
-    with tempfile.TemporaryDirectory(prefix="sequence-planner-workshop-") as folder:
+    with tempfile.TemporaryDirectory(prefix=_PREFIX) as folder:
         ours, theirs = _CONTEXT.Pipe(duplex=False)
         with ours:
             given = (theirs, f"{__package__}.{module}", name, arguments, Path(folder))
@@ -50,25 +54,101 @@ async def working(module: str, name: str, *arguments: object) -> AsyncIterator[A
                 await asyncio.shield(asyncio.to_thread(process.join))
 
 
+class Answering:
+    """A process that answers one question after the other; it is started with the first of them. `name` is a function
+    of a module of this room that is called with a connection and the path of an empty folder. Used from one event loop.
+    """
+
+    def __init__(self, module: str, name: str) -> None:
+        self._what = module, name
+        self._turn = asyncio.Lock()
+        self._kept: tuple[ForkServerProcess, Connection, tempfile.TemporaryDirectory[str]] | None = None
+
+    @property
+    def begun(self) -> bool:
+        """Whether it lives, and knows what it was told before."""
+        return self._kept is not None
+
+    async def ask(self, question: Callable[[], object], patience: float) -> object:
+        """The answer to what `question` says when its turn has come, within so many seconds from then on.
+
+        Raises `WorkEndedError` when there is none; the process begins anew with the next question then.
+        """
+        async with self._turn:
+            try:
+                async with asyncio.timeout(patience):
+                    asked = question()
+                    if self._kept is None:
+                        self._kept = await asyncio.to_thread(self._started)
+                    connection = self._kept[1]
+                    await asyncio.to_thread(connection.send, asked)
+                    return await _told(connection)
+            except TimeoutError:
+                await self._end()
+                raise WorkEndedError(f"there was no answer within {patience:g} s") from None
+            except OSError:
+                await self._end()
+                raise WorkEndedError(_NO_ANSWER) from None
+            except BaseException:
+                await self._end()  # its answer would be taken for that to the next question
+                raise
+
+    async def close(self) -> None:
+        """End the process."""
+        async with self._turn:
+            await self._end()
+
+    def _started(self) -> tuple[ForkServerProcess, Connection, tempfile.TemporaryDirectory[str]]:
+        module, name = self._what
+        folder = tempfile.TemporaryDirectory(prefix=_PREFIX)
+        ours, theirs = _CONTEXT.Pipe()
+        with theirs:
+            given = (theirs, f"{__package__}.{module}", name, Path(folder.name))
+            process = _CONTEXT.Process(target=_answer, args=given, daemon=True, name=name)
+            process.start()
+        return process, ours, folder
+
+    async def _end(self) -> None:
+        if self._kept is not None:
+            (process, connection, folder), self._kept = self._kept, None
+            process.kill()
+            await asyncio.shield(asyncio.to_thread(process.join))
+            connection.close()
+            folder.cleanup()
+
+
 async def _heard(connection: Connection) -> AsyncIterator[object]:
-    loop = asyncio.get_running_loop()
     while True:
-        heard = asyncio.Event()
-        loop.add_reader(connection.fileno(), heard.set)
-        try:
-            await heard.wait()
-        finally:
-            loop.remove_reader(connection.fileno())
-        try:
-            yield await asyncio.to_thread(connection.recv)
-        except (EOFError, OSError):
-            raise WorkEndedError("the process has ended without an answer; is memory short?") from None
+        yield await _told(connection)
+
+
+async def _told(connection: Connection) -> object:
+    heard, loop = asyncio.Event(), asyncio.get_running_loop()
+    loop.add_reader(connection.fileno(), heard.set)
+    try:
+        await heard.wait()
+    finally:
+        loop.remove_reader(connection.fileno())
+    try:
+        return await asyncio.to_thread(connection.recv)
+    except (EOFError, OSError):
+        raise WorkEndedError(_NO_ANSWER) from None
 
 
 def _work(connection: Connection, module: str, name: str, arguments: tuple[object, ...], folder: Path) -> None:
+    work = _begun(module, name)
+    with contextlib.suppress(OSError):
+        for each in work(*arguments, folder):
+            connection.send(each)
+
+
+def _answer(connection: Connection, module: str, name: str, folder: Path) -> None:
+    _begun(module, name)(connection, folder)
+
+
+def _begun(module: str, name: str) -> Callable[..., Any]:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
     end_without_parent()
     os.nice(_NICENESS)
-    with contextlib.suppress(OSError):
-        for each in getattr(importlib.import_module(module), name)(*arguments, folder):
-            connection.send(each)
+    found: Callable[..., Any] = getattr(importlib.import_module(module), name)
+    return found
