@@ -10,7 +10,7 @@ from sequence_planner.web.model import TheWorkshop
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY
 from sequence_planner.web.workshop import Workshop
-from sequence_planner.workshop.language.view import CompletionView
+from sequence_planner.workshop.language_view import CompletionView
 from sequence_planner.workshop.processes import WorkEndedError
 from sequence_planner.workshop.questions import (
     FormatView,

@@ -12,7 +12,8 @@ from sequence_planner.model.loading import Station, load_station
 from sequence_planner.model.source import ModelError
 from sequence_planner.workshop.files import Files, write_files
 from sequence_planner.workshop.language import Field, Lexicon, check, complete, formatted, hover
-from sequence_planner.workshop.language.view import CompletionView, HoverView, ProblemView
+from sequence_planner.workshop.language.view import completion_view, hover_view, problem_view
+from sequence_planner.workshop.language_view import CompletionView
 from sequence_planner.workshop.questions import (
     FormatView,
     HoverAnswer,
@@ -101,11 +102,11 @@ def answer(draft: Draft, kind: LanguageQuestionKind, asked: TextAt) -> LanguageA
         return nothing[kind]
     answers: dict[LanguageQuestionKind, Callable[[Field], LanguageAnswer]] = {
         LanguageQuestionKind.CHECK: lambda field: ProblemsView(
-            problems=tuple(map(ProblemView.of, check(lexicon, field, asked.text)))
+            problems=tuple(map(problem_view, check(lexicon, field, asked.text)))
         ),
-        LanguageQuestionKind.COMPLETION: lambda field: CompletionView.of(complete(lexicon, field, asked.text, offset)),
+        LanguageQuestionKind.COMPLETION: lambda field: completion_view(complete(lexicon, field, asked.text, offset)),
         LanguageQuestionKind.HOVER: lambda field: HoverAnswer(
-            hover=None if (found := hover(lexicon, field, asked.text, offset)) is None else HoverView.of(found)
+            hover=None if (found := hover(lexicon, field, asked.text, offset)) is None else hover_view(found)
         ),
         LanguageQuestionKind.FORMAT: lambda field: FormatView(text=formatted(field, asked.text)),
     }

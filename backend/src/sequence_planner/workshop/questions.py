@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from sequence_planner.control.view_part import View
 from sequence_planner.workshop.edits import FilePath, Steps
-from sequence_planner.workshop.language.view import CompletionView, HoverView, ProblemView
+from sequence_planner.workshop.language_view import CompletionView, HoverView, ProblemView
 
 LONGEST_TEXT = 20_000  # characters
 

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from core.budget import examples
 from sequence_planner.workshop.language import Field, Lexicon, NameKind, check, complete, formatted, hover
 from sequence_planner.workshop.language.completion import MOST_OPTIONS
-from sequence_planner.workshop.language.view import CompletionView, HoverView, OptionView, ProblemView
+from sequence_planner.workshop.language.view import completion_view, hover_view, problem_view
+from sequence_planner.workshop.language_view import CompletionView, HoverView, OptionView, ProblemView
 
 from .drafts import draft, with_text
 
@@ -26,18 +27,18 @@ def test_every_question_about_any_text_is_answered(named: tuple[str, Field], tex
     offset = data.draw(st.integers(0, len(text)))
     for problem in check(lexicon, field, text):
         assert 0 <= problem.start <= problem.end <= len(text)
-        view = ProblemView.of(problem)
+        view = problem_view(problem)
         assert ProblemView.model_validate_json(view.model_dump_json()) == view
     found = complete(lexicon, field, text, offset)
     assert 0 <= found.start <= offset <= found.end <= len(text)
     assert len(found.options) <= MOST_OPTIONS
     assert len({option.insert for option in found.options}) == len(found.options)
-    options = CompletionView.of(found)
+    options = completion_view(found)
     assert CompletionView.model_validate_json(options.model_dump_json()) == options
     if (hovered := hover(lexicon, field, text, offset)) is not None:
         assert hovered.start <= offset <= hovered.end
         assert text[hovered.start : hovered.end] == hovered.name or hovered.kind is NameKind.ABILITY
-        shown = HoverView.of(hovered)
+        shown = hover_view(hovered)
         assert HoverView.model_validate_json(shown.model_dump_json()) == shown
     assert formatted(field, formatted(field, text)) == formatted(field, text)
 
@@ -46,7 +47,7 @@ def test_an_option_is_shown_with_its_kind_and_type() -> None:
     lexicon = draft("bolt_tightening").lexicon
     field = lexicon.field("resources/robot.yaml", ("abilities", "move_to_position", "enabled"))
     assert field is not None
-    view = CompletionView.of(complete(lexicon, field, "mov", 3))
+    view = completion_view(complete(lexicon, field, "mov", 3))
     assert (view.start, view.end) == (0, 3)
     assert view.options[0] == OptionView(label="moving", insert="moving", kind=NameKind.MEASURED, detail="bool")
 

@@ -8,7 +8,8 @@ from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.model.reading import EntryPath
 from sequence_planner.workshop.language import FieldKind, Hover, NameKind, hover
-from sequence_planner.workshop.language.view import HoverView
+from sequence_planner.workshop.language.view import hover_view
+from sequence_planner.workshop.language_view import HoverView
 
 from .drafts import STATIONS, draft, words
 
@@ -92,7 +93,7 @@ def test_a_name_is_known_with_its_kind_and_place(
     found = hovered(file, path, text)
     assert found is not None
     assert (found.kind, found.pattern, found.place) == (kind, pattern, Place(*place))
-    view = HoverView.of(found)
+    view = hover_view(found)
     assert view.declared is not None
     assert view.declared.file == place[0]
     assert HoverView.model_validate_json(view.model_dump_json()) == view

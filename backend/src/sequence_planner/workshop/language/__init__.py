@@ -10,7 +10,7 @@ from sequence_planner.workshop.language.field import Field, FieldKind
 from sequence_planner.workshop.language.formatting import formatted
 from sequence_planner.workshop.language.hovering import Hover, hover
 from sequence_planner.workshop.language.lexicon import Lexicon
-from sequence_planner.workshop.language.names import NameKind
+from sequence_planner.workshop.language_view import NameKind
 
 __all__ = [
     "Completion",

@@ -10,8 +10,8 @@ from sequence_planner.workshop.language.completion import Completion, Option, co
 from sequence_planner.workshop.language.field import Field, FieldKind
 from sequence_planner.workshop.language.lexicon import Lexicon
 from sequence_planner.workshop.language.matching import NO_MATCH, likeness
-from sequence_planner.workshop.language.names import NameKind
 from sequence_planner.workshop.language.visible import Sight, abilities
+from sequence_planner.workshop.language_view import NameKind
 
 _MOST_NUMBERS = 100
 

@@ -13,9 +13,10 @@ from sequence_planner.workshop.language.field import Field, FieldKind
 from sequence_planner.workshop.language.grammar import Beginning
 from sequence_planner.workshop.language.lexicon import Lexicon
 from sequence_planner.workshop.language.matching import NO_MATCH, likeness
-from sequence_planner.workshop.language.names import NameKind, Visible
+from sequence_planner.workshop.language.names import Visible
 from sequence_planner.workshop.language.naming import name_options, resource_steps
 from sequence_planner.workshop.language.visible import Sight
+from sequence_planner.workshop.language_view import NameKind
 
 _EXPRESSIONS = (FieldKind.CONDITION, FieldKind.FORMULA, FieldKind.ACTION)
 _MOST_NUMBERS = 20  # that are all worth an option

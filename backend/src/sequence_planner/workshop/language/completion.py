@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from sequence_planner.workshop.language.names import NameKind
+from sequence_planner.workshop.language_view import NameKind
 
 MOST_OPTIONS = 100
 

@@ -14,8 +14,9 @@ from sequence_planner.workshop.language.chain import chain_at, word_at
 from sequence_planner.workshop.language.field import Field, FieldKind
 from sequence_planner.workshop.language.leaves import is_value_at
 from sequence_planner.workshop.language.lexicon import Lexicon
-from sequence_planner.workshop.language.names import Family, NameKind
+from sequence_planner.workshop.language.names import Family
 from sequence_planner.workshop.language.visible import Sight
+from sequence_planner.workshop.language_view import NameKind
 
 _MOST_NAMES = 100
 

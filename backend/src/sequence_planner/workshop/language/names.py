@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import cached_property
 from itertools import product
 from typing import NamedTuple
@@ -17,23 +16,7 @@ from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Type, V
 from sequence_planner.model.documents import AbilityDocument, Parameters, VariableDocument
 from sequence_planner.model.loading import Station
 from sequence_planner.model.source import SourceText
-
-
-class NameKind(StrEnum):
-    """What a word of a text is."""
-
-    MEASURED = "measured"
-    OUTPUT = "output"
-    ESTIMATED = "estimated"
-    FLAG = "flag"
-    ACTIVITY = "activity"
-    PARAMETER = "parameter"
-    VALUE = "value"
-    KEYWORD = "keyword"
-    RESOURCE = "resource"
-    ABILITY = "ability"
-    OPERATION = "operation"
-    ENUMERATION = "enumeration"
+from sequence_planner.workshop.language_view import NameKind
 
 
 @dataclass(frozen=True)

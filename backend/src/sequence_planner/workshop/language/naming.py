@@ -9,8 +9,9 @@ from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.findings import without_arguments
 from sequence_planner.workshop.language.completion import MOST_OPTIONS, Option, option
 from sequence_planner.workshop.language.matching import NO_MATCH, likeness
-from sequence_planner.workshop.language.names import NameKind, Visible
+from sequence_planner.workshop.language.names import Visible
 from sequence_planner.workshop.language.visible import Sight
+from sequence_planner.workshop.language_view import NameKind
 
 _LEVELS = 5
 _MOST_INSTANCES = 8  # of one declaration that are written out before its bracket is typed

@@ -13,7 +13,8 @@ from sequence_planner.expressions.resolution import Scope
 from sequence_planner.expressions.types import EnumerationType
 from sequence_planner.workshop.language.field import Field
 from sequence_planner.workshop.language.lexicon import Lexicon
-from sequence_planner.workshop.language.names import Family, NameKind, Visible
+from sequence_planner.workshop.language.names import Family, Visible
+from sequence_planner.workshop.language_view import NameKind
 
 _MOST_FORMS = 2000  # of one family
 
