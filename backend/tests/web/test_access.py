@@ -72,6 +72,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/model/transfer": ("viewer", "read"),
     "POST /api/v1/model/revisions": ("engineer", None),
     "POST /api/v1/model/revisions/{id}/restore": ("engineer", None),
+    "POST /api/v1/model/what-if": ("engineer", None),
     "POST /api/v1/model/deployments": ("engineer", None),
     "POST /api/v1/model/undo": ("engineer", None),
     "POST /api/v1/model/redo": ("engineer", None),

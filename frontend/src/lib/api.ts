@@ -968,6 +968,27 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model/what-if": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * What If
+         * @description How the station would go on with the draft, from its present state or from a past record; nothing of it reaches
+         *     the station.
+         */
+        post: operations["what_if_api_v1_model_what_if_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/operations": {
         parameters: {
             query?: never;
@@ -2260,6 +2281,18 @@ export interface components {
             text: {
                 [key: string]: string;
             };
+        };
+        /**
+         * Completed
+         * @description An operation reached its goal, so many seconds from the beginning.
+         */
+        Completed: {
+            /** At */
+            at: number;
+            /** Operation */
+            operation: string;
+            /** Title */
+            title: string;
         };
         /**
          * CompletionView
@@ -4041,6 +4074,22 @@ export interface components {
          */
         Role: "viewer" | "operator" | "engineer" | "administrator";
         /**
+         * Run
+         * @description A run of an ability, in seconds from the beginning; `ended` is null where it was under way at the end.
+         */
+        Run: {
+            /** Ability */
+            ability: string;
+            /** Ended */
+            ended: number | null;
+            /** Resource */
+            resource: string;
+            /** Started */
+            started: number;
+            /** Title */
+            title: string;
+        };
+        /**
          * RunRecordView
          * @description Something that has happened. What `content` has depends on the `kind`; `docs/journal.md` says what.
          */
@@ -4963,6 +5012,47 @@ export interface components {
             ticks: number | null;
             /** Violated */
             violated: components["schemas"]["SpecificationView"][];
+        };
+        /**
+         * WhatIfBody
+         * @description For how many seconds, and from which record of the past on; without one from the present.
+         */
+        WhatIfBody: {
+            /** Number */
+            number?: number | null;
+            /** Seconds */
+            seconds: number;
+        };
+        /**
+         * WhatIfView
+         * @description `seconds` were simulated from the values `before` on, to those `after`; null is unknown.
+         *
+         *     `safe` says whether it began in a safe state; from another one nothing is started. `active` are the operations under
+         *     way at the end, and `unplanned` says why there was no plan then. `obstacle` says why nothing could be simulated.
+         */
+        WhatIfView: {
+            /** Active */
+            active: string[];
+            /** After */
+            after: {
+                [key: string]: boolean | number | string | null;
+            };
+            /** Before */
+            before: {
+                [key: string]: boolean | number | string | null;
+            };
+            /** Completed */
+            completed: components["schemas"]["Completed"][];
+            /** Obstacle */
+            obstacle: string | null;
+            /** Runs */
+            runs: components["schemas"]["Run"][];
+            /** Safe */
+            safe: boolean;
+            /** Seconds */
+            seconds: number;
+            /** Unplanned */
+            unplanned: string;
         };
         /**
          * WhyNotView
@@ -7130,6 +7220,50 @@ export interface operations {
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    what_if_api_v1_model_what_if_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["WhatIfBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WhatIfView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {

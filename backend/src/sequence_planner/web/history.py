@@ -160,9 +160,7 @@ async def checkpoint(identity: Identity) -> Checkpoint:
 @router.get("/{number}", dependencies=[OPERATOR], responses=refused(404, 409, 503, 504))
 async def look_back(request: Request, number: Number) -> MomentView:
     """A record, and how the station was right after it."""
-    found = await _asked(request, LookBack(number), LOOKING_BACK)
-    assert isinstance(found, MomentView)
-    return found
+    return await looked_back(request, number)
 
 
 @router.post(
@@ -175,6 +173,13 @@ async def take_branch(request: Request, number: Number, body: BranchBody) -> Bra
     question = TakeBranch(number, body.seconds, dict(body.corrections), BRANCHING)
     found = await _asked(request, question, BRANCHING + LOOKING_BACK)
     assert isinstance(found, BranchView)
+    return found
+
+
+async def looked_back(request: Request, number: int) -> MomentView:
+    """How the station was right after a record. Raises `ProblemFound`."""
+    found = await _asked(request, LookBack(number), LOOKING_BACK)
+    assert isinstance(found, MomentView)
     return found
 
 

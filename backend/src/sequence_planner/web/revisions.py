@@ -8,27 +8,31 @@ import shutil
 from pathlib import Path as Folder
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query
+from fastapi import APIRouter, Path, Query, Request
 from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.control.production_commands import Deploy
+from sequence_planner.expressions.types import Value
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.journal.entry import LONGEST_REASON
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
+from sequence_planner.web.history import looked_back
 from sequence_planner.web.model import TheWorkshop, refusal
 from sequence_planner.web.problems import ProblemFound, refused
-from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, LiveView
+from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, LiveView, controller, live_view
 from sequence_planner.web.workshop import Workshop
 from sequence_planner.workshop.comparison_view import ComparisonView, TransferView
 from sequence_planner.workshop.draft import Draft
 from sequence_planner.workshop.files import Files, write_files
 from sequence_planner.workshop.processes import WorkEndedError, working
 from sequence_planner.workshop.view import FilesView, RevisionsView, RevisionView
+from sequence_planner.workshop.what_if_view import WhatIfView
 
 DRAFT, RUNNING = "draft", "running"
+SIMULATING = 40.0  # seconds of work
 PATIENCE = 60.0  # seconds for a comparison, or for whether the station can take a model
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 ENGINEER = allowed(Role.ENGINEER)
@@ -60,6 +64,13 @@ class DeploymentBody(Body):
     revision: Annotated[str, Field(pattern=f"^{HASH}$")]
     number: Number
     reason: Annotated[str, Field(min_length=1, max_length=LONGEST_REASON)]
+
+
+class WhatIfBody(Body):
+    """For how many seconds, and from which record of the past on; without one from the present."""
+
+    seconds: Annotated[float, Field(gt=0, le=600.0, strict=True)]
+    number: Annotated[int, Field(ge=1, le=2**53 - 1, strict=True)] | None = None
 
 
 @router.get("/revisions", dependencies=[VIEWER])
@@ -99,6 +110,18 @@ async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> C
 async def transfer(shop: TheWorkshop, view: LiveView) -> TransferView:
     """Whether the station could take the draft as it is now."""
     return await _fitted(shop, view)
+
+
+@router.post("/what-if", dependencies=[ENGINEER, JSON_ONLY], responses=refused(404, 504))
+async def what_if(body: WhatIfBody, shop: TheWorkshop, request: Request) -> WhatIfView:
+    """How the station would go on with the draft, from its present state or from a past record; nothing of it reaches
+    the station.
+    """
+    draft = await shop.open()
+    present = await _present(request) if body.number is None else await _past(request, body.number)
+    found = await _worked("simulated", draft.files, shop.folder, present, body.seconds, SIMULATING)
+    assert isinstance(found, WhatIfView)
+    return found
 
 
 @router.post("/deployments", status_code=204, dependencies=[ENGINEER, JSON_ONLY], responses=refused(404, 422, 504))
@@ -162,6 +185,16 @@ async def _fitted(shop: Workshop, view: LiveView) -> TransferView:
     found = await _worked("fitted", draft.base, draft.files, shop.folder, present, running)
     assert isinstance(found, TransferView)
     return found
+
+
+async def _present(request: Request) -> dict[str, Value | None]:
+    view = await live_view(await controller(request))
+    return {name: variable.value for name, variable in view.variables.items()}
+
+
+async def _past(request: Request, number: int) -> dict[str, Value | None]:
+    moment = await looked_back(request, number)
+    return dict(moment.past.values)
 
 
 async def _worked(name: str, *arguments: object) -> object:

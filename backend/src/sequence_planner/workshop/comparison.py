@@ -13,6 +13,7 @@ from sequence_planner.expressions.printing import print_assignment, print_expres
 from sequence_planner.expressions.syntax import TRUE, Assignment, Expression, Not, conjunction, variables
 from sequence_planner.planning.plan import Goal, Plan, PlanRequest, goal_of
 from sequence_planner.planning.planner import Planner
+from sequence_planner.station import ReadyStation
 from sequence_planner.synthesis.guards import Guard
 from sequence_planner.workshop.comparison_view import (
     BehaviourDifference,
@@ -29,8 +30,9 @@ PLANNING = 2.0  # seconds for one plan
 class Meant:
     """A model that can be used, with what synthesis has found of it."""
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor, guards: Mapping[str, Guard]) -> None:
-        self.automaton = automaton
+    def __init__(self, station: ReadyStation, supervisor: Supervisor, guards: Mapping[str, Guard]) -> None:
+        self.station = station
+        self.automaton = automaton = station.automaton
         self.guards = {start: guard for guard in guards.values() for start in guard.starts}
         self.supervisor = supervisor
         self._planner = Planner(automaton, supervisor)

@@ -7,10 +7,9 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.analysis import analyses
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.types import Value
 from sequence_planner.model.source import ModelError
-from sequence_planner.station import prepare_station
+from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.workshop.comparison import (
     Meant,
     behaviour_differences,
@@ -21,6 +20,8 @@ from sequence_planner.workshop.comparison import (
 from sequence_planner.workshop.comparison_view import ComparisonView, TransferView
 from sequence_planner.workshop.files import Files, write_files
 from sequence_planner.workshop.transfer import transfer
+from sequence_planner.workshop.what_if import what_if
+from sequence_planner.workshop.what_if_view import WhatIfView
 
 
 class Unusable(Exception):
@@ -60,29 +61,56 @@ def fitted(
         yield TransferView(legal=False, changes=[], violated=[], under_way=[], ways=[], obstacle=str(error))
         return
     try:
-        before = _automaton(old, stages, folder / "old")
+        before = _station(old, stages, folder / "old").automaton
     except ModelError:
         before = None
     yield transfer(before, after.automaton, after.supervisor, present, running)
 
 
+def simulated(
+    files: Files,
+    stages: Path | None,
+    present: Mapping[str, Value | None],
+    seconds: float,
+    deadline: float,
+    folder: Path,
+) -> Iterator[WhatIfView]:
+    """How a station would go on with a model from a state; `folder` is empty."""
+    try:
+        meant = _meant("the model", files, stages, folder / "new")
+    except Unusable as error:
+        yield WhatIfView(
+            seconds=0.0,
+            safe=False,
+            runs=[],
+            completed=[],
+            before={},
+            after={},
+            active=[],
+            unplanned="",
+            obstacle=str(error),
+        )
+        return
+    yield what_if(meant.station, meant.supervisor, present, seconds, deadline)
+
+
 def _meant(what: str, files: Files, stages: Path | None, folder: Path) -> Meant:
     """What a model means. Raises `Unusable`."""
     try:
-        automaton = _automaton(files, stages, folder)
+        station = _station(files, stages, folder)
     except ModelError as error:
         raise Unusable(f"{what} cannot be used: {error.findings[0]}") from error
     found = None
-    for found in analyses(automaton):
+    for found in analyses(station.automaton):
         if found.supervisor is not None and found.guards is not None:
-            return Meant(automaton, found.supervisor, found.guards)
+            return Meant(station, found.supervisor, found.guards)
     why = "; ".join(warning.message for warning in (found.warnings if found else None) or ())
     raise Unusable(f"{what} has no supervisor: {why}")
 
 
-def _automaton(files: Files, stages: Path | None, folder: Path) -> Automaton:
+def _station(files: Files, stages: Path | None, folder: Path) -> ReadyStation:
     """Raises `ModelError`."""
     folder.mkdir()
     write_files(files, folder, stages)
     with contextlib.chdir(folder):
-        return prepare_station(Path()).automaton
+        return prepare_station(Path())
