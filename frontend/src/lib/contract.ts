@@ -89,6 +89,8 @@ export type Past = Schemas['PastView'];
 export type PastPlan = Schemas['PastPlanView'];
 export type Branch = Schemas['BranchView'];
 export type BranchBody = Schemas['BranchBody'];
+export type WhatIf = Schemas['WhatIfView'];
+export type WhatIfBody = Schemas['WhatIfBody'];
 export type Checkpoint = Schemas['Checkpoint'];
 
 /** Written as a record, so that the compiler misses the name of a map that is not here. */

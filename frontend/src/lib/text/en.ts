@@ -7,5 +7,6 @@ import { operate } from './en/operate.ts';
 import { restart } from './en/restart.ts';
 import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
+import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, account, alarms, history, operate, restart, ros, state };
+export const en = { ...front, account, alarms, history, operate, restart, ros, state, whatIf };

@@ -7,6 +7,7 @@ import { operate } from './sv/operate.ts';
 import { restart } from './sv/restart.ts';
 import { ros } from './sv/ros.ts';
 import { state } from './sv/state.ts';
+import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, account, alarms, history, operate, restart, ros, state };
+export const sv: Text = { ...front, account, alarms, history, operate, restart, ros, state, whatIf };

@@ -1,0 +1,30 @@
+import { count } from '../count.ts';
+
+/** Tänk om: simulering av modellens utkast. */
+export const whatIf = {
+	title: 'Tänk om',
+	about: 'Hur stationen skulle fortsätta med modellen som den redigeras: simulerat, med emulerade enheter och personer som gör det de ombeds. Stationen påverkas inte.',
+	role: 'Bara ingenjörer simulerar. Fråga en av dem.',
+	from: 'Var det börjar',
+	present: 'Stationen som den är nu',
+	past: 'En post i dess historik',
+	record: 'Postens nummer',
+	seconds: 'I hur många sekunder',
+	go: 'Simulera',
+	going: 'Simulerar …',
+	result: 'Vad som skulle hända',
+	obstacle: (why: string): string => `Inget kunde simuleras: ${why}`,
+	done: (seconds: number, runs: number, operations: number): string =>
+		`${count(Math.round(seconds), 'sekund', 'sekunder')} simulerade: ${count(runs, 'körning', 'körningar')} av förmågor, ${count(operations, 'operation slutförd', 'operationer slutförda')}.`,
+	unsafe: 'Det börjar utanför modellens säkra tillstånd, så operationer startar inget.',
+	unplanned: (why: string): string => `Till slut: ${why}.`,
+	operations: 'Operationer',
+	runs: 'Körningar av förmågor',
+	ability: 'Förmåga',
+	started: 'Startar efter',
+	ended: 'Slutar efter',
+	goesOn: 'pågår',
+	nothing: 'Inget startas',
+	completed: 'Slutförda operationer',
+	changes: 'Annorlunda till slut'
+};
