@@ -68,6 +68,15 @@ class SourceText(str):
         column = index - above.rfind("\n") if breaks else self.place.column + index
         return Place(self.place.file, self.place.line + breaks, column)
 
+    def written(self, span: Span) -> tuple[int, int]:
+        """Where a span of this text, which begins and ends with no white space, begins and ends in `raw`."""
+        before, length = (
+            sum(not character.isspace() for character in part)
+            for part in (self[: span.start], self[span.start : span.end])
+        )
+        characters = _written(self.raw)
+        return characters[before][0], characters[before + length - 1][1]
+
     @classmethod
     def __get_pydantic_core_schema__(cls, source: type[Any], handler: GetCoreSchemaHandler) -> CoreSchema:
         """Pass unchanged through pydantic; anything else is no text."""
