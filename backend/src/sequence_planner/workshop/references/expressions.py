@@ -34,7 +34,7 @@ class Expressions:
         except ExpressionError:
             self.naming.gathered.unread.append((where, text))
             return
-        _Reading(self.naming, text, where).read(tree)
+        _Reading(self.naming, text, where, self._word).read(tree)
 
     def actions(self, written: object, where: Where) -> None:
         """A list of actions."""
@@ -46,7 +46,7 @@ class Expressions:
             except ExpressionError:
                 self.naming.gathered.unread.append((where.to(index), text))
                 continue
-            _Reading(self.naming, text, where.to(index)).assignment(action)
+            _Reading(self.naming, text, where.to(index), self._word).assignment(action)
 
     def _wanted(self, written: object) -> SourceText | None:
         is_wanted = isinstance(written, SourceText) and (self._word is None or self._word in written)
@@ -56,7 +56,8 @@ class Expressions:
 class _Reading:
     """One text. The order in which names are looked at is that of `expressions.resolution`."""
 
-    def __init__(self, naming: Naming, text: SourceText, where: Where) -> None:
+    def __init__(self, naming: Naming, text: SourceText, where: Where, word: str | None) -> None:
+        self._word = word
         self._naming = naming
         self._text = text
         self._where = where
@@ -91,37 +92,37 @@ class _Reading:
         self._naming.link(enumeration, self.read(second, enumeration))
 
     def _name(self, name: Name, expected: str | None) -> str | None:
-        steps = steps_of(name, self._text)
-        word, around = steps[0].word, self._where.around
-        named = self._naming.find(steps, around)
-        is_parameter = name.is_word and word.text in around.parameters
-        if expected is not None and name.is_word and not is_parameter and self._naming.has(expected, word.text):
-            value = value_of(expected, word.text)
-            self._naming.gathered.add(value, self._where, self._text, word.span)
+        word, around = str(name), self._where.around
+        named = self._naming.find(name, around)
+        is_value = expected is not None and name.is_word and self._naming.has(expected, word)
+        if expected is not None and is_value and word not in around.parameters:
+            value = value_of(expected, word)
+            self._naming.gathered.add(value, self._where, self._text, name.span)
             if named is not None and named.enumeration is not None:
                 self._naming.gathered.hidden.add((named.parts[max(named.parts)], value))
             return None
-        named = named or self._naming.implied(steps, around)
-        if named is None:
-            return None
-        self._naming.note(named, steps, self._where, self._text)
-        return named.enumeration
+        if self._word is None or self._word in word:
+            steps = steps_of(name, self._text)
+            named = named or self._naming.implied(steps, around)
+            if named is not None:
+                self._naming.note(named, steps, self._where, self._text)
+        return None if named is None else named.enumeration
 
     def _is_value_first(self, left: Expression, right: Expression) -> bool:
         """Whether the left of a comparison is to be read as a value of what stands on its right."""
-        if not isinstance(left, Name) or self._is_parameter(left):
-            return False
+        if not isinstance(left, Name) or not left.is_word or self._is_parameter(left):
+            return False  # values are single words
         other = self._found(right)
         if self._found(left) is None:
             unknown = isinstance(right, Name) and not self._is_parameter(right) and other is None
             return not unknown or (self._is_some_value(left) and not self._is_some_value(right))
         enumeration = None if other is None or self._is_parameter(right) else other.enumeration
-        return enumeration is not None and left.is_word and self._naming.has(enumeration, str(left))
+        return enumeration is not None and self._naming.has(enumeration, str(left))
 
     def _found(self, expression: Expression) -> Named | None:
         if not isinstance(expression, Name):
             return None
-        return self._naming.find(steps_of(expression, self._text), self._where.around)
+        return self._naming.find(expression, self._where.around)
 
     def _is_parameter(self, expression: Expression) -> bool:
         return isinstance(expression, Name) and str(expression) in self._where.around.parameters

@@ -60,11 +60,9 @@ def pipelines(resource: object, messages: MessageRegistry | None) -> Iterator[Pi
         for name, client in pairs(entry(resource, section)):
             for part, suffix, incoming in parts:
                 type_ = text_at(client, "type")
-                path, known = (section, str(name), part), f"{name} {part}"
+                where, stages = (section, str(name), part), entry(client, part)
                 fields = _fields(messages, None if type_ is None else f"{type_}_{suffix}")
-                yield Pipeline(
-                    path, section[:-1], known, known, incoming, entry(client, part), _ignored(client), fields
-                )
+                yield Pipeline(where, section[:-1], f"{name} {part}", incoming, stages, _ignored(client), fields)
 
 
 def inferred(resource: object, messages: MessageRegistry | None) -> dict[str, Inferred]:

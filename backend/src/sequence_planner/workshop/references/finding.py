@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from sequence_planner.collection import collection_put_off
 from sequence_planner.expressions.syntax import Span
 from sequence_planner.model.reading import EntryPath
 from sequence_planner.model.source import Finding
@@ -45,6 +46,7 @@ class Usages:
     bound: str | None = None
 
 
+@collection_put_off()
 def usages(files: Mapping[str, str], part: Part, messages: MessageRegistry | None = None) -> Usages:
     """Every place at which a part is named, its declaration included.
 
@@ -57,6 +59,7 @@ def usages(files: Mapping[str, str], part: Part, messages: MessageRegistry | Non
     return _answer(content, gathered, part, (each for each in gathered.occurrences if each.part in together))
 
 
+@collection_put_off()
 def dependants(files: Mapping[str, str], part: Part, messages: MessageRegistry | None = None) -> Usages:
     """Every place outside of a part at which it, or what goes with it, is named: what would be wrong without it."""
     content = Content(files)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from sequence_planner.automaton.grounding.declarations import FLAGS
-from sequence_planner.expressions.syntax import Name, Span
+from sequence_planner.expressions.syntax import NOWHERE, Name, Span
 from sequence_planner.model.source import SourceText
 from sequence_planner.workshop.references.declared import Declared, Parameters, is_activity
 from sequence_planner.workshop.references.occurrences import Gathered, Surroundings, Where
@@ -43,11 +43,19 @@ class Named(NamedTuple):
 def steps_of(name: Name, text: str) -> tuple[Step, ...]:
     """The steps of a name that was read from `text`."""
     start = name.span.start
+    if name.is_word:
+        return (Step(Word(name.path[0].name, name.span)),)
     words = (
         Word(match[0], Span(start + match.start(), start + match.end()))
         for match in _WORD.finditer(text[start : name.span.end])
     )
     return tuple(Step(next(words), tuple(next(words) for _ in part.arguments)) for part in name.path)
+
+
+def _without_places(name: Name) -> tuple[Step, ...]:
+    return tuple(
+        Step(Word(part.name, NOWHERE), tuple(Word(each, NOWHERE) for each in part.arguments)) for part in name.path
+    )
 
 
 class Naming:
@@ -56,9 +64,16 @@ class Naming:
     def __init__(self, declared: Declared, gathered: Gathered) -> None:
         self.declared = declared
         self.gathered = gathered
+        self._found: dict[tuple[str, str, str | None, bool], Named | None] = {}
 
-    def find(self, steps: tuple[Step, ...], around: Surroundings) -> Named | None:
+    def find(self, name: Name, around: Surroundings) -> Named | None:
         """What a name names; nothing where no such name is declared."""
+        key = (str(name), around.holder, around.resource, around.has_flags)
+        if key not in self._found:
+            self._found[key] = self._find(_without_places(name), around)
+        return self._found[key]
+
+    def _find(self, steps: tuple[Step, ...], around: Surroundings) -> Named | None:
         word = steps[0].word.text
         is_word = len(steps) == 1 and not steps[0].arguments
         if is_word and word in around.parameters:

@@ -37,7 +37,7 @@ class Where:
 
     def to(self, *steps: str | int) -> Where:
         """An entry within this one."""
-        return Where(self.file, (*self.path, *(_plain(step) for step in steps)), self.owner, self.depth, self.around)
+        return Where(self.file, self.path + tuple(map(_plain, steps)), self.owner, self.depth, self.around)
 
     def within(self, owner: str, around: Surroundings | None = None) -> Where:
         """This entry as a part of its own, with names of its own."""

@@ -91,22 +91,23 @@ def require_unbound(parts: Iterable[Part], gathered: Gathered, content: Content)
 def hiding(declared: Declared, gathered: Gathered) -> set[tuple[Part, Part]]:
     """Parts that stand in the way of others: parameters of values and variables, variables of values beside them."""
     found = set(gathered.hidden)
+    zones = _zones(gathered)
     for part in declared.parts:
         if part.kind != "parameter" or part.owner is None:
             continue
         found |= {(part, Part("value", each, part.name)) for each in declared.values.get(part.name, ())}
         resource = part.owner.partition(".")[0] if "." in part.owner else None
-        for owner in {resource, None, *_zones(part, gathered)}:
+        for owner in {resource, None, *zones.get(part.owner, ())}:
             variable = variable_of(owner, part.name)
             if variable.full in declared.variables:
                 found.add((part, variable))
     return found
 
 
-def _zones(part: Part, gathered: Gathered) -> set[str]:
-    """The resources in whose names a specification with this parameter is written."""
-    return {
-        each.part.name
-        for each in gathered.occurrences
-        if each.part.kind == "resource" and each.where.around.holder == part.owner and "zone" in each.where.path
-    }
+def _zones(gathered: Gathered) -> dict[str, set[str]]:
+    """The resources in whose names a specification is written, by what its parameters belong to."""
+    found: dict[str, set[str]] = {}
+    for each in gathered.occurrences:
+        if each.part.kind == "resource" and "zone" in each.where.path:
+            found.setdefault(each.where.around.holder, set()).add(each.part.name)
+    return found

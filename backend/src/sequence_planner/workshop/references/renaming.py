@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 from typing import NamedTuple
 
+from sequence_planner.collection import collection_put_off
 from sequence_planner.model.paths import EditError
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.workshop.references.declared import Declared
@@ -26,6 +27,7 @@ from sequence_planner.workshop.references.walking import gather
 _Called = Callable[[Part], Part]
 
 
+@collection_put_off()
 def renamed(
     files: Mapping[str, str], part: Part, new_name: str, messages: MessageRegistry | None = None
 ) -> dict[str, str | None]:
@@ -92,7 +94,7 @@ def _require_same(
     for one, other in sorted(hiding(after[1], after[2]) - hidden):
         raise EditError(f"{part} cannot be called `{name}`: {one} would hide {other}")
     old, new = _meaning(*before, called), _meaning(*after, lambda each: each)
-    for bound in sorted(new.bound - old.bound):
+    for bound in sorted(new.bound - old.bound, key=lambda each: (each.kind == "value", each)):
         raise EditError(f"{part} cannot be called `{name}`: {after[2].ties[bound]}")
     for values in sorted(map(sorted, new.links - old.links)):
         both = " and ".join(map(str, values))
@@ -100,7 +102,7 @@ def _require_same(
     for file, names in old.names.items():
         for (was, _), (is_, _) in zip(names, new.names.get(file, []), strict=False):
             if was != is_:
-                raise EditError(f"{part} cannot be called `{name}`: in {file}, what names {was} would then name {is_}")
+                raise EditError(f"{part} cannot be called `{name}`: in {file}, `{was.name}` would name {is_}")
     if old != new:
         raise EditError(f"{part} cannot be called `{name}`: something in the model would mean something else")
 
