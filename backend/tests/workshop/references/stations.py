@@ -6,6 +6,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
+from sequence_planner.immutable import replace
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.station import ReadyStation, prepare_station
 
@@ -55,13 +56,14 @@ def described(folder: Path, without: str) -> str:
     assert [found for example in station.examples for found in example.failures()] == []
     pipelines = station.pipelines
     sides = [
-        {name: each.variables for name, each in part.items()}
+        {name: sorted(each.variables) for name, each in part.items()}
         for part in (pipelines.incoming, pipelines.outgoing, pipelines.flows)
     ]
-    said = f"{station.automaton!r}\n{sides!r}\n{list(pipelines.services)} {list(pipelines.actions)}"
-    return _SET.sub(
-        lambda found: str(sorted(found[1].split(", "))), said.replace(f"/{without}", "").replace(without, "")
-    )
+    # Variables that nobody declares are in the order of the stages that give them.
+    variables, others = station.automaton.variables, replace(station.automaton, variables={})
+    texts = (others, *variables.values(), sides, list(pipelines.services), list(pipelines.actions))
+    said = sorted(repr(each).replace(f"/{without}", "").replace(without, "") for each in texts)
+    return _SET.sub(lambda found: str(sorted(found[1].split(", "))), "\n".join(said))
 
 
 # A cell with every kind of part, and names in every place where there can be some. The comments and quotes are there to

@@ -8,7 +8,8 @@ from pathlib import Path
 import pytest
 
 from sequence_planner.model.paths import EditError
-from sequence_planner.workshop.references import KINDS, Part, renamed
+from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.workshop.references import KINDS, Part, parse_part, renamed
 from sequence_planner.workshop.references.texts import Content
 from sequence_planner.workshop.references.walking import gather
 
@@ -33,17 +34,18 @@ LARGE = of_folder(REPOSITORY / "models" / "truck_engine_station")
 FRESH = "z9"
 
 
-def parts_of(files: Mapping[str, str], folder: Path) -> list[Part]:
-    return list(dict.fromkeys(gather(Content(files), messages_of(folder))[0].parts))
+def parts_of(files: Mapping[str, str], messages: MessageRegistry) -> list[Part]:
+    """All parts, those that nobody declares among them."""
+    declared, _ = gather(Content(files), messages)
+    return list(dict.fromkeys([*declared.parts, *(parse_part(f"variable:{name}") for name in declared.variables)]))
 
 
 def new_name(part: Part) -> str:
     return f"{part.name}/{FRESH}" if part.name.startswith("/") else f"{part.name}{FRESH}"
 
 
-def there_and_back(files: Mapping[str, str], part: Part, folder: Path, before: str) -> bool:
+def there_and_back(files: Mapping[str, str], part: Part, folder: Path, messages: MessageRegistry, before: str) -> bool:
     """Whether a part can be renamed; then the law must hold."""
-    messages = messages_of(folder)
     try:
         changes = renamed(files, part, new_name(part), messages)
     except EditError as error:
@@ -63,9 +65,9 @@ def there_and_back(files: Mapping[str, str], part: Part, folder: Path, before: s
 def test_every_part_there_and_back(station: str, tmp_path: Path) -> None:
     files = STATIONS[station]
     write(files, tmp_path)
-    before = described(tmp_path, FRESH)
-    parts = parts_of(files, tmp_path)
-    done = [part for part in parts if there_and_back(files, part, tmp_path, before)]
+    messages, before = messages_of(tmp_path), described(tmp_path, FRESH)
+    parts = parts_of(files, messages)
+    done = [part for part in parts if there_and_back(files, part, tmp_path, messages, before)]
     assert len(done) > len(parts) / 3
     assert {part.kind for part in parts} - {part.kind for part in done} == set()
 
@@ -77,9 +79,9 @@ def of_each_kind(parts: list[Part]) -> Iterator[Part]:
 
 def test_some_parts_of_a_large_station_there_and_back(tmp_path: Path) -> None:
     write(LARGE, tmp_path)
-    before = described(tmp_path, FRESH)
-    chosen = list(of_each_kind(parts_of(LARGE, tmp_path)))
-    done = [part for part in chosen if there_and_back(LARGE, part, tmp_path, before)]
+    messages, before = messages_of(tmp_path), described(tmp_path, FRESH)
+    chosen = list(of_each_kind(parts_of(LARGE, messages)))
+    done = [part for part in chosen if there_and_back(LARGE, part, tmp_path, messages, before)]
     assert {"enumeration", "resource", "ability", "operation", "specification", "topic", "variable"} <= {
         part.kind for part in done
     }

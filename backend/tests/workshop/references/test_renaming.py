@@ -97,7 +97,7 @@ def test_the_same_name_changes_nothing() -> None:
         # It would be taken for another.
         ("variable:count", "slots", "the variable `slots` is there already"),
         ("variable:count", "last", "in resources/robot.yaml, `last` would name the variable `robot.last`"),
-        ("variable:robot.last", "note", "is the field `note` of the messages of /robot/command"),
+        ("variable:robot.last", "note", "would be the field `note` of the messages of /robot/command"),
         ("variable:robot.last", "to", "the parameter `robot.move.to` would hide the variable `robot.to`"),
         ("parameter:robot.move.to", "pose", "the parameter `robot.move.pose` would hide the variable `robot.pose`"),
         ("parameter:robot.move.to", "count", "the parameter `robot.move.count` would hide the variable `count`"),
@@ -107,11 +107,6 @@ def test_the_same_name_changes_nothing() -> None:
         ("value:pose.home", "target", "the variable `robot.target` would hide the value `pose.target`"),
         ("variable:robot.target", "home", "the variable `robot.home` would hide the value `pose.home`"),
         ("value:pose.nowhere", "here", None),
-        (
-            "variable:robot.busy",
-            "active",
-            "the variable `robot.busy` is the field `busy` of the messages of /robot/state",
-        ),
         ("value:goal_state.idle", "still", "is declared nowhere"),
     ],
 )

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from sequence_planner.expressions.types import IntegerRange
 from sequence_planner.pipelines.paths import NoFieldError, find_field
 from sequence_planner.workshop.references.declared import Variable
 from sequence_planner.workshop.references.fields import SINGLE, Pipeline
+from sequence_planner.workshop.references.occurrences import Binding
 from sequence_planner.workshop.references.parts import variable_of
 from sequence_planner.workshop.references.record import Field
 from sequence_planner.workshop.references.stages import Stages, given_by
 from sequence_planner.workshop.references.texts import entry, items, pairs
 
 
-def bind(stages: Stages, pipeline: Pipeline) -> None:
+def bind(stages: Stages, pipeline: Pipeline, file: str) -> None:
     """Note the variables that are bound to fields of a message by their names, at the end of a pipeline."""
     names = stages.names
     declared = names.naming.declared
@@ -23,15 +25,24 @@ def bind(stages: Stages, pipeline: Pipeline) -> None:
             if not _is_bound(name, variable, stages, pipeline, read):
                 continue
             where = f"of the messages of {pipeline.called}"
-            names.naming.gathered.tie(
-                part,
-                f"{part} is the field `{name}` {where}: give it another name there with a `rename` stage first"
-                if pipeline.fields is not None
-                else f"{part} may be a field {where}, whose definition is not known",
-            )
+            gathered = names.naming.gathered
+            if pipeline.fields is None:
+                gathered.tie(part, f"{part} may be a field {where}, whose definition is not known")
+            elif _is_of_constants(name, enumeration, pipeline):
+                gathered.tie(part, f"the field `{name}` {where} says the values of {part} by numbers of their names")
+            else:
+                why = f"{part} would be the field `{name}` {where}"
+                binding = Binding(file, pipeline.path, pipeline.incoming, name, why)
+                gathered.bindings.setdefault(part, []).append(binding)
             stages.tie(enumeration, f"the field `{name}` {where} says the values of {part} by their names")
             if pipeline.incoming:
                 names.fields.setdefault(name, Field(part, enumeration))
+
+
+def _is_of_constants(name: str, enumeration: str | None, pipeline: Pipeline) -> bool:
+    """Whether an outgoing message has constants for the values of a variable: that holds for no field of a stage."""
+    field = (pipeline.fields or {}).get(name)
+    return not pipeline.incoming and enumeration is not None and isinstance(field, IntegerRange)
 
 
 def _is_bound(name: str, variable: Variable, stages: Stages, pipeline: Pipeline, read: set[str]) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from sequence_planner.expressions.syntax import Span
 from sequence_planner.model.paths import shown_path
@@ -70,18 +71,30 @@ class Occurrence:
     fixed: str | None = None
 
 
+class Binding(NamedTuple):
+    """A pipeline at whose end a variable is a field of a message, because both have the name `field`; `why` says so."""
+
+    file: str
+    path: tuple[str, ...]
+    incoming: bool
+    field: str
+    why: str
+
+
 @dataclass
 class Gathered:
     """All that was found.
 
     `links` are pairs of values that are one because variables of their enumerations are compared. `ties` are parts
-    whose names are not the model's alone, each with why. `hidden` are pairs of parts of which one stands in the way of
+    whose names are not the model's alone, each with why; `bindings` are variables for which a stage could say what
+    their names do. `hidden` are pairs of parts of which one stands in the way of
     the other. `unread` are texts that make no sense, so that some names in them may be missed.
     """
 
     occurrences: list[Occurrence] = field(default_factory=list)
     links: set[frozenset[Part]] = field(default_factory=set)
     ties: dict[Part, str] = field(default_factory=dict)
+    bindings: dict[Part, list[Binding]] = field(default_factory=dict)
     hidden: set[tuple[Part, Part]] = field(default_factory=set)
     unread: list[tuple[Where, SourceText]] = field(default_factory=list)
 

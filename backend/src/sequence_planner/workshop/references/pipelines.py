@@ -65,7 +65,7 @@ class Pipelines:
             names = Names(self._naming, resource, pipeline.incoming, {}, given)
             stages = Stages(names, f"the {pipeline.kind} {pipeline.called}")
             stages.read(pipeline.stages, where)
-            bind(stages, pipeline)
+            bind(stages, pipeline, file)
             self._ends[pipeline.called] = names.fields
             examples = entry(found, *pipeline.path[:2], "examples")
             above = Where(file, (*pipeline.path[:2], "examples"), where.owner, 2)

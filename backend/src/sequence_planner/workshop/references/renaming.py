@@ -10,6 +10,7 @@ from sequence_planner.collection import collection_put_off
 from sequence_planner.model.paths import EditError
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.workshop.references.declared import Declared
+from sequence_planner.workshop.references.explicit import said, unsaid
 from sequence_planner.workshop.references.finding import one_with, shared
 from sequence_planner.workshop.references.occurrences import Gathered
 from sequence_planner.workshop.references.parts import Part, following
@@ -34,8 +35,9 @@ def renamed(
     """The files that change when a part gets another name, with their new texts; None for one that is there no more.
 
     A value that is one with values of other enumerations, because they are compared, is renamed in all of them.
-    Comments, order, quoting and all other bytes stay. The outcome is read again before it is returned: every name in it
-    names what it did. Raises `EditError` where that cannot be, and then nothing changes.
+    A variable that is a field of a message because of its name gets a `rename` stage that says so, and loses one that
+    its new name makes needless. Comments, order, quoting and all other bytes stay. The outcome is read again before it
+    is returned: every name in it names what it did. Raises `EditError` where that cannot be, and then nothing changes.
     """
     require_name(part, new_name)
     content = Content(files)
@@ -43,14 +45,24 @@ def renamed(
     require_known(part, declared)
     if new_name == part.name:
         return {}
+    before = dict(files)
+    if bindings := gathered.bindings.get(part):
+        before |= said(files, bindings)
+        content = Content(before)
+        declared, gathered = gather(content, messages)
+        if part in gathered.bindings:
+            raise EditError(f"{gathered.bindings[part][0].why}, and no `rename` stage can say so: change it by hand")
     together = one_with(part, gathered)
     for each in sorted(together):
         require_free(each._replace(name=new_name), declared, content)
     require_unbound(together, gathered, content)
     new = _written(content, gathered, together, new_name)
-    result = Content({file: text for file, text in {**files, **new}.items() if text is not None})
+    after = {file: text for file, text in {**before, **new}.items() if text is not None}
+    result = Content(after)
     _require_same((content, declared, gathered), (result, *gather(result, messages)), part, together, new_name)
-    return new
+    if part.kind == "variable" and part.owner is not None:
+        new |= unsaid(after, part._replace(name=new_name), messages)
+    return {file: text for file, text in {**before, **new}.items() if text != files.get(file)}
 
 
 def _written(content: Content, gathered: Gathered, parts: frozenset[Part], name: str) -> dict[str, str | None]:
@@ -95,7 +107,8 @@ def _require_same(
         raise EditError(f"{part} cannot be called `{name}`: {one} would hide {other}")
     old, new = _meaning(*before, called), _meaning(*after, lambda each: each)
     for bound in sorted(new.bound - old.bound, key=lambda each: (each.kind == "value", each)):
-        raise EditError(f"{part} cannot be called `{name}`: {after[2].ties[bound]}")
+        why = after[2].ties.get(bound) or after[2].bindings[bound][0].why
+        raise EditError(f"{part} cannot be called `{name}`: {why}")
     for values in sorted(map(sorted, new.links - old.links)):
         both = " and ".join(map(str, values))
         raise EditError(f"{part} cannot be called `{name}`: {both} are compared, and would become one")
@@ -120,7 +133,7 @@ def _meaning(content: Content, declared: Declared, gathered: Gathered, called: _
         {moved.get(file, file): _in_order(places) for file, places in found.items()},
         Counter(map(called, declared.parts)),
         frozenset(frozenset(map(called, link)) for link in gathered.links | shared(gathered)),
-        frozenset(map(called, gathered.ties)),
+        frozenset(map(called, (*gathered.ties, *gathered.bindings))),
         len(gathered.unread),
     )
 
