@@ -160,6 +160,48 @@ def test_what_cannot_be_read_and_may_hold_the_name() -> None:
     assert renamed(broken, parse_part("ability:other.go_there"), "new")
 
 
+STATE = """\
+topics:
+  /robot/state:
+    type: cell_msgs/msg/RobotState
+    direction: in
+    # What the device says.
+    pipeline:
+      # First of all.
+      - expression: {is_still: not busy}
+measured: {is_still: {type: bool}}
+"""
+
+
+def test_a_variable_that_is_a_field_by_its_name_gets_a_stage(messages: MessageRegistry) -> None:
+    files = {
+        "resources/robot.yaml": STATE,
+        "station.yaml": "rest: not robot.busy\n",
+    }
+    there = renamed(files, parse_part("variable:robot.busy"), "is_busy", messages)
+    assert there == {
+        "resources/robot.yaml": STATE.replace(
+            "      # First", "      - rename:\n          busy: is_busy\n      # First"
+        ).replace("not busy", "not is_busy"),
+        "station.yaml": "rest: not robot.is_busy\n",
+    }
+    after = changed(files, there)
+    assert changed(after, renamed(after, parse_part("variable:robot.is_busy"), "busy", messages)) == files
+    again = changed(after, renamed(after, parse_part("variable:robot.is_busy"), "works", messages))
+    assert "          busy: works\n" in again["resources/robot.yaml"]
+
+
+def test_an_outgoing_field_too(messages: MessageRegistry) -> None:
+    text = "topics: {/c: {type: cell_msgs/msg/RobotCommand, direction: out}}\noutput: {place: {type: 0..3}}\n"
+    files = {"resources/robot.yaml": text}
+    there = renamed(files, parse_part("variable:robot.place"), "to", messages)
+    assert there["resources/robot.yaml"] == text.replace(
+        "direction: out", "direction: out, pipeline: [{rename: {place: to}}]"
+    ).replace("{place: {type", "{to: {type")
+    after = changed(files, there)
+    assert changed(after, renamed(after, parse_part("variable:robot.to"), "place", messages)) == files
+
+
 def test_nothing_is_written(tmp_path: Path) -> None:
     files = dict(CELL)
     renamed(files, parse_part("ability:robot.move"), "new")
