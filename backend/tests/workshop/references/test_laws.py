@@ -10,6 +10,7 @@ import pytest
 from sequence_planner.model.paths import EditError
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.workshop.references import KINDS, Part, parse_part, renamed, usages
+from sequence_planner.workshop.references.finding import usage_of
 from sequence_planner.workshop.references.parts import following
 from sequence_planner.workshop.references.texts import Content
 from sequence_planner.workshop.references.walking import gather
@@ -52,11 +53,13 @@ class Renaming:
             old = called[index]
             if old.name.endswith(FRESH):
                 continue  # a value that is one with another
-            together = {each.part for each in usages(self.files, old, self.messages).found} or {old}
+            is_value = old.kind == "value"
+            found = usages(self.files, old, self.messages).found if is_value else ()
+            together = {old, *(each.part for each in found)}
             try:
                 changes = renamed(self.files, old, fresh(old).name, self.messages)
             except EditError as error:
-                assert old.kind == "value", f"{old.id}: {error}"
+                assert is_value, f"{old.id}: {error}"
                 assert "by their names" in str(error) or "whose names are given" in str(error), f"{old.id}: {error}"
                 self.refused.append(old)
                 continue
@@ -98,3 +101,16 @@ def test_every_kind_of_part_is_among_them(tmp_path: Path) -> None:
 def test_parts_of_a_large_station_there_and_back(tmp_path: Path) -> None:
     renaming = check(LARGE, tmp_path, parse_part("value:bolt_state.placed"), every=False)
     assert {part.kind for part, _ in renaming.done} == {part.kind for part in parts_of(LARGE, renaming.messages)}
+
+
+def test_reading_only_what_holds_the_name_finds_the_same(tmp_path: Path) -> None:
+    write(LARGE, tmp_path)
+    messages = messages_of(tmp_path)
+    _, everything = gather(Content(LARGE), messages)
+    for part in parts_of(LARGE, messages)[::3]:
+        if part.kind != "value":
+            expected = {usage_of(each) for each in everything.occurrences if each.part == part}
+            found = usages(LARGE, part, messages).found
+            assert {(each.file, each.line, each.column) for each in found} == {
+                (each.file, each.line, each.column) for each in expected
+            }, part.id

@@ -60,6 +60,14 @@ def test_however_a_text_is_written(written: str) -> None:
     assert new == text.replace("left", "port").replace("\\x6ceft", "port")
 
 
+def test_line_ends_of_windows_stay() -> None:
+    text = "enumerations:\n  side: [left, right] # both\nestimated: {at: {type: side}}\nrest: >-\n  at ==\n  left\n"
+    text = text.replace("\n", "\r\n")
+    assert renamed({"station.yaml": text}, parse_part("value:side.left"), "port") == {
+        "station.yaml": text.replace("left", "port")
+    }
+
+
 def test_a_resource_takes_its_file_with_it() -> None:
     changes = renamed(CELL, parse_part("resource:other"), "another")
     assert set(changes) == {"resources/other.yaml", "resources/another.yaml", "specifications.yaml"}
@@ -94,6 +102,7 @@ def test_the_same_name_changes_nothing() -> None:
         ("value:pose.nowhere", "home", "the value `pose.home` is there already"),
         ("resource:robot", "other", "the resource `other` is there already"),
         ("topic:/robot/state", "/robot/command", "the topic `/robot/command` is there already"),
+        ("variable:robot.pose", "is_out", "is named already, by topic /robot/state: pipeline[3].expression.is_out"),
         # It would be taken for another.
         ("variable:count", "slots", "the variable `slots` is there already"),
         ("variable:count", "last", "in resources/robot.yaml, `last` would name the variable `robot.last`"),

@@ -44,12 +44,15 @@ def require_name(part: Part, name: str) -> None:
         raise EditError(f"`{ANY}` stands for every value in the rows of a table: choose another name")
 
 
-def require_free(new: Part, declared: Declared, content: Content) -> None:
-    """Raises `EditError` if something is called so already."""
+def require_free(new: Part, declared: Declared, gathered: Gathered, content: Content) -> None:
+    """Raises `EditError` if something is called so already, or is meant to be."""
     taken = {*declared.parts, *_undeclared(declared)}
     found = next((each for each in _rivals(new) if each in taken), None)
     if found is not None:
         raise EditError(f"{found} is there already: choose another name")
+    rivals = set(_rivals(new))
+    if (used := next((each for each in gathered.occurrences if each.part in rivals), None)) is not None:
+        raise EditError(f"{new} is named already, by {used.where.said}: choose another name")
     if new.kind == "resource" and file_of(new.name) in content.texts:
         raise EditError(f"the file {file_of(new.name)} is there already: choose another name")
 

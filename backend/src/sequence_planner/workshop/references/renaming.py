@@ -54,7 +54,7 @@ def renamed(
             raise EditError(f"{gathered.bindings[part][0].why}, and no `rename` stage can say so: change it by hand")
     together = one_with(part, gathered)
     for each in sorted(together):
-        require_free(each._replace(name=new_name), declared, content)
+        require_free(each._replace(name=new_name), declared, gathered, content)
     require_unbound(together, gathered, content)
     new = _written(content, gathered, together, new_name)
     after = {file: text for file, text in {**before, **new}.items() if text is not None}
