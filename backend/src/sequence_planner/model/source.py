@@ -68,6 +68,15 @@ class SourceText(str):
         column = index - above.rfind("\n") if breaks else self.place.column + index
         return Place(self.place.file, self.place.line + breaks, column)
 
+    def written(self, span: Span) -> tuple[int, int]:
+        """Where a span of this text, which begins and ends with no white space, begins and ends in `raw`."""
+        before, length = (
+            sum(not character.isspace() for character in part)
+            for part in (self[: span.start], self[span.start : span.end])
+        )
+        characters = _written(self.raw)
+        return characters[before][0], characters[before + length - 1][1]
+
     @classmethod
     def __get_pydantic_core_schema__(cls, source: type[Any], handler: GetCoreSchemaHandler) -> CoreSchema:
         """Pass unchanged through pydantic; anything else is no text."""
@@ -94,4 +103,10 @@ def _written(raw: str) -> list[tuple[int, int]]:
     is_block = raw[:1] in ("|", ">")
     start = (raw.find("\n") + 1 or len(raw)) if is_block else len(quote)
     found = _CHARACTER[quote].finditer(raw, start)
-    return [match.span() for match in found if not match[0].isspace() and match[0] not in _ESCAPED_SPACE]
+    return [match.span() for match in found if not _is_space(match[0])]
+
+
+def _is_space(written: str) -> bool:
+    """Whether a character is white space, as it is or by an escape such as `\\n` or `\\x20`."""
+    is_number = len(written) > 2 and written[1] in "xuU"
+    return written.isspace() or written in _ESCAPED_SPACE or (is_number and chr(int(written[2:], 16)).isspace())
