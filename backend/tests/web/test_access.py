@@ -74,6 +74,8 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "POST /api/v1/model/revisions/{id}/restore": ("engineer", None),
     "POST /api/v1/model/what-if": ("engineer", None),
     "POST /api/v1/model/deployments": ("engineer", None),
+    "POST /api/v1/model/rename": ("engineer", None),
+    "GET /api/v1/model/usages": ("viewer", "read"),
     "POST /api/v1/model/undo": ("engineer", None),
     "POST /api/v1/model/redo": ("engineer", None),
     "GET /api/v1/ros/graph": ("viewer", "read"),

@@ -113,6 +113,7 @@ def test_an_edit_is_seen_by_the_other_and_undone_by_who_made_it(
     assert draft["changes"][0]["title"] == read(eva)["undo"] == "another title"
     refused = change(adam, TITLE)
     problem(refused, 409, "part-changed")
+    assert "by Engineer" in refused.json()["detail"]
     assert "Nothing was changed" in refused.json()["detail"]
     problem(adam.post(f"{MODEL}/undo", json={}), 422, "edit-refused")
     assert eva.post(f"{MODEL}/undo", json={}).status_code == 200
@@ -236,6 +237,32 @@ def test_versions_are_compared(eva: httpx.Client) -> None:
     assert read(eva, "/comparison", old=id)["text"] == {}
     problem(eva.get(f"{MODEL}/comparison", params={"old": "0" * 40}), 404, "no-revision")
     problem(eva.get(f"{MODEL}/comparison", params={"old": "HEAD"}), 422, "invalid-request")
+
+
+def test_a_part_is_renamed_wherever_it_is_named(eva: httpx.Client) -> None:
+    found = read(eva, "/usages", part="variable:robot.pose")
+    assert {each["file"] for each in found["dependants"]} >= {"resources/nutrunner.yaml", "specifications.yaml"}
+    assert [each["line"] for each in found["usages"] if each["declares"]]
+    answer = eva.post(f"{MODEL}/rename", json={"part": "enumeration:bolt_state", "name": "state_of_bolts"})
+    assert answer.status_code == 200, answer.text
+    assert answer.json()["files"]["station.yaml"]["content"]["estimated"]["bolts"]["type"] == "state_of_bolts"
+    assert checked(eva)["findings"] == []
+    assert read(eva)["undo"] == "bolt_state is called state_of_bolts"
+    assert eva.post(f"{MODEL}/undo", json={}).status_code == 200
+    assert {each["state"] for each in read(eva)["files"].values()} == {"same"}
+
+
+@pytest.mark.parametrize(
+    ("part", "name"),
+    [
+        ("enumeration:bolt_state", "pose"),
+        ("enumeration:bolt_state", "a b"),
+        ("enumeration:none", "some"),
+        ("colour:red", "blue"),
+    ],
+)
+def test_what_cannot_be_renamed_is_said(eva: httpx.Client, part: str, name: str) -> None:
+    problem(eva.post(f"{MODEL}/rename", json={"part": part, "name": name}), 422, "edit-refused")
 
 
 START = {"file": "resources/robot.yaml", "path": ["abilities", "move_to_position", "start", "when"]}

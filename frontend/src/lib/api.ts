@@ -884,6 +884,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model/rename": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Rename
+         * @description Give a part of the model another name, which all that name it follow; the files that are others now.
+         */
+        post: operations["rename_api_v1_model_rename_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/model/revisions": {
         parameters: {
             query?: never;
@@ -962,6 +982,26 @@ export interface paths {
          * @description Take back your last change that is not taken back yet; the files that are others now.
          */
         post: operations["undo_api_v1_model_undo_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/usages": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Usages
+         * @description Where a part of the model, such as `variable:robot.pose`, is named, and what could not be without it.
+         */
+        get: operations["usages_api_v1_model_usages_get"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -3954,6 +3994,16 @@ export interface components {
             was: components["schemas"]["JsonValue"];
         };
         /**
+         * RenameBody
+         * @description A part of the model by its id, such as `variable:robot.pose`, and what it shall be called.
+         */
+        RenameBody: {
+            /** Name */
+            name: string;
+            /** Part */
+            part: string;
+        };
+        /**
          * ReplacementView
          * @description A plan took the place of another: when, why, and what went with it. The steps say if they are new.
          */
@@ -4844,6 +4894,48 @@ export interface components {
             reason: string;
             /** Revision */
             revision: number;
+        };
+        /**
+         * UsageView
+         * @description A place at which a part is named, `length` characters from line and column on, which count from 1; `used_by` says
+         *     by what. `declares` it says of the place where the part itself is written.
+         */
+        UsageView: {
+            /** Column */
+            column: number;
+            /** Declares */
+            declares: boolean;
+            /** File */
+            file: string;
+            /** Length */
+            length: number;
+            /** Line */
+            line: number;
+            /** Part */
+            part: string;
+            /** Path */
+            path: (string | number)[];
+            /** Used By */
+            used_by: string;
+            /** Written */
+            written: string;
+        };
+        /**
+         * UsagesView
+         * @description Where a part is named, and which of these places outside of it could not be without it.
+         *
+         *     `unread` are texts that make no sense and hold the name, and files that cannot be read; `bound` says why the name
+         *     is not the model's alone.
+         */
+        UsagesView: {
+            /** Bound */
+            bound: string | null;
+            /** Dependants */
+            dependants: components["schemas"]["UsageView"][];
+            /** Unread */
+            unread: components["schemas"]["FindingDocument"][];
+            /** Usages */
+            usages: components["schemas"]["UsageView"][];
         };
         /**
          * ValuesBody
@@ -6753,7 +6845,6 @@ export interface operations {
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -7044,6 +7135,48 @@ export interface operations {
             };
         };
     };
+    rename_api_v1_model_rename_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RenameBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FilesView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     revisions_api_v1_model_revisions_get: {
         parameters: {
             query?: never;
@@ -7186,7 +7319,6 @@ export interface operations {
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
             503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -7231,6 +7363,42 @@ export interface operations {
             };
         };
     };
+    usages_api_v1_model_usages_get: {
+        parameters: {
+            query: {
+                part: string;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["UsagesView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     what_if_api_v1_model_what_if_post: {
         parameters: {
             query?: never;
@@ -7263,7 +7431,6 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
-            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {

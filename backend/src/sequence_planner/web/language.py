@@ -6,8 +6,8 @@ from fastapi import APIRouter
 
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
-from sequence_planner.web.model import TheWorkshop
-from sequence_planner.web.problems import ProblemFound, refused
+from sequence_planner.web.model import TheWorkshop, failed
+from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY
 from sequence_planner.web.workshop import Workshop
 from sequence_planner.workshop.language_view import CompletionView
@@ -66,4 +66,4 @@ async def _asked(shop: Workshop, kind: LanguageQuestionKind, asked: TextAt) -> L
     try:
         return await shop.ask(kind, asked)
     except WorkEndedError as error:
-        raise ProblemFound(503, "workshop-failed", "It could not be found out", f"{error} Try again.") from error
+        raise failed(error) from error

@@ -21,9 +21,11 @@ from sequence_planner.web.stream import serve
 from sequence_planner.web.workshop import Workshop
 from sequence_planner.workshop.check_view import CheckView
 from sequence_planner.workshop.edits import Edit, FilePath, PartChangedError
-from sequence_planner.workshop.view import DraftView, FilesView
+from sequence_planner.workshop.processes import WorkEndedError
+from sequence_planner.workshop.view import DraftView, FilesView, UsagesView
 
 MOST_EDITS = 500  # of one change
+PartId = Annotated[str, Field(min_length=3, max_length=500)]
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 ENGINEER = allowed(Role.ENGINEER)
 
@@ -47,6 +49,13 @@ class ChangeBody(Body):
 
     title: Annotated[str, Field(min_length=1, max_length=300)]
     edits: Annotated[list[Edit], Field(min_length=1, max_length=MOST_EDITS)]
+
+
+class RenameBody(Body):
+    """A part of the model by its id, such as `variable:robot.pose`, and what it shall be called."""
+
+    part: PartId
+    name: Annotated[str, Field(min_length=1, max_length=200)]
 
 
 @router.get("", dependencies=[VIEWER])
@@ -79,6 +88,28 @@ async def change(body: ChangeBody, shop: TheWorkshop, actor: Actor) -> FilesView
         raise refusal(error) from error
 
 
+@router.post("/rename", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
+async def rename(body: RenameBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+    """Give a part of the model another name, which all that name it follow; the files that are others now."""
+    try:
+        return await shop.rename(body.part, body.name, actor)
+    except EditError as error:
+        raise refusal(error) from error
+    except WorkEndedError as error:
+        raise failed(error) from error
+
+
+@router.get("/usages", dependencies=[VIEWER], responses=refused(422))
+async def usages(shop: TheWorkshop, part: PartId) -> UsagesView:
+    """Where a part of the model, such as `variable:robot.pose`, is named, and what could not be without it."""
+    try:
+        return await shop.usages(part)
+    except EditError as error:
+        raise refusal(error) from error
+    except WorkEndedError as error:
+        raise failed(error) from error
+
+
 @router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
 async def undo(shop: TheWorkshop, actor: Actor) -> FilesView:
     """Take back your last change that is not taken back yet; the files that are others now."""
@@ -103,6 +134,12 @@ async def stream(websocket: WebSocket) -> None:
     shop = await workshop(websocket)
     await shop.open()
     await serve(websocket, shop.latest)
+
+
+def failed(error: WorkEndedError) -> ProblemFound:
+    """The problem that says that something could not be found out."""
+    text = f"{str(error)[:1].upper()}{str(error)[1:]}."
+    return ProblemFound(503, "workshop-failed", "It could not be found out", f"{text} Try again.")
 
 
 def refusal(error: EditError) -> ProblemFound:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import secrets
 import shutil
 from pathlib import Path as Folder
@@ -20,20 +19,19 @@ from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
 from sequence_planner.web.history import looked_back
-from sequence_planner.web.model import TheWorkshop, refusal
+from sequence_planner.web.model import TheWorkshop, failed, refusal
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, LiveView, controller, live_view
 from sequence_planner.web.workshop import Workshop
 from sequence_planner.workshop.comparison_view import ComparisonView, TransferView
 from sequence_planner.workshop.draft import Draft
 from sequence_planner.workshop.files import Files, write_files
-from sequence_planner.workshop.processes import WorkEndedError, working
+from sequence_planner.workshop.processes import WorkEndedError, worked
 from sequence_planner.workshop.view import FilesView, RevisionsView, RevisionView
 from sequence_planner.workshop.what_if_view import WhatIfView
 
 DRAFT, RUNNING = "draft", "running"
 SIMULATING = 40.0  # seconds of work
-PATIENCE = 60.0  # seconds for a comparison, or for whether the station can take a model
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 ENGINEER = allowed(Role.ENGINEER)
 HASH = "[0-9a-f]{40}"
@@ -97,7 +95,7 @@ async def restore(id: Id, body: RestoreBody, shop: TheWorkshop, actor: Actor) ->
     return await shop.restore(draft, files, (await _known(shop, id)).name, actor)
 
 
-@router.get("/comparison", dependencies=[VIEWER], responses=refused(404, 504))
+@router.get("/comparison", dependencies=[VIEWER], responses=refused(404))
 async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> ComparisonView:
     """How two versions differ, in text and in behaviour: revisions by their ids, the draft, or what runs."""
     files = await _files(shop, old), await _files(shop, new)
@@ -106,13 +104,13 @@ async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> C
     return found
 
 
-@router.get("/transfer", dependencies=[VIEWER], responses=refused(504))
+@router.get("/transfer", dependencies=[VIEWER], responses=refused())
 async def transfer(shop: TheWorkshop, view: LiveView) -> TransferView:
     """Whether the station could take the draft as it is now."""
     return await _fitted(shop, view)
 
 
-@router.post("/what-if", dependencies=[ENGINEER, JSON_ONLY], responses=refused(404, 504))
+@router.post("/what-if", dependencies=[ENGINEER, JSON_ONLY], responses=refused(404))
 async def what_if(body: WhatIfBody, shop: TheWorkshop, request: Request) -> WhatIfView:
     """How the station would go on with the draft, from its present state or from a past record; nothing of it reaches
     the station.
@@ -200,15 +198,9 @@ async def _past(request: Request, number: int) -> dict[str, Value | None]:
 async def _worked(name: str, *arguments: object) -> object:
     """What a task of the workshop finds."""
     try:
-        async with asyncio.timeout(PATIENCE), working("tasks", name, *arguments) as found:
-            async for each in found:
-                return each
-    except TimeoutError:
-        detail = f"It took more than {PATIENCE:g} s and was given up. Try again when less is going on."
-        raise ProblemFound(504, "workshop-late", "There was no answer in time", detail) from None
+        return await worked(name, *arguments)
     except WorkEndedError as error:
-        raise ProblemFound(503, "workshop-failed", "It could not be found out", f"{error} Try again.") from error
-    raise AssertionError
+        raise failed(error) from error
 
 
 def _why_not(fits: TransferView) -> str:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Callable, Sequence
+from collections.abc import Awaitable, Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.actor import Actor
+from sequence_planner.model.paths import EditError
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.latest import Latest
 from sequence_planner.web.looking_messages import WorkshopSnapshot
@@ -17,14 +19,14 @@ from sequence_planner.web.settings import StreamLimits
 from sequence_planner.workshop import draft as drafts
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckView, waiting
-from sequence_planner.workshop.draft import Draft
-from sequence_planner.workshop.edits import Edit, WriteText
+from sequence_planner.workshop.draft import Change, Differences, Draft, Proposal
+from sequence_planner.workshop.edits import Edit, PartChangedError, WriteText
 from sequence_planner.workshop.files import Files, read_files
-from sequence_planner.workshop.processes import Answering
+from sequence_planner.workshop.processes import Answering, worked
 from sequence_planner.workshop.questions import LanguageAnswer, LanguageQuestionKind, TextAt
 from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
 from sequence_planner.workshop.showing import Reader, change_view, marks
-from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, RevisionView, WorkshopView
+from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, RevisionView, UsagesView, WorkshopView
 
 MOST_SHOWN = 50  # changes
 ANSWERED_WITHIN = 5.0  # seconds, for questions about a text
@@ -101,15 +103,40 @@ class Workshop:
 
     async def change(self, edits: Sequence[Edit], by: Actor, title: str) -> FilesView:
         """Carry edits out; the files that are others now. Raises `EditError`."""
-        return await self._changed(lambda connection, now: drafts.change(connection, edits, by, now, title), by)
+        return await self._changed(lambda draft: run_in_threadpool(drafts.editing, draft, edits, title), by)
+
+    async def rename(self, part: str, name: str, by: Actor) -> FilesView:
+        """Give a part another name, which all that name it follow; the files that are others now.
+
+        Raises `EditError` and `WorkEndedError`.
+        """
+
+        async def propose(draft: Draft) -> Proposal:
+            found = await worked("renamed_files", draft.files, part, name)
+            if isinstance(found, str):
+                raise EditError(found)
+            assert isinstance(found, dict)
+            edits = [WriteText(file=path, was=draft.files.get(path), text=text) for path, text in found.items()]
+            title = f"{part.partition(':')[2]} is called {name}"
+            return await run_in_threadpool(drafts.editing, draft, edits, title)
+
+        return await self._changed(propose, by)
+
+    async def usages(self, part: str) -> UsagesView:
+        """Where a part is named. Raises `EditError` and `WorkEndedError`."""
+        found = await worked("used", (await self.open()).files, part)
+        if isinstance(found, str):
+            raise EditError(found)
+        assert isinstance(found, UsagesView)
+        return found
 
     async def undo(self, by: Actor) -> FilesView:
         """Take back what somebody did last. Raises `EditError`."""
-        return await self._changed(lambda connection, now: drafts.undo(connection, by, now), by)
+        return await self._changed(lambda draft: self._again(draft, by, undo=True), by)
 
     async def redo(self, by: Actor) -> FilesView:
         """Do again what somebody took back last. Raises `EditError`."""
-        return await self._changed(lambda connection, now: drafts.redo(connection, by, now), by)
+        return await self._changed(lambda draft: self._again(draft, by, undo=False), by)
 
     async def checked(self) -> CheckView:
         """What is known of the draft."""
@@ -170,14 +197,28 @@ class Workshop:
         assert isinstance(answer, LanguageAnswer)
         return answer
 
-    async def _changed(self, work: Callable[[Connection, float], Draft], by: Actor) -> FilesView:
-        await self.open()
-        now = self._identity.now()
+    async def _again(self, draft: Draft, by: Actor, *, undo: bool) -> Proposal:
+        def last(connection: Connection) -> tuple[Change, Differences]:
+            done, undone = drafts.stacks(connection, by)
+            if not (found := done if undo else undone):
+                raise EditError(f"there is nothing of yours to {'undo' if undo else 'do again'}")
+            return found[-1], drafts.differences_of(connection, found[-1])
 
-        def write(connection: Connection) -> tuple[Draft, Draft]:
-            return drafts.read(connection), work(connection, now)
+        propose = drafts.undoing if undo else drafts.redoing
+        return await run_in_threadpool(propose, draft, *await self._identity.read(last))
 
-        before, after = await self._identity.write(write, by=by)
+    async def _changed(self, propose: Callable[[Draft], Awaitable[Proposal]], by: Actor) -> FilesView:
+        """Let the draft be what is proposed, which is thought of again where somebody else was quicker."""
+        while True:
+            before = await self.open()
+            try:
+                proposal = await propose(before)
+            except PartChangedError as error:
+                raise await self._told_by_whom(error, by) from error
+            now = self._identity.now()
+            after = await self._identity.write(partial(_written, before, proposal, by, now), by=by)
+            if after is not None:
+                break
         await self._noticed(after)
         touched = [
             path
@@ -186,6 +227,13 @@ class Workshop:
         ]
         found = await run_in_threadpool(self._reader.views, after, touched)
         return FilesView(number=after.number, files=found)
+
+    async def _told_by_whom(self, error: PartChangedError, by: Actor) -> PartChangedError:
+        """The same with the name of who was there before."""
+        last = await self._identity.read(lambda connection: drafts.last_of(connection, error.file))
+        if last is None or last.by_id == by.id:
+            return error
+        return PartChangedError(error.file, error.path, f"{error}, by {last.by_name}")
 
     async def _noticed(self, draft: Draft) -> None:
         """Show the draft, and check it, where it is another one."""
@@ -208,3 +256,7 @@ class Workshop:
             assert self._shown is not None  # nobody listens before it was opened
             self._encoded = WorkshopSnapshot(kind="workshop", workshop=self._shown).model_dump_json()
         return self._encoded
+
+
+def _written(draft: Draft, proposal: Proposal, by: Actor, now: float, connection: Connection) -> Draft | None:
+    return drafts.write(connection, draft, proposal, by, now)

@@ -14,8 +14,7 @@ from enum import StrEnum
 from sqlalchemy import Connection, Row, Select, delete, func, insert, select, update
 
 from sequence_planner.actor import SYSTEM, Actor
-from sequence_planner.model.paths import EditError
-from sequence_planner.workshop.edits import Edit, PartChangedError, WriteText, applied
+from sequence_planner.workshop.edits import Edit, WriteText, applied
 from sequence_planner.workshop.files import Files
 from sequence_planner.workshop.merging import MergeConflictError, merged
 from sequence_planner.workshop.tables import DRAFT_CHANGES, DRAFT_FILES
@@ -64,7 +63,7 @@ def digest(text: str) -> str:
 
 def read(connection: Connection) -> Draft:
     """The draft; number 0 and no files before it was begun."""
-    number = connection.execute(select(func.max(DRAFT_CHANGES.c.number))).scalar() or 0
+    number = _number(connection)
     rows = connection.execute(select(DRAFT_FILES).order_by(DRAFT_FILES.c.path)).all()
     return Draft(
         number,
@@ -92,7 +91,7 @@ def take_up(connection: Connection, files: Files, now: float) -> tuple[Draft, li
         else:
             after[path] = text
     title = "The files of the station" if not draft.number else "The files of the station have changed"
-    _write(connection, draft, after, SYSTEM, now, ChangeKind.TAKEN, None, title)
+    _write(connection, draft, Proposal(after, ChangeKind.TAKEN, None, title), SYSTEM, now)
     rebase(connection, files)
     return read(connection), conflicts
 
@@ -104,35 +103,45 @@ def rebase(connection: Connection, files: Files) -> None:
         _put(connection, path, draft.files.get(path), files.get(path))
 
 
-def change(connection: Connection, edits: Sequence[Edit], by: Actor, now: float, title: str) -> Draft:
+@dataclass(frozen=True)
+class Proposal:
+    """What shall become of the files of a draft, and what it is."""
+
+    after: Files
+    kind: ChangeKind
+    of: int | None
+    title: str
+
+
+def editing(draft: Draft, edits: Sequence[Edit], title: str) -> Proposal:
     """Carry edits out, all of them or none. Raises `EditError`."""
-    draft = read(connection)
-    try:
-        after = applied(draft.files, edits)
-    except PartChangedError as error:
-        who = _last_of(connection, error.file)
-        if who is None or who.by_id == by.id:
-            raise
-        raise PartChangedError(error.file, error.path, f"{error}, by {who.by_name}") from error
-    return _write(connection, draft, after, by, now, ChangeKind.EDIT, None, title)
+    return Proposal(applied(draft.files, edits), ChangeKind.EDIT, None, title)
 
 
-def undo(connection: Connection, by: Actor, now: float) -> Draft:
-    """Take back the last change of the same person that was not taken back yet, wherever others have not changed the
-    same lines since. Raises `EditError`.
-    """
-    found, _ = stacks(connection, by)
-    if not found:
-        raise EditError("there is nothing of yours to undo")
-    return _again(connection, found[-1], by, now, ChangeKind.UNDO)
+def undoing(draft: Draft, of: Change, differences: Differences) -> Proposal:
+    """Take a change back, wherever others have not changed the same lines since. Raises `EditError`."""
+    edits = [WriteText(file=path, was=after, text=before) for path, (before, after) in differences.items()]
+    return Proposal(applied(draft.files, edits), ChangeKind.UNDO, of.number, of.title)
 
 
-def redo(connection: Connection, by: Actor, now: float) -> Draft:
-    """Do again what the same person took back last. Raises `EditError`."""
-    _, found = stacks(connection, by)
-    if not found:
-        raise EditError("there is nothing of yours to do again")
-    return _again(connection, found[-1], by, now, ChangeKind.REDO)
+def redoing(draft: Draft, of: Change, differences: Differences) -> Proposal:
+    """Do again what was taken back. Raises `EditError`."""
+    edits = [WriteText(file=path, was=before, text=after) for path, (before, after) in differences.items()]
+    return Proposal(applied(draft.files, edits), ChangeKind.REDO, of.number, of.title)
+
+
+def write(connection: Connection, draft: Draft, proposal: Proposal, by: Actor, now: float) -> Draft | None:
+    """Let the draft be what is proposed; None where it is another one by now than the `draft` this was made from."""
+    if _number(connection) != draft.number:
+        return None
+    return _write(connection, draft, proposal, by, now)
+
+
+def differences_of(connection: Connection, change: Change) -> Differences:
+    """What a change did."""
+    written = connection.execute(select(DRAFT_CHANGES.c.files).where(DRAFT_CHANGES.c.number == change.number))
+    found: dict[str, list[str | None]] = json.loads(written.scalar_one())
+    return {path: (before, after) for path, (before, after) in found.items()}
 
 
 def changes(connection: Connection, limit: int) -> list[Change]:
@@ -163,35 +172,14 @@ def stacks(connection: Connection, by: Actor) -> tuple[list[Change], list[Change
     return done, undone
 
 
-def _again(connection: Connection, of: Change, by: Actor, now: float, kind: ChangeKind) -> Draft:
-    draft = read(connection)
-    written = connection.execute(select(DRAFT_CHANGES.c.files).where(DRAFT_CHANGES.c.number == of.number)).scalar_one()
-    differences: dict[str, list[str | None]] = json.loads(written)
-    edits = [
-        WriteText(file=path, was=after, text=before)
-        if kind is ChangeKind.UNDO
-        else WriteText(file=path, was=before, text=after)
-        for path, (before, after) in differences.items()
-    ]
-    return _write(connection, draft, applied(draft.files, edits), by, now, kind, of.number, of.title)
-
-
-def _write(
-    connection: Connection,
-    draft: Draft,
-    after: Files,
-    by: Actor,
-    now: float,
-    kind: ChangeKind,
-    of: int | None,
-    title: str,
-) -> Draft:
+def _write(connection: Connection, draft: Draft, proposal: Proposal, by: Actor, now: float) -> Draft:
+    after = proposal.after
     differences = {
         path: (draft.files.get(path), after.get(path))
         for path in sorted(draft.files.keys() | after.keys())
         if draft.files.get(path) != after.get(path)
     }
-    if not differences and (draft.number or kind is not ChangeKind.TAKEN):
+    if not differences and draft.number:
         return draft
     number = draft.number + 1
     connection.execute(
@@ -200,9 +188,9 @@ def _write(
             time=now,
             by_id=by.id,
             by_name=by.name,
-            kind=kind.value,
-            of=of,
-            title=title[:300],
+            kind=proposal.kind.value,
+            of=proposal.of,
+            title=proposal.title[:300],
             files=json.dumps(differences),
         )
     )
@@ -210,6 +198,10 @@ def _write(
     for path, (_, text) in differences.items():
         _put(connection, path, text, draft.base.get(path))
     return Draft(number, after, draft.base)
+
+
+def _number(connection: Connection) -> int:
+    return connection.execute(select(func.max(DRAFT_CHANGES.c.number))).scalar() or 0
 
 
 def _put(connection: Connection, path: str, text: str | None, base: str | None) -> None:
@@ -220,7 +212,7 @@ def _put(connection: Connection, path: str, text: str | None, base: str | None) 
         connection.execute(insert(DRAFT_FILES).values(path=path, text=text, base=base))
 
 
-def _last_of(connection: Connection, path: str) -> Change | None:
+def last_of(connection: Connection, path: str) -> Change | None:
     """The last change of a file."""
     mark = json.dumps(path) + ": ["
     found = _known().where(DRAFT_CHANGES.c.files.contains(mark, autoescape=True))

@@ -24,6 +24,7 @@ from sequence_planner.lifeline import end_without_parent
 
 _CONTEXT = multiprocessing.get_context("forkserver")
 _CONTEXT.set_forkserver_preload([f"{__package__}.{each}" for each in ("checking", "tasks", "language_worker")])
+PATIENCE = 60.0  # seconds for a task
 _NICENESS = 5  # ticks come first
 _PREFIX = "sequence-planner-workshop-"  # of folders
 _NO_ANSWER = "the process has ended without an answer; is memory short?"
@@ -52,6 +53,17 @@ async def working(module: str, name: str, *arguments: object) -> AsyncIterator[A
             finally:
                 process.kill()
                 await asyncio.shield(asyncio.to_thread(process.join))
+
+
+async def worked(name: str, *arguments: object, patience: float = PATIENCE) -> object:
+    """What the task `name` of `tasks` finds within so many seconds. Raises `WorkEndedError`."""
+    try:
+        async with asyncio.timeout(patience), working("tasks", name, *arguments) as found:
+            async for each in found:
+                return each
+    except TimeoutError:
+        raise WorkEndedError(f"it took more than {patience:g} s and was given up") from None
+    raise WorkEndedError(_NO_ANSWER)
 
 
 class Answering:

@@ -74,6 +74,35 @@ class FilesView(View):
     files: dict[str, FileView | None]
 
 
+class UsageView(View):
+    """A place at which a part is named, `length` characters from line and column on, which count from 1; `used_by` says
+    by what. `declares` it says of the place where the part itself is written.
+    """
+
+    part: str
+    file: str
+    path: list[str | int]
+    line: int
+    column: int
+    length: int
+    written: str
+    used_by: str
+    declares: bool
+
+
+class UsagesView(View):
+    """Where a part is named, and which of these places outside of it could not be without it.
+
+    `unread` are texts that make no sense and hold the name, and files that cannot be read; `bound` says why the name
+    is not the model's alone.
+    """
+
+    usages: list[UsageView]
+    dependants: list[UsageView]
+    unread: list[FindingDocument]
+    bound: str | None
+
+
 class RevisionView(View):
     """A saved revision of the model; `running` and `draft` say that the station runs it, and that the draft is it.
 
