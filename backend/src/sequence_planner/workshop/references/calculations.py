@@ -105,6 +105,9 @@ class _Calculation:
             self._value(left, other)
         else:
             naming.link(one, other)
+            for kind, beside in ((one, right), (other, left)):
+                if beside.kind == "path" and self._type(beside) is None:
+                    naming.tie_values(kind, f"`{beside.text}` is compared with them, and has values of its own")
 
     def _beside(self, operand: _Operand, expected: str) -> str | None:
         if operand.kind == "text" and self._is_value(operand, expected, None):

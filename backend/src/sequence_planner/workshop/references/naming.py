@@ -130,6 +130,11 @@ class Naming:
         """Whether an enumeration has a value."""
         return value in self.declared.enumerations.get(enumeration, ())
 
+    def tie_values(self, enumeration: str | None, why: str) -> None:
+        """Note that the names of an enumeration's values are not the model's alone."""
+        for value in self.declared.enumerations.get(enumeration or "", ()):
+            self.gathered.tie(value_of(enumeration or "", value), why)
+
     def link(self, one: str | None, other: str | None) -> None:
         """Note that values of two enumerations are compared, or become one another."""
         if one is None or other is None or one == other:

@@ -12,7 +12,7 @@ from sequence_planner.workshop.references.naming import Naming
 from sequence_planner.workshop.references.occurrences import Where
 from sequence_planner.workshop.references.parts import Part, value_of, variable_of
 from sequence_planner.workshop.references.record import Field, Fields, Names
-from sequence_planner.workshop.references.stages import Stages, given_by
+from sequence_planner.workshop.references.stages import Stages, given_by, kinds_of
 from sequence_planner.workshop.references.texts import Content, entry, items, pairs, text_at
 
 _STATUS = "the status of an action ranges over the states of a goal, whose names are given"
@@ -62,7 +62,8 @@ class Pipelines:
         for pipeline in pipelines(found, self._naming.declared.messages):
             where = Where(file, pipeline.path, f"{pipeline.kind} {pipeline.path[1]}", 2)
             given = given_by(pipeline.stages)
-            names = Names(self._naming, resource, pipeline.incoming, {}, given)
+            kinds = kinds_of(pipeline.stages, self._naming.declared, resource)
+            names = Names(self._naming, resource, pipeline.incoming, {}, given, kinds)
             stages = Stages(names, f"the {pipeline.kind} {pipeline.called}")
             stages.read(pipeline.stages, where)
             bind(stages, pipeline, file)
@@ -97,7 +98,8 @@ class Pipelines:
         self._pass_through(resource, fields)
         before = dict(fields)
         pipeline = entry(flow, "pipeline")
-        names = Names(self._naming, resource, True, fields, given_by(pipeline))
+        kinds = kinds_of(pipeline, self._naming.declared, resource)
+        names = Names(self._naming, resource, True, fields, given_by(pipeline), kinds)
         Stages(names, where.owner).read(pipeline, where.to("pipeline"))
         self._ends[name] = names.fields
         read_examples(names, before, entry(flow, "examples"), where.to("examples"))

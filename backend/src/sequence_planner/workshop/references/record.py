@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 from typing import NamedTuple
 
 from sequence_planner.expressions.syntax import Span
@@ -28,15 +29,25 @@ Fields = dict[str, Field]
 class Names:
     """The names of the record that a resource's pipeline has, as they change from stage to stage.
 
-    `given` are all names that some stage of it gives: others of an incoming one are as the message has them.
+    `given` are all names that some stage of it gives: others of an incoming one are as the message has them. `kinds`
+    are the enumerations of names that are no variables.
     """
 
-    def __init__(self, naming: Naming, resource: str, incoming: bool, fields: Fields, given: frozenset[str]) -> None:
+    def __init__(
+        self,
+        naming: Naming,
+        resource: str,
+        incoming: bool,
+        fields: Fields,
+        given: frozenset[str],
+        kinds: Mapping[str, str] | None = None,
+    ) -> None:
         self.naming = naming
         self.resource = resource
         self.incoming = incoming
         self.fields = fields
         self._given = given
+        self._kinds = kinds or {}
 
     def read(
         self, text: object, where: Where, at: int = 0, end: int | None = None, *, is_message: bool = False
@@ -75,6 +86,8 @@ class Names:
             return None
         part = variable_of(self.resource, match[0])
         enumeration = self.naming.declared.enumeration(self.resource, match[0])
+        if part.full not in self.naming.declared.variables:
+            enumeration = self._kinds.get(match[0])
         self.naming.gathered.add(part, where, text, Span(0, match.end()), fixed=fixed)
         self._arguments(part, text, match.end(), where)
         self.fields[match[0]] = Field(part, enumeration)

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 from sequence_planner.model.source import SourceText
 from sequence_planner.pipelines.stages.builders.mapping import ANY
 from sequence_planner.workshop.references.calculations import read_calculation
+from sequence_planner.workshop.references.declared import Declared
 from sequence_planner.workshop.references.occurrences import Where
-from sequence_planner.workshop.references.parts import value_of
 from sequence_planner.workshop.references.record import Names
 from sequence_planner.workshop.references.texts import entry, items, pairs
 
@@ -28,6 +28,20 @@ def given_by(stages: object) -> frozenset[str]:
     return frozenset(str(name).partition("[")[0] for name in found if isinstance(name, SourceText))
 
 
+def kinds_of(stages: object, declared: Declared, resource: str) -> dict[str, str]:
+    """The enumerations of names that are no variables, by the variables that they become in later stages."""
+    found: dict[str, str] = {}
+    for stage in reversed(items(stages)):
+        become: list[tuple[object, object]] = [(name, field) for field, name in pairs(entry(stage, "rename"))]
+        become += pairs(entry(stage, "expression"))
+        remember = entry(stage, "remember")
+        for name, source in (*become, (entry(remember, "variable"), entry(remember, "of"))):
+            kind = declared.enumeration(resource, str(name)) or found.get(str(name))
+            if isinstance(source, SourceText) and kind is not None:
+                found.setdefault(str(source), kind)
+    return found
+
+
 class Stages:
     """Reads stages one after the other. `called` is the pipeline in words."""
 
@@ -45,9 +59,7 @@ class Stages:
 
     def tie(self, enumeration: str | None, why: str) -> None:
         """Note that the values of an enumeration are texts or constants of a message."""
-        naming = self.names.naming
-        for value in naming.declared.enumerations.get(enumeration or "", ()):
-            naming.gathered.tie(value_of(enumeration or "", value), why)
+        self.names.naming.tie_values(enumeration, why)
 
     def _spoken(self, name: object) -> str:
         return f"{self._called} says the values of `{name}` by their names"
@@ -64,7 +76,7 @@ class Stages:
         for name, at, found, is_message in made:
             enumeration = self.names.give(name, at)
             self.names.naming.link(enumeration, found)
-            if is_message:
+            if is_message or found is None:
                 self.tie(enumeration, self._spoken(name))
         if not self.names.incoming:
             for field, _ in pairs(content):
@@ -80,7 +92,7 @@ class Stages:
             own = self._enumeration(name)
             is_message = read_calculation(self.names, written, where.to(name), own)
             is_single = isinstance(written, SourceText) and str(written).isidentifier()
-            if is_message:
+            if is_message or (is_single and self.names.enumeration(str(written)) is None):
                 self.tie(own, self._spoken(name))
             elif not self.names.incoming and is_single:
                 self.tie(self.names.enumeration(str(written)), self._spoken(written))
@@ -143,7 +155,7 @@ class Stages:
         self._cells([read] * len(items(entry(content, "except"))), entry(content, "except"), where.to("except"))
         made = self.names.give(entry(content, "variable"), where.to("variable"))
         self.names.naming.link(made, read)
-        if is_message:
+        if is_message or read is None:
             self.tie(made, self._spoken(entry(content, "variable")))
 
     def _debounce(self, content: object, where: Where) -> None:
