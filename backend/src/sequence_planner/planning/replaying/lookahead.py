@@ -32,7 +32,7 @@ class Lookahead:
         self._supervisor = supervisor
         self._goals = CompiledGoals(compiled.names)
         self._goals.progress(goals_of(compiled.automaton, compiled.automaton.operations))  # not first in some tick
-        self._most = max(_REMEMBERED // len(compiled.names), LOOKAHEAD)
+        self._most = max(_REMEMBERED // max(len(compiled.names), 1), LOOKAHEAD)
         self._known: dict[_Key, int] = {}  # how many ticks the goals take from there, eagerly; or that they never come
         self._exact: dict[tuple[_Key, tuple[PlanTick, ...]], bool] = {}
         self.face(Circumstances())
