@@ -32,6 +32,45 @@ test('mode, age, alarms and Pause stay in sight wherever the page is scrolled to
 	}
 });
 
+test('no dialog covers mode, alarms, Pause and Hold, and the menu leads to the pages', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	await operate.getByRole('button', { name: 'Why? New engine' }).click();
+	const dialog = operate.getByRole('dialog');
+	await expect(dialog.getByRole('status').first()).toContainText('As it was at');
+	for (const [width, height] of [...SCREENS, [640, 320], [192, 192]] as const) {
+		await operate.setViewportSize({ width, height });
+		const { y } = (await dialog.boundingBox()) ?? { y: 0 };
+		for (const each of [
+			operate.getByTestId('mode'),
+			operate.getByTestId('alarm-count'),
+			operate.getByRole('button', { name: 'Pause' }),
+			operate.getByRole('button', { name: 'Hold' })
+		]) {
+			await expect(each).toBeInViewport({ ratio: 1 });
+			await each.click({ trial: true }); // nothing lies over it
+			const box = await each.boundingBox();
+			expect(box && box.y + box.height, `above the dialog on a screen of ${width}`).toBeLessThanOrEqual(y);
+		}
+	}
+	await operate.keyboard.press('Escape');
+	await expect(dialog).toBeHidden();
+
+	const menu = operate.getByRole('button', { name: /^Menu/ });
+	await expect(menu).toHaveAttribute('aria-expanded', 'false');
+	await menu.press('Enter');
+	await expect(menu).toHaveAttribute('aria-expanded', 'true');
+	await operate.keyboard.press('Tab');
+	await expect(operate.getByRole('link', { name: 'Operate' })).toBeFocused();
+	await operate.keyboard.press('Escape');
+	await expect(menu).toBeFocused();
+	await expect(operate.getByRole('link', { name: 'State' })).toBeHidden();
+	await menu.press('Enter');
+	await operate.getByRole('link', { name: 'State' }).press('Enter');
+	await expect(operate.getByRole('heading', { name: 'State', level: 1 })).toBeAttached();
+	await expect(menu).toHaveText(/State/);
+	await expect(menu).toHaveAttribute('aria-expanded', 'false');
+});
+
 test('text of twice the size is still all there', async ({ operate, watch }) => {
 	await restsOnPerson(operate, watch);
 	await operate.evaluate(() => (document.documentElement.style.fontSize = '200%'));
@@ -46,12 +85,14 @@ test('the theme that was chosen is kept', async ({ operate }) => {
 	const ground = (): Promise<string> =>
 		operate.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
 	const light = await ground();
+	await operate.getByTestId('who').click();
 	await operate.getByRole('button', { name: 'Theme: auto' }).click();
 	await operate.getByRole('button', { name: 'Theme: light' }).click();
 	await expect(operate.getByRole('button', { name: 'Theme: dark' })).toBeVisible();
 	const dark = await ground();
 	expect(dark).not.toBe(light);
 	await operate.reload();
+	await operate.getByTestId('who').click();
 	await expect(operate.getByRole('button', { name: 'Theme: dark' })).toBeVisible();
 	expect(await ground()).toBe(dark);
 });
