@@ -55,6 +55,18 @@ test('what runs ends at the present or after it, what is planned lies after it, 
 	expect((await places()).now).toBe(before.now);
 });
 
+test('in forced colours what is active is still told from what is not', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	await operate.emulateMedia({ forcedColors: 'active' });
+	const edges = await operate
+		.locator('[data-operation]')
+		.evaluateAll((all) => all.map((each) => [each.classList.contains('active'), getComputedStyle(each).borderLeftWidth]));
+	expect(edges).toContainEqual([true, '4px']);
+	expect(edges).toContainEqual([false, '0px']);
+	await picture(operate, 'operate-forced');
+	await operate.emulateMedia({ forcedColors: 'none' });
+});
+
 test('why an operation waits is said in words, as often as it is asked @theme', async ({ operate, watch }) => {
 	await restsOnPerson(operate, watch);
 	await operate.getByRole('button', { name: 'Why? New engine' }).click();

@@ -1,12 +1,24 @@
-import { outsideCircle, overflow } from '../station/barriers.ts';
+import type { Page } from '@playwright/test';
+import { findings, outsideCircle, overflow } from '../station/barriers.ts';
 import { picture, restsOnPerson } from '../station/seen.ts';
-import { expect, test } from '../station/test.ts';
+import { ADA } from '../station/station.ts';
+import { DESK, expect, test } from '../station/test.ts';
 
 const SCREENS = [
 	[1440, 900],
 	[768, 1024],
 	[320, 640]
 ] as const;
+
+/** Where text of twice the size must fit: on 320 pixels it would be that of a page enlarged eight times. */
+const ENLARGED = SCREENS.filter(([width]) => width > 320);
+
+const PAGES = ['/', '/restart', '/state', '/alarms', '/history', '/ros', '/account', '/journal', '/watches', '/people', '/keys'];
+
+/** Doubles the size of all text. */
+async function enlarge(page: Page): Promise<void> {
+	await page.evaluate(() => (document.documentElement.style.fontSize = '200%'));
+}
 
 test('the pages fit their screens @theme', async ({ operate, watch }) => {
 	await restsOnPerson(operate, watch);
@@ -71,13 +83,42 @@ test('no dialog covers mode, alarms, Pause and Hold, and the menu leads to the p
 	await expect(menu).toHaveAttribute('aria-expanded', 'false');
 });
 
-test('text of twice the size is still all there', async ({ operate, watch }) => {
+test('text of twice the size is still all there where much is shown', async ({ operate, watch }) => {
 	await restsOnPerson(operate, watch);
-	await operate.evaluate(() => (document.documentElement.style.fontSize = '200%'));
-	for (const [width, height] of SCREENS) {
-		if (width === 320) continue; // there the width is that of a page enlarged four times; text of twice the size comes with 768
+	await enlarge(operate);
+	for (const [width, height] of ENLARGED) {
 		await operate.setViewportSize({ width, height });
 		expect(await overflow(operate), `pixels to the right of a screen of ${width}`).toBe(0);
+	}
+});
+
+test.describe('every page', () => {
+	test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody' });
+
+	for (const [language, locale] of [
+		['English', 'en-GB'],
+		['Swedish', 'sv-SE']
+	] as const) {
+		test(`in ${language} has all there on small screens, in large text and in forced colours`, async ({ browse }) => {
+			const page = await browse(ADA, '/', { ...DESK, locale });
+			for (const path of PAGES) {
+				await page.goto(path);
+				await expect(page.getByTestId('live-age')).toContainText('●');
+				await expect(page.getByRole('heading', { level: 1 })).toBeAttached();
+				for (const [width, height] of SCREENS) {
+					await page.setViewportSize({ width, height });
+					expect.soft(await overflow(page), `${path}: pixels to the right of a screen of ${width}`).toBe(0);
+				}
+				await page.emulateMedia({ forcedColors: 'active' });
+				expect.soft(await findings(page, ['color-contrast', 'link-in-text-block']), path).toEqual([]);
+				await page.emulateMedia({ forcedColors: 'none' });
+				await enlarge(page);
+				for (const [width, height] of ENLARGED) {
+					await page.setViewportSize({ width, height });
+					expect.soft(await overflow(page), `${path}: pixels to the right of a screen of ${width}, enlarged`).toBe(0);
+				}
+			}
+		});
 	}
 });
 
