@@ -19,7 +19,15 @@ test('mode, alarms, next start and task are read from afar, beside Pause, the op
 	for (const name of ['Pause', 'Hold'])
 		await expect(operate.getByRole('button', { name, exact: true })).toBeInViewport({ ratio: 1 });
 	await expect(operate.locator('[data-operation]').last()).toBeInViewport({ ratio: 1 });
-	await expect(operate.getByRole('group', { name: 'Plan as lanes' })).toBeInViewport();
+	const lanes = operate.getByRole('group', { name: 'Plan as lanes' }).getByRole('group');
+	await expect(lanes).toHaveCount(4);
+	// Its name is as high as the lane, of which only a part is in sight sideways.
+	for (const lane of await lanes.all()) await expect(lane.locator('.name')).toBeInViewport({ ratio: 1 });
+	// What is said in large letters is not repeated above it, but where it is not in sight.
+	const repeated = operate.getByTestId('next');
+	await expect(repeated).toBeHidden();
+	await operate.evaluate(() => window.scrollTo(0, document.documentElement.scrollHeight));
+	await expect(repeated).toContainText('Place bolt pair');
 });
 
 test('what runs ends at the present or after it, what is planned lies after it, and the present stays', async ({
@@ -45,6 +53,18 @@ test('what runs ends at the present or after it, what is planned lies after it, 
 	}
 	await operate.waitForTimeout(1000);
 	expect((await places()).now).toBe(before.now);
+});
+
+test('in forced colours what is active is still told from what is not', async ({ operate, watch }) => {
+	await restsOnPerson(operate, watch);
+	await operate.emulateMedia({ forcedColors: 'active' });
+	const edges = await operate
+		.locator('[data-operation]')
+		.evaluateAll((all) => all.map((each) => [each.classList.contains('active'), getComputedStyle(each).borderLeftWidth]));
+	expect(edges).toContainEqual([true, '4px']);
+	expect(edges).toContainEqual([false, '0px']);
+	await picture(operate, 'operate-forced');
+	await operate.emulateMedia({ forcedColors: 'none' });
 });
 
 test('why an operation waits is said in words, as often as it is asked @theme', async ({ operate, watch }) => {

@@ -1,4 +1,4 @@
-import type { Page } from '@playwright/test';
+import type { APIResponse, Page } from '@playwright/test';
 import { Back, served, type Hands } from '../station/back-to-work.ts';
 import { examine } from '../station/barriers.ts';
 import { acknowledge, done, picture, restsOnPerson, takeControl, tightenings, variable } from '../station/seen.ts';
@@ -157,17 +157,21 @@ async function alarms({ restart, watch }: Place): Promise<void> {
 	await served(watch, async () => (await restart.locator('[data-happened]').count()) > 0, 40);
 }
 
-/** Something is believed that is not so. */
+/** Something is believed that is not so. What still ran may end between the look and the act: then it is looked again. */
 async function believe({ restart, station }: Place, name: string, value: string): Promise<void> {
-	const send = async (path: string, data: object): Promise<{ revision: number }> => {
-		const answer = await restart.request.post(`${station.url}/api/v1/${path}`, { data });
-		expect(answer.ok(), `${path}: ${await answer.text()}`).toBe(true);
-		return answer.status() === 204 ? { revision: 0 } : ((await answer.json()) as { revision: number });
+	const send = (path: string, data: object): Promise<APIResponse> =>
+		restart.request.post(`${station.url}/api/v1/${path}`, { data });
+	const done = async (answer: APIResponse): Promise<APIResponse> => {
+		expect(answer.ok(), `${answer.url()}: ${await answer.text()}`).toBe(true);
+		return answer;
 	};
-	await send('restart/enter', {});
-	const { revision } = await send('corrections/preview', { values: { [name]: value } });
-	await send('corrections', { values: { [name]: value }, revision, reason: 'a slip' });
-	await send('restart/leave', {});
+	await done(await send('restart/enter', {}));
+	await expect(async () => {
+		const preview = await done(await send('corrections/preview', { values: { [name]: value } }));
+		const { revision } = (await preview.json()) as { revision: number };
+		await done(await send('corrections', { values: { [name]: value }, revision, reason: 'a slip' }));
+	}).toPass({ timeout: 15_000 });
+	await done(await send('restart/leave', {}));
 }
 
 /** Somebody takes a resource out of service, or puts it back. */

@@ -109,11 +109,20 @@ export class Back {
 			const corrected = question.getByRole('button', { name: `It is ${truth}`, exact: true });
 			const corrects = (await corrected.count()) > 0;
 			await (corrects ? corrected : question.getByRole('button', { name: /^It is so/ })).click();
-			await expect(this.#dialog.getByTestId('effects')).toBeVisible();
-			return this.#send(corrects ? 'Correct' : 'Confirm');
+			return corrects ? this.#correct() : this.#send('Confirm');
 		}
 		await this.restart.getByRole('button', { name: 'All of it is so' }).click();
 		return this.#send('Confirm');
+	}
+
+	/** Once it was seen what follows, with a reason and once more. */
+	async #correct(): Promise<boolean> {
+		await expect(this.#dialog.getByTestId('follows')).toBeVisible();
+		await this.#dialog.getByLabel('Reason').fill(REASON);
+		await this.#dialog.getByRole('button', { name: 'Correct…', exact: true }).click();
+		await this.#dialog.getByRole('button', { name: 'Yes, correct it' }).click();
+		await expect(this.#dialog).toHaveCount(0);
+		return true;
 	}
 
 	async #decide(): Promise<boolean> {

@@ -110,6 +110,7 @@ def refused(slug: str, act: Callable[[], object], status: int = 409) -> str:
     with pytest.raises(CommandRefused) as found:
         act()
     assert (found.value.slug, found.value.status) == (slug, status)
+    assert (found.value.place is not None) == (slug == "bad-predicate")
     return found.value.detail
 
 

@@ -8,6 +8,7 @@ import httpx
 import pytest
 
 from sequence_planner.control.asks import Ask, AskAdvice, AskGoal, AskReset, AskWhyNot
+from sequence_planner.control.command_base import TextPlace
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.link import ControllerLink
 from sequence_planner.control.restart_commands import StopErrand, TakeErrand
@@ -98,8 +99,11 @@ def test_an_offer_is_taken_with_all_that_was_confirmed(engineer: httpx.Client, c
 
 def test_refusals_come_in_the_controllers_words(engineer: httpx.Client, controller: Asked) -> None:
     controller.refusal = CommandRefused("adviser-late", "The adviser was too slow", "Try again.", 504)
-    assert problem(engineer.get("advice"), 504, "adviser-late")["detail"] == "Try again."
+    late = problem(engineer.get("advice"), 504, "adviser-late")
+    assert (late["detail"], late["place"]) == ("Try again.", None)
     detail = "character 1, `up`: unknown name `up`"
-    controller.refusal = CommandRefused("bad-predicate", "The predicate cannot be read", detail, 422)
+    place = TextPlace(start=0, end=2, message="unknown name `up`")
+    controller.refusal = CommandRefused("bad-predicate", "The predicate cannot be read", detail, 422, place)
     for path in ("errands/goal-preview", "why-not/goal"):
-        assert problem(engineer.post(path, json={"predicate": "up"}), 422, "bad-predicate")["detail"] == detail
+        found = problem(engineer.post(path, json={"predicate": "up"}), 422, "bad-predicate")
+        assert (found["detail"], found["place"]) == (detail, place.model_dump())

@@ -3866,13 +3866,16 @@ export interface components {
         Priority: "high" | "medium" | "low";
         /**
          * Problem
-         * @description Why a request was refused. `errors` is empty unless `type` is `/problems/invalid-request`.
+         * @description Why a request was refused.
+         *
+         *     `errors` is empty unless `type` is `/problems/invalid-request`, `place` null unless it is `/problems/bad-predicate`.
          */
         Problem: {
             /** Detail */
             detail: string;
             /** Errors */
             errors: components["schemas"]["FieldError"][];
+            place: components["schemas"]["TextPlace"] | null;
             /** Status */
             status: number;
             /** Title */
@@ -4783,6 +4786,18 @@ export interface components {
             path: (string | number)[];
             /** Text */
             text: string;
+        };
+        /**
+         * TextPlace
+         * @description What is wrong within a text that was sent, and where: from `start` to before `end`, in Unicode characters.
+         */
+        TextPlace: {
+            /** End */
+            end: number;
+            /** Message */
+            message: string;
+            /** Start */
+            start: number;
         };
         /**
          * TopicView

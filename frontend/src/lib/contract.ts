@@ -53,6 +53,7 @@ export type Delta = Schemas['Delta'];
 export type StreamMessage = Schemas['StreamMessage'];
 export type Resync = Schemas['Resync'];
 export type Problem = Schemas['Problem'];
+export type TextPlace = Schemas['TextPlace'];
 
 export type Person = Schemas['PersonAnswer'];
 export type PeopleAnswer = Schemas['PeopleAnswer'];

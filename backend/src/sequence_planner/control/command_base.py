@@ -38,16 +38,26 @@ class CommandBase(BaseModel):
         return ""
 
 
+class TextPlace(BaseModel):
+    """What is wrong within a text that was sent, and where: from `start` to before `end`, in Unicode characters."""
+
+    model_config = ConfigDict(frozen=True)
+    start: int
+    end: int
+    message: str
+
+
 class CommandRefused(Exception):
     """The controller does not carry out a command.
 
     `slug` names the kind of problem for machines (the `type` of RFC 9457), `detail` says to a person what to do;
-    `status` is the HTTP status that says the same.
+    `status` is the HTTP status that says the same. `place` is where a text cannot be read.
     """
 
-    def __init__(self, slug: str, title: str, detail: str, status: int = 409) -> None:
+    def __init__(self, slug: str, title: str, detail: str, status: int = 409, place: TextPlace | None = None) -> None:
         super().__init__(detail)
         self.slug = slug
         self.title = title
         self.detail = detail
         self.status = status
+        self.place = place

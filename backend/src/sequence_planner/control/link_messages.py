@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, JsonValue, TypeAdapter
 
 from sequence_planner.control.asks import Ask
+from sequence_planner.control.command_base import TextPlace
 from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.view import StationView
@@ -32,15 +33,22 @@ class Refusal(LinkMessage):
     title: str
     detail: str
     status: int
+    place: TextPlace | None = None
 
     @classmethod
     def of(cls, refused: CommandRefused) -> Refusal:
         """Write down a refusal."""
-        return cls(slug=refused.slug, title=refused.title, detail=refused.detail, status=refused.status)
+        return cls(
+            slug=refused.slug,
+            title=refused.title,
+            detail=refused.detail,
+            status=refused.status,
+            place=refused.place,
+        )
 
     def error(self) -> CommandRefused:
         """Make the exception again that the controller raised."""
-        return CommandRefused(self.slug, self.title, self.detail, self.status)
+        return CommandRefused(self.slug, self.title, self.detail, self.status, self.place)
 
 
 class ViewMessage(LinkMessage):

@@ -19,6 +19,7 @@ from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from sequence_planner.control.command_base import TextPlace
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.identity.refusal import IdentityRefused
 from sequence_planner.storage.error import StorageError
@@ -52,13 +53,17 @@ class FieldError(BaseModel):
 
 
 class Problem(BaseModel):
-    """Why a request was refused. `errors` is empty unless `type` is `/problems/invalid-request`."""
+    """Why a request was refused.
+
+    `errors` is empty unless `type` is `/problems/invalid-request`, `place` null unless it is `/problems/bad-predicate`.
+    """
 
     type: str
     title: str
     status: int
     detail: str
     errors: list[FieldError]
+    place: TextPlace | None
 
 
 class ProblemFound(HTTPException):
@@ -79,10 +84,13 @@ def problem_response(
     detail: str,
     *,
     errors: Sequence[FieldError] = (),
+    place: TextPlace | None = None,
     headers: Mapping[str, str] | None = None,
 ) -> Response:
     """The answer that carries a problem."""
-    problem = Problem(type=f"/problems/{slug}", title=title, status=status, detail=detail, errors=list(errors))
+    problem = Problem(
+        type=f"/problems/{slug}", title=title, status=status, detail=detail, errors=list(errors), place=place
+    )
     # In ASCII: a name that came with the request may hold what UTF-8 cannot write, such as half a surrogate pair.
     body = json.dumps(problem.model_dump(), ensure_ascii=True)
     kept = {"Cache-Control": "no-store", **(headers or {})}
@@ -134,7 +142,7 @@ async def _invalid(request: Request, error: Exception) -> Response:
 
 async def _refused(request: Request, error: Exception) -> Response:
     assert isinstance(error, CommandRefused)
-    return problem_response(error.status, error.slug, error.title, error.detail)
+    return problem_response(error.status, error.slug, error.title, error.detail, place=error.place)
 
 
 async def _identity_refused(request: Request, error: Exception) -> Response:

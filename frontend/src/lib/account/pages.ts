@@ -1,4 +1,4 @@
-/** The pages that a person can go to, and from which role on. */
+/** The pages that a person can go to, in groups, and from which role on. */
 import type { Role } from '#lib/contract.ts';
 import type { Text } from '#lib/text/text.svelte.ts';
 import { ACCOUNT, HOME, WATCH } from './way.ts';
@@ -11,27 +11,46 @@ export interface Page {
 	readonly role: Role;
 }
 
-/** Those that the header shows. */
-export const MAIN: readonly Page[] = [
-	{ address: HOME, title: 'operate', role: 'viewer' },
-	{ address: '/restart', title: 'restart', role: 'viewer' },
-	{ address: '/state', title: 'state', role: 'viewer' },
-	{ address: '/alarms', title: 'alarms', role: 'viewer' },
-	{ address: '/history', title: 'history', role: 'operator' },
-	{ address: '/ros', title: 'ros', role: 'viewer' },
-	{ address: WATCH, title: 'watch', role: 'viewer' }
+export interface Group {
+	/** What it is called, in the catalogue. */
+	readonly title: keyof Text['header']['groups'];
+	readonly pages: readonly Page[];
+}
+
+/** Those of the header: the operator's, which are links where there is room, and further groups, each behind a button. */
+export const GROUPS: readonly [Group, ...Group[]] = [
+	{
+		title: 'operation',
+		pages: [
+			{ address: HOME, title: 'operate', role: 'viewer' },
+			{ address: '/restart', title: 'restart', role: 'viewer' },
+			{ address: '/state', title: 'state', role: 'viewer' },
+			{ address: '/alarms', title: 'alarms', role: 'viewer' },
+			{ address: '/history', title: 'history', role: 'operator' },
+			{ address: '/ros', title: 'ros', role: 'viewer' }
+		]
+	},
+	{ title: 'engineering', pages: [] }
 ];
 
 /** Those below the name of who is signed in. */
 export const MENU: readonly Page[] = [
 	{ address: ACCOUNT, title: 'account', role: 'viewer' },
+	{ address: WATCH, title: 'watch', role: 'viewer' },
 	{ address: '/journal', title: 'journal', role: 'operator' },
 	{ address: '/watches', title: 'watches', role: 'operator' },
 	{ address: '/people', title: 'people', role: 'administrator' },
 	{ address: '/keys', title: 'keys', role: 'administrator' }
 ];
 
+const ALL: readonly Page[] = [...GROUPS.flatMap((group) => group.pages), ...MENU];
+
+/** The page at `address`, where it is one of these. */
+export function pageAt(address: string): Page | undefined {
+	return ALL.find((page) => page.address === address);
+}
+
 /** The role that the page at `address` needs: the lowest where it is none of these. */
 export function roleOf(address: string): Role {
-	return [...MAIN, ...MENU].find((page) => page.address === address)?.role ?? 'viewer';
+	return pageAt(address)?.role ?? 'viewer';
 }

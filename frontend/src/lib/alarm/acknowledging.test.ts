@@ -9,7 +9,8 @@ const refusal = (kind: string | null, status: number | null): Refusal => ({
 	detail: '',
 	status,
 	kind,
-	retryAfter: null
+	retryAfter: null,
+	place: null
 });
 const SHOWN: Keyed[] = ['a', 'b', 'c'].map((key, place) => [key, alarm({ since: place })]);
 

@@ -4,15 +4,11 @@
  * First values are chosen, then the station says what would follow, on which revision of the state; only on that the
  * correction is made. What is chosen stays whatever happens; what was looked at does not hold once the state has moved.
  */
-import { correctEstimates, undoCorrection } from '#lib/command/send.ts';
+import { correctEstimates, previewCorrection, undoCorrection } from '#lib/command/send.ts';
 import type { CorrectionPreview, LastCorrection, StationView, Value } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
-import { request } from '#lib/rest/request.ts';
 import type { Station } from '#lib/stream/station.svelte.ts';
 import { changesSince, type Change } from './moved.ts';
-
-/** Milliseconds: the station plans for a while before it answers. */
-const PATIENCE = 10_000;
 
 export class Correction {
 	readonly #station: Station;
@@ -76,10 +72,7 @@ export class Correction {
 		const values = this.values;
 		this.looking = true;
 		this.refusal = null;
-		const answer = await request<CorrectionPreview>('POST', '/api/v1/corrections/preview', {
-			body: { values },
-			patience: PATIENCE
-		});
+		const answer = await previewCorrection(values);
 		this.looking = false;
 		if (!answer.ok) {
 			this.#forget();

@@ -22,7 +22,7 @@ interface Wish {
 /** Nothing is recorded yet of what was asked for, as while a station begins. */
 function notThere(): Refusal {
 	const { title, detail } = say().history.notThere;
-	return { title, detail, status: null, kind: null, retryAfter: null };
+	return { title, detail, status: null, kind: null, retryAfter: null, place: null };
 }
 
 function placeOf(answer: HistoryAnswer | Place): Place | null {

@@ -10,7 +10,8 @@ describe('a refusal', () => {
 			detail: 'Somebody else did it.',
 			status: 409,
 			kind: 'task-gone',
-			retryAfter: null
+			retryAfter: null,
+			place: null
 		});
 	});
 
@@ -22,7 +23,8 @@ describe('a refusal', () => {
 				detail: 'The server answered with status 502.',
 				status: 502,
 				kind: null,
-				retryAfter: null
+				retryAfter: null,
+				place: null
 			});
 		}
 	);

@@ -1,5 +1,5 @@
 /** Why the server did not do what was asked, in words for a person (RFC 9457). */
-import type { Problem } from '#lib/contract.ts';
+import type { TextPlace, Problem } from '#lib/contract.ts';
 import { say } from '#lib/text/text.svelte.ts';
 
 export interface Refusal {
@@ -11,12 +11,14 @@ export interface Refusal {
 	readonly kind: string | null;
 	/** Seconds after which to try again makes sense; null when the answer does not say. */
 	readonly retryAfter: number | null;
+	/** What is wrong within a text that was sent, and where; null when the answer names no place. */
+	readonly place: TextPlace | null;
 }
 
 const PROBLEMS = '/problems/';
 const LONGEST_WAIT = 24 * 60 * 60;
 
-const NO_ANSWER = { status: null, kind: null, retryAfter: null };
+const NO_ANSWER = { status: null, kind: null, retryAfter: null, place: null };
 
 /** Nothing came back from an act: whether it was done is not known. */
 export function unreached(): Refusal {
@@ -47,5 +49,5 @@ export function refusalOf(status: number, body: string, retryAfter: string | nul
 	const detail = typeof problem.detail === 'string' ? problem.detail : say().door.refusal.status(status);
 	const type = typeof problem.type === 'string' ? problem.type : '';
 	const kind = type.startsWith(PROBLEMS) ? type.slice(PROBLEMS.length) : null;
-	return { title, detail, status, kind, retryAfter: secondsOf(retryAfter) };
+	return { title, detail, status, kind, retryAfter: secondsOf(retryAfter), place: problem.place ?? null };
 }

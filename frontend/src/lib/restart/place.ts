@@ -1,21 +1,12 @@
-/** Where in a predicate the backend's parser has stopped, from the words of its refusal. */
+/** Where in a predicate the backend's parser has stopped. */
+import type { TextPlace } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 
-export interface Place {
-	readonly start: number;
-	readonly end: number;
-	readonly message: string;
-}
-
-const WORDS = /^character (\d+)(?:, `([^]*?)`)?: ([^]*)$/;
-
-/** The place in `predicate` that `refusal` names; null where it names none, or not one of this text. */
-export function placeOf(refusal: Refusal | null, predicate: string): Place | null {
-	const found = refusal?.kind === 'bad-predicate' ? WORDS.exec(refusal.detail) : null;
-	if (!found) return null;
-	const start = Number(found[1]) - 1;
-	const part = found[2] ?? '';
-	const message = found[3] ?? '';
-	if (start < 0 || start > predicate.length || !predicate.startsWith(part, start)) return null;
-	return { start, end: start + part.length, message };
+/** The place in `predicate` that `refusal` names, as this language counts; null where it names none, or not one of this text. */
+export function placeOf(refusal: Refusal | null, predicate: string): TextPlace | null {
+	const place = refusal?.place ?? null;
+	const characters = [...predicate];
+	if (place === null || place.start < 0 || place.end < place.start || place.end > characters.length) return null;
+	const length = (to: number): number => characters.slice(0, to).join('').length;
+	return { start: length(place.start), end: length(place.end), message: place.message };
 }

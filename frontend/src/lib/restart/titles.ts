@@ -1,11 +1,7 @@
-/** What abilities, operations and resources are called, for those of the station that are known. */
+/** What operations and resources are called, for those of the station that are known. */
 import type { StationView } from '#lib/contract.ts';
 
-type Known = Pick<StationView, 'abilities' | 'operations' | 'resources'> | null;
-
-export function abilityTitles(view: Known, names: readonly string[]): string[] {
-	return names.map((name) => view?.abilities[name]?.title ?? name);
-}
+type Known = Pick<StationView, 'operations' | 'resources'> | null;
 
 export function operationTitles(view: Known, names: readonly string[]): string[] {
 	return names.map((name) => view?.operations[name]?.title ?? name);

@@ -9,7 +9,7 @@ const WAITING: Wearing = { kind: 'waiting', self: SELF };
 const ACTIVE: Wearing = { kind: 'active', self: { ...SELF, state: 'active' } };
 
 function refused(status: number | null): Answer<WatchSelf> {
-	return { ok: false, refusal: { title: '', detail: '', status, kind: null, retryAfter: null } };
+	return { ok: false, refusal: { title: '', detail: '', status, kind: null, retryAfter: null, place: null } };
 }
 
 describe('a device', () => {

@@ -1,6 +1,9 @@
 /** The header: what is said of the station as a whole, on every page. */
 export const header = {
 	pages: 'Pages',
+	menu: 'Menu',
+	/** Groups of pages. */
+	groups: { operation: 'Operation', engineering: 'Engineering' },
 	emulated: 'emulated devices',
 	mode: {
 		automatic: 'Automatic',

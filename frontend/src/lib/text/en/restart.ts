@@ -89,41 +89,10 @@ export const restart = {
 		answered: (name: string, value: string, by: string, at: string): string =>
 			`${name} is ${value}, ${by} said at ${at}. What is measured does not fit that: something has been done by hand, or is measured wrongly.`,
 		by: (writer: string, at: string): string => `by ${writer}, ${at}`,
-		evidence: 'Measured then:',
 		unconfirmed: 'Not confirmed since the controller started',
 		look: 'Before, the station believed this. Look whether it is still so:',
 		all: 'All of it is so',
-		allTitle: 'Is all of this so?',
-		one: 'It is so',
-		oneTitle: (name: string): string => `Is ${name} so?`,
-		confirm: 'Confirm',
-		correct: 'Correct',
-		confirmTitle: (name: string, value: string): string => `${name} is ${value}, as believed?`,
-		correctTitle: (name: string, value: string): string => `Correct ${name} to ${value}?`,
-		onlyBelief: 'No device moves by this. Only what the station believes is changed.',
-		nothingChanges: 'Nothing is changed by this. It is kept that you have seen it.',
-		reading: 'Finding out what it would bring about',
-		moved: 'The station has moved since you were shown this. Look again.',
-		again: 'Look again'
-	},
-	effects: {
-		title: 'What it would bring about',
-		basis: (revision: number): string => `Found for state ${revision}.`,
-		from: (now: string, then: string): string => `${now} → ${then}`,
-		related: 'Measured near it:',
-		safe: 'The station counts as safe then.',
-		unsafe: 'The station would be outside its safe states then.',
-		violates: 'It would violate:',
-		startable: 'Could start then:',
-		notStartable: 'Could start no longer:',
-		activated: 'Would become active:',
-		completed: 'Would count as completed:',
-		gone: 'Would fit then:',
-		contradictions: 'Would not fit then:',
-		plan: (goals: string): string => `In automatic mode the station would go on with ${goals}:`,
-		noPlan: 'No plan follows:',
-		leftOut: 'Would be left out:',
-		nothing: 'It starts nothing by itself.'
+		one: 'It is so'
 	},
 
 	outputs: {

@@ -2,6 +2,9 @@ import type { Text } from '../text.svelte.ts';
 
 export const header: Text['header'] = {
 	pages: 'Sidor',
+	menu: 'Meny',
+	/** Groups of pages. */
+	groups: { operation: 'Drift', engineering: 'Teknik' },
 	emulated: 'emulerade enheter',
 	mode: {
 		automatic: 'Automatik',

@@ -233,7 +233,7 @@ export const history: Text['history'] = {
 		'take-control': 'Tog kontrollen',
 		'release-control': 'Lämnade kontrollen',
 		'withdraw-control': 'Kontrollen drogs tillbaka',
-		'attach-topic': 'Anslöt ett ROS-ämne',
+		'attach-topic': 'Anslöt ett ROS-topic',
 		'sign-in': 'Loggade in',
 		'sign-out': 'Loggade ut',
 		'sessions-ended': 'Loggade ut någon överallt',

@@ -150,7 +150,7 @@ export const operate: Text['operate'] = {
 		}
 	},
 	topics: {
-		title: 'Ämnen',
+		title: 'Topics',
 		never: 'aldrig',
 		silent: 'tyst',
 		in: 'in',

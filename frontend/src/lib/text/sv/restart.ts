@@ -87,41 +87,10 @@ export const restart: Text['restart'] = {
 		answered: (name, value, by, at) =>
 			`${name} är ${value}, sade ${by} ${at}. Det som mäts stämmer inte med det: något har gjorts för hand, eller mäts fel.`,
 		by: (writer, at) => `av ${writer}, ${at}`,
-		evidence: 'Uppmätt då:',
 		unconfirmed: 'Inte bekräftat sedan styrningen startade',
 		look: 'Detta antog stationen före det. Titta om det fortfarande är så:',
 		all: 'Allt är så',
-		allTitle: 'Är allt detta så?',
-		one: 'Det är så',
-		oneTitle: (name) => `Är ${name} så?`,
-		confirm: 'Bekräfta',
-		correct: 'Rätta',
-		confirmTitle: (name, value) => `${name} är ${value}, som antaget?`,
-		correctTitle: (name, value) => `Rätta ${name} till ${value}?`,
-		onlyBelief: 'Ingen enhet rör sig av detta. Bara det som stationen antar ändras.',
-		nothingChanges: 'Inget ändras av detta. Det sparas att du har sett det.',
-		reading: 'Tar reda på vad det skulle medföra',
-		moved: 'Stationen har ändrats sedan du fick se detta. Titta igen.',
-		again: 'Titta igen'
-	},
-	effects: {
-		title: 'Vad det skulle medföra',
-		basis: (revision) => `Gäller för tillstånd ${revision}.`,
-		from: (now, then) => `${now} → ${then}`,
-		related: 'Uppmätt i närheten:',
-		safe: 'Stationen räknas som säker då.',
-		unsafe: 'Stationen skulle vara utanför sina säkra tillstånd.',
-		violates: 'Det skulle bryta:',
-		startable: 'Skulle kunna starta:',
-		notStartable: 'Skulle inte längre kunna starta:',
-		activated: 'Skulle bli aktiva:',
-		completed: 'Skulle räknas som klara:',
-		gone: 'Skulle stämma då:',
-		contradictions: 'Skulle inte stämma då:',
-		plan: (goals) => `I automatik skulle stationen fortsätta med ${goals}:`,
-		noPlan: 'Ingen plan följer:',
-		leftOut: 'Skulle lämnas utanför:',
-		nothing: 'Det startar inget av sig självt.'
+		one: 'Det är så'
 	},
 
 	outputs: {

@@ -67,7 +67,7 @@ export const state: Text['state'] = {
 		evidence: 'På grund av',
 		noEvidence: 'inget som har mätts',
 		unconfirmed: 'Ingen har sett efteråt om det fortfarande stämmer',
-		topics: 'Resursens ämnen (topics)',
+		topics: 'Resursens topics',
 		heard: (ago) => `hörd ${ago}`,
 		sent: (ago) => `skickad ${ago}`,
 		silent: 'tyst',
