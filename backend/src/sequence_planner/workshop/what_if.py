@@ -14,6 +14,7 @@ from sequence_planner.automaton.structure import State
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.heard import Heard
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.view import PlanStatus
 from sequence_planner.expressions.types import Value
 from sequence_planner.history.simulated import SimulatedStation
 from sequence_planner.planning.planner import Planner
@@ -95,6 +96,6 @@ def what_if(
         before={name: state[name] for name in automaton.variables},
         after={name: after[name] for name in automaton.variables},
         active=sorted(execution.active),
-        unplanned=simulated.unplanned or execution.plan.reason,
+        unplanned=simulated.unplanned or (execution.plan.reason if execution.plan.status is PlanStatus.NONE else ""),
         obstacle=None,
     )

@@ -30,7 +30,10 @@ export const GROUPS: readonly [Group, ...Group[]] = [
 			{ address: '/ros', title: 'ros', role: 'viewer' }
 		]
 	},
-	{ title: 'engineering', pages: [] }
+	{
+		title: 'engineering',
+		pages: [{ address: '/what-if', title: 'whatIf', role: 'engineer' }]
+	}
 ];
 
 /** Those below the name of who is signed in. */

@@ -168,6 +168,7 @@ export const history = {
 		signed: 'Newest checkpoint'
 	},
 	branch: {
+		draft: 'The same with the model as it is edited',
 		title: 'What would have happened from here',
 		about: 'The work goes on from this record in simulated time, with emulated devices and people who do what they are asked. Nothing of it reaches the station.',
 		role: 'It takes the role engineer.',

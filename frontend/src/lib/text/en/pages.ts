@@ -6,6 +6,7 @@ export const pages = {
 	alarms: 'Alarms',
 	history: 'History',
 	ros: 'ROS',
+	whatIf: 'What if',
 	watch: 'Watch',
 	account: 'Account',
 	journal: 'Journal',

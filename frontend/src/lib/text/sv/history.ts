@@ -168,6 +168,7 @@ export const history: Text['history'] = {
 		signed: 'Senaste kontrollpunkten'
 	},
 	branch: {
+		draft: 'Detsamma med modellen som den redigeras',
 		title: 'Vad som skulle ha hänt härifrån',
 		about: 'Arbetet går vidare från denna post i simulerad tid, med emulerade enheter och människor som gör vad de ombeds. Inget av det når stationen.',
 		role: 'Det kräver rollen ingenjör.',
