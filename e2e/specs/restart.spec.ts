@@ -281,6 +281,7 @@ const FAULTS: readonly Fault[] = [
 	{
 		name: 'a device is out of service',
 		strike: async (at) => {
+			await requested(at);
 			await takeOut(at, 'robot');
 			await placesBolts(at);
 			await stands(at);

@@ -123,13 +123,21 @@ export class Back {
 	}
 
 	/**
-	 * The first way that does not say what nobody has looked at; every start and every correction is confirmed. Where the
-	 * station has moved meanwhile nothing is taken.
+	 * The first way that does not say what nobody has looked at; every start and every correction is confirmed. Whoever is
+	 * offered nothing but corrections looks first, and sees to what the alarms say. Where the station has moved meanwhile
+	 * nothing is taken.
 	 */
 	async #take(): Promise<boolean> {
 		const offers = this.restart.locator('[data-offer]').filter({ has: this.restart.getByRole('button', { name: /^Take…/ }) });
+		if ((await offers.count()) === 0) return false;
 		const plain = offers.filter({ hasNotText: 'Only if it is so' });
-		const chosen = ((await plain.count()) > 0 ? plain : offers).first();
+		const corrects = (await plain.count()) === 0;
+		if (corrects && !this.#mended) {
+			this.#mended = true;
+			await this.hands.mend();
+			return false;
+		}
+		const chosen = (corrects ? offers : plain).first();
 		await chosen.getByRole('button', { name: /^Take…/ }).click();
 		for (const box of await this.#dialog.getByRole('checkbox').all()) await box.check();
 		await this.#dialog.getByLabel('Reason').fill(REASON);

@@ -38,7 +38,7 @@ from sequence_planner.planning.advice.stalling import stalled_effects
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import goals_of
 
-LONGER = 5.0  # seconds for advice where nothing was found in less
+LONGER = 5.0  # seconds for advice where in less nothing was found but what a person would have to know
 MOST_KEPT = 64  # offers; older ones are gone
 
 
@@ -112,7 +112,7 @@ class Offers:
         deadline = request.deadline
         if self._advised is not None and self._advised[:2] == (revision, request):
             view = self._advised[2]
-            if not view.offers and not view.complete:
+            if not view.complete and all(offer.corrections for offer in view.offers):
                 deadline = LONGER  # there was too little time: asked once more, there is more of it
             elif all(offer.id in self._kept for offer in view.offers):
                 return view
