@@ -8,6 +8,7 @@ import { expect, test } from '../station/test.ts';
 /** The page Restart in the same browser as Operate: the same session, with the same control. */
 async function openRestart(operate: Page): Promise<Page> {
 	const page = await operate.context().newPage();
+	page.setDefaultTimeout(15_000); // what cannot be pressed shall not use up the time of the others
 	await page.goto(new URL('/restart', operate.url()).href);
 	await expect(page.getByTestId('next-act')).toBeVisible();
 	return page;
