@@ -14,6 +14,8 @@ export interface Hands {
 }
 
 const REASON = 'as the page says';
+/** Milliseconds within which a press has its effect, unless the station has moved since. */
+const PRESS = 5000;
 /** Milliseconds without anything to do but wait, after which it is stuck. */
 const PATIENCE = 30_000;
 
@@ -84,6 +86,10 @@ export class Back {
 		return this.restart.getByRole('dialog');
 	}
 
+	async #isClosed(): Promise<boolean> {
+		return (await this.#dialog.count()) === 0;
+	}
+
 	/** An act of the page itself, not the one of the header by the same name. */
 	async #press(name: string): Promise<boolean> {
 		await this.restart.locator('main').getByRole('button', { name, exact: true }).click();
@@ -95,10 +101,16 @@ export class Back {
 		return this.#send(name);
 	}
 
+	/** Where the station has moved meanwhile, what there is to see is looked at again first. */
 	async #send(name: string): Promise<boolean> {
+		const again = this.#dialog.getByRole('button', { name: 'Look again' });
 		await this.#dialog.getByLabel('Reason').fill(REASON);
-		await this.#dialog.getByRole('button', { name, exact: true }).click();
-		await expect(this.#dialog).toHaveCount(0);
+		await expect(async () => {
+			if (await this.#isClosed()) return;
+			if (await again.isVisible()) await again.click({ timeout: PRESS });
+			await this.#dialog.getByRole('button', { name, exact: true }).click({ timeout: PRESS });
+			await expect(this.#dialog).toHaveCount(0, { timeout: PRESS });
+		}).toPass({ timeout: 4 * PRESS });
 		return true;
 	}
 
@@ -132,24 +144,32 @@ export class Back {
 	}
 
 	/**
-	 * The first way that does not say what nobody has looked at; every start and every correction is confirmed. Where the
-	 * station has moved meanwhile nothing is taken.
+	 * The first way that does not say what nobody has looked at; every start and every correction is confirmed. Whoever is
+	 * offered nothing but corrections looks first, and sees to what the alarms say. Where the station has moved meanwhile
+	 * nothing is taken.
 	 */
 	async #take(): Promise<boolean> {
 		const offers = this.restart.locator('[data-offer]').filter({ has: this.restart.getByRole('button', { name: /^Take…/ }) });
+		if ((await offers.count()) === 0) return false;
 		const plain = offers.filter({ hasNotText: 'Only if it is so' });
-		const chosen = ((await plain.count()) > 0 ? plain : offers).first();
+		const corrects = (await plain.count()) === 0;
+		if (corrects && !this.#mended) {
+			this.#mended = true;
+			await this.hands.mend();
+			return false;
+		}
+		const chosen = (corrects ? offers : plain).first();
 		await chosen.getByRole('button', { name: /^Take…/ }).click();
 		for (const box of await this.#dialog.getByRole('checkbox').all()) await box.check();
 		await this.#dialog.getByLabel('Reason').fill(REASON);
 		const fresh = this.#dialog.getByRole('button', { name: 'Back to fresh offers' });
-		if (await fresh.isVisible()) {
-			await fresh.click();
-			return false;
-		}
-		await this.#dialog.getByRole('button', { name: 'Take it' }).click();
-		await expect(this.#dialog).toHaveCount(0);
-		return true;
+		const take = this.#dialog.getByRole('button', { name: 'Take it' });
+		// It may move in the very moment in which it is pressed.
+		if (!(await fresh.isVisible())) await take.click({ timeout: PRESS }).catch(() => undefined);
+		await expect.poll(async () => (await this.#isClosed()) || (await fresh.isVisible()), { timeout: 4 * PRESS }).toBe(true);
+		if (await this.#isClosed()) return true;
+		await fresh.click();
+		return false;
 	}
 }
 

@@ -27,6 +27,7 @@ from sequence_planner.control.restart_commands import GivenValue, TakeErrand
 from sequence_planner.control.view import Mode
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.immutable import replace
+from sequence_planner.planning.advice.offer import Advice
 from sequence_planner.planning.advice.request import AdviceRequest
 from sequence_planner.synthesis.supervision import synthesise
 
@@ -66,7 +67,7 @@ class Desk:
     """The station, and who offers what there is to do."""
 
     def __init__(self, adviser: Adviser, execution: Execution) -> None:
-        self.execution = execution
+        self.adviser, self.execution = adviser, execution
         doubting = Doubting(execution)
         corrections = Corrections(execution, adviser, Beliefs(execution), doubting)
         self.offers = Offers(execution, adviser, corrections, doubting.impossible)
@@ -216,6 +217,33 @@ def test_where_there_was_too_little_time_for_advice_asking_again_finds_it(monkey
             assert (hurried.offers, hurried.complete) == ([], False)
             advice = await there.offers.advice()
             assert advice.offers
+            assert await there.offers.advice() is advice
+
+    asyncio.run(scenario())
+
+
+def test_where_there_was_time_for_corrections_alone_asking_again_finds_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            at_leisure = there.adviser.answer
+
+            async def answer(request: AdviceRequest, deadline: float) -> Advice:
+                advice = await at_leisure(request, deadline)
+                if request.deadline >= offers.LONGER:
+                    return advice
+                return replace(advice, offers=tuple(each for each in advice.offers if each.corrections), complete=False)
+
+            monkeypatch.setattr(there.adviser, "answer", answer)
+            monkeypatch.setattr(offers, "WAITING", 60.0)  # the adviser is only being started
+            there.execution.start_production()
+            there.correct(loaded=True)
+            there.tick()
+            there.correct(jammed=True)
+            there.tick()
+            hurried = await there.offers.advice()
+            assert [bool(offer.corrections) for offer in hurried.offers] == [True]
+            advice = await there.offers.advice()
+            assert any(offer.errand is not None and not offer.corrections for offer in advice.offers)
             assert await there.offers.advice() is advice
 
     asyncio.run(scenario())

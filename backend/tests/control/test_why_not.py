@@ -90,7 +90,7 @@ def test_an_ability_says_all_that_is_in_its_way_and_who_could_change_it() -> Non
             place, loaded = view.conditions[2:]
             (at,) = place.involved
             assert (at.name, at.value, at.wanted, at.since, at.topic) == ("at", "home", ["work"], 7.0, "/cart/state")
-            assert who(place, "at") == [("effect", "go"), ("device", "")]
+            assert who(place, "at") == [("effect", "go"), ("device", "station")]
             assert who(loaded, "loaded") == [("start", "load"), ("correction", "loaded")]
             execution.start_production()
             execution.set_service(ServiceKind.ABILITY, "unload", False, "Eva", "a test", desk.now)
@@ -195,5 +195,25 @@ def test_a_goal_says_whether_the_station_could_reach_it() -> None:
             assert "the goal asked for" in never.reasons.members
             with pytest.raises(CommandRefused, match="character 1, `up`"):
                 await asked.goal("up")
+
+    asyncio.run(scenario())
+
+
+def test_what_is_out_of_service_is_said_to_be_so_and_what_is_silent_to_be_offline() -> None:
+    async def scenario() -> None:
+        async with inquirer() as asked:
+            desk, execution = asked.desk, asked.execution
+            desk.tick()
+            execution.set_service(ServiceKind.RESOURCE, "station", False, "Eva", "it squeaks", desk.now)
+            reasons = (await asked.goal("at == work")).reasons
+            assert reasons is not None
+            assert "station is out of service" in reasons.members
+            assert reasons.corrections == ["station in service"]
+            execution.set_service(ServiceKind.RESOURCE, "station", True, "Eva", "oiled", desk.now)
+            execution.tick({"at": "home"}, desk.now, silent=frozenset({"station"}))
+            reasons = (await asked.goal("at == work")).reasons
+            assert reasons is not None
+            assert "station is offline" in reasons.members
+            assert reasons.corrections == ["station online"]
 
     asyncio.run(scenario())

@@ -17,10 +17,11 @@ from hypothesis import strategies as st
 from ros_networks import DOMAIN, Network, eventually, play, settle, standard
 from ros_processes import peer
 
+from sequence_planner.emulation.faulty import garbage
 from sequence_planner.ros import cyclone_network
 from sequence_planner.ros.choice import open_transport
 from sequence_planner.ros.cyclone_network import loopback_configuration
-from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.messages import MalformedMessageError, MessageRegistry
 from sequence_planner.ros.transport import QualityOfService, Sample, TransportError
 
 TEXT = "std_msgs/msg/String"
@@ -113,6 +114,24 @@ def test_a_peer_with_a_stale_definition_delivers_nothing(tmp_path: Path) -> None
         device.publish("/robot/state", "cell_msgs/msg/State", old.encode("cell_msgs/msg/State", {"pose": 1}))
         await settle()
         assert heard == []
+
+    play("cyclonedds", scenario)
+
+
+@pytest.mark.parametrize(
+    ("type_name", "values"), [(TEXT, {"data": "hello"}), ("std_msgs/msg/Bool", {}), ("geometry_msgs/msg/Pose", {})]
+)
+def test_garbage_of_an_emulated_device_arrives_and_is_no_message(type_name: str, values: dict[str, object]) -> None:
+    async def scenario(network: Network) -> None:
+        device, station = network.join("device"), network.join("station")
+        heard: list[Sample] = []
+        station.subscribe("/robot/state", type_name, RELIABLE, heard.extend)
+        device.advertise("/robot/state", type_name, RELIABLE)
+        await eventually(lambda: len(station.graph()) == len(device.graph()) == 2, "both see each other")
+        device.publish("/robot/state", type_name, garbage(standard().encode(type_name, values)))
+        await eventually(lambda: heard, "it arrives")
+        with pytest.raises(MalformedMessageError):
+            standard().decode(type_name, heard[0].data)
 
     play("cyclonedds", scenario)
 

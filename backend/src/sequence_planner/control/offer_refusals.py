@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
 from sequence_planner.control.aims import GOAL, Aimed
 from sequence_planner.control.command_base import CommandRefused
@@ -63,9 +63,9 @@ def errand_under_way(errand: Errand) -> CommandRefused:
     return CommandRefused("errand-under-way", "Something else is being carried out", detail)
 
 
-def no_plan(aimed: Aimed) -> CommandRefused:
-    """Nothing can be offered; the reasons as far as they are known."""
-    members = [] if aimed.why_not is None else diagnosis_view(aimed.why_not).members
+def no_plan(aimed: Aimed, out_of_service: Collection[str]) -> CommandRefused:
+    """Nothing can be offered; the reasons as far as they are known. Resources can be `out_of_service`."""
+    members = [] if aimed.why_not is None else diagnosis_view(aimed.why_not, out_of_service).members
     because = "; ".join(member for member in members if member != f"the goal {GOAL}")
     if because:
         detail = f"There is no plan as long as all of this is so: {because}."

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.offer_view import (
@@ -103,13 +103,13 @@ def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
     )
 
 
-def diagnosis_view(diagnosis: Diagnosis) -> DiagnosisView:
-    """Why something cannot be done, and what would help."""
+def diagnosis_view(diagnosis: Diagnosis, out_of_service: Collection[str]) -> DiagnosisView:
+    """Why something cannot be done, and what would help; resources that do nothing can be `out_of_service`."""
     reason = diagnosis.reason
     return DiagnosisView(
-        members=[] if reason is None else [member_text(member) for member in reason.members],
+        members=[] if reason is None else [member_text(member, out_of_service) for member in reason.members],
         minimal=reason is not None and reason.minimal,
-        corrections=[correction_text(correction) for correction in diagnosis.corrections],
+        corrections=[correction_text(correction, out_of_service) for correction in diagnosis.corrections],
     )
 
 

@@ -38,7 +38,7 @@ from sequence_planner.planning.advice.stalling import stalled_effects
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import goals_of
 
-LONGER = 5.0  # seconds for advice where nothing was found in less
+LONGER = 5.0  # seconds for advice where in less nothing was found but what a person would have to know
 MOST_KEPT = 64  # offers; older ones are gone
 
 
@@ -112,7 +112,7 @@ class Offers:
         deadline = request.deadline
         if self._advised is not None and self._advised[:2] == (revision, request):
             view = self._advised[2]
-            if not view.offers and not view.complete:
+            if not view.complete and all(offer.corrections for offer in view.offers):
                 deadline = LONGER  # there was too little time: asked once more, there is more of it
             elif all(offer.id in self._kept for offer in view.offers):
                 return view
@@ -120,7 +120,7 @@ class Offers:
         view = AdviceView(
             revision=revision,
             offers=self._keep(advice.offers, revision),
-            reasons=None if advice.reasons is None else diagnosis_view(advice.reasons),
+            reasons=None if advice.reasons is None else diagnosis_view(advice.reasons, self._unused),
             complete=advice.complete,
             seconds=advice.seconds,
         )
@@ -158,7 +158,7 @@ class Offers:
         )
         aimed = await aim(self._adviser, request)
         if aimed.offer is None:
-            raise no_plan(aimed)
+            raise no_plan(aimed, self._unused)
         (view,) = self._keep((aimed.offer,), revision)
         return view
 
@@ -214,6 +214,11 @@ class Offers:
     def _require_no_errand(self) -> None:
         if self._execution.errand is not None:
             raise errand_under_way(self._execution.errand)
+
+    @property
+    def _unused(self) -> frozenset[str]:
+        """The resources that are out of service."""
+        return self._execution.conduct.out_of(ServiceKind.RESOURCE)
 
     def _stalled(self) -> frozenset[str]:
         """The effects that are not counted on: the devices that they belong to do not react."""

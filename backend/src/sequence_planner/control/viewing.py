@@ -16,8 +16,10 @@ from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.live_plan import Replacement
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.offer_showing import diagnosis_view
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.override_view import OverrideView
+from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_view import LastCorrectionView, QuestionView, UndecidedOutputView
 from sequence_planner.control.start_order import Step
 from sequence_planner.control.tasks import TaskDesk, TaskProblem
@@ -55,7 +57,6 @@ from sequence_planner.control.waiting import waits_for
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.plan import Contract, Plan
-from sequence_planner.planning.reasons.diagnosis import Diagnosis, correction_text, member_text
 from sequence_planner.synthesis.guards import Guard
 
 # How many coming steps a task names as what moves next.
@@ -241,7 +242,7 @@ class Viewing:
             contract=_contract(plan),
             engine=answer.engine if answer else "",
             milliseconds=answer.seconds * 1000 if answer else None,
-            why=_why(execution.plan.diagnosis),
+            why=_why(execution),
         )
 
     def _replacement(self) -> ReplacementView | None:
@@ -327,14 +328,11 @@ class Viewing:
         return views
 
 
-def _why(diagnosis: Diagnosis | None) -> DiagnosisView | None:
+def _why(execution: Execution) -> DiagnosisView | None:
+    diagnosis = execution.plan.diagnosis
     if diagnosis is None or diagnosis.reason is None:
         return None
-    return DiagnosisView(
-        members=[member_text(member) for member in diagnosis.reason.members],
-        minimal=diagnosis.reason.minimal,
-        corrections=[correction_text(correction) for correction in diagnosis.corrections],
-    )
+    return diagnosis_view(diagnosis, execution.conduct.out_of(ServiceKind.RESOURCE))
 
 
 def _contract(plan: Plan | None) -> Contract | None:

@@ -121,9 +121,14 @@ class WhyNot:
             return "It is active, and the plan leads to its goal."
         return f"It is active and has no plan. {execution.plan.reason}".strip()
 
+    @property
+    def _unused(self) -> frozenset[str]:
+        """The resources that are out of service."""
+        return self._execution.conduct.out_of(ServiceKind.RESOURCE)
+
     def _reasons(self) -> DiagnosisView | None:
         diagnosis = self._execution.plan.diagnosis
-        return None if diagnosis is None else diagnosis_view(diagnosis)
+        return None if diagnosis is None else diagnosis_view(diagnosis, self._unused)
 
     async def _goal(self, text: str) -> WhyNotView:
         execution = self._execution
@@ -147,7 +152,7 @@ class WhyNot:
             plan = plan_preview(execution.automaton, aimed.offer.errand)
             return _more(view, f"The station could reach it with {_count(len(plan.steps), 'start')}.", plan=plan)
         if aimed.proven:
-            reasons = None if aimed.why_not is None else diagnosis_view(aimed.why_not)
+            reasons = None if aimed.why_not is None else diagnosis_view(aimed.why_not, self._unused)
             return _more(view, "The station cannot reach it from here: that is proven.", reasons=reasons)
         return _more(view, "No plan to it was found; that there is none is not proven.")
 

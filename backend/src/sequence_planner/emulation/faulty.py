@@ -19,7 +19,7 @@ from sequence_planner.pipelines.graph import StationPipelines
 
 _OFFLINE = (FaultKind.OFFLINE, FaultKind.RESTARTED)
 RESTART = 1.0  # seconds for which a device that starts again is offline, if nothing else is said
-_HEADER = 4  # bytes with which a message says how it is encoded; with others the middleware takes none of it
+_SURPLUS = b"\xff" * 8  # more than a message may be padded with
 
 
 @dataclass
@@ -103,7 +103,7 @@ class FaultyDevices:
         """What a message is on the network: itself, bytes that are no message, or None for one that is lost."""
         if self._is_lost(topic):
             return None
-        return _garbage(data) if self._has(topic, FaultKind.GARBAGE) else data
+        return garbage(data) if self._has(topic, FaultKind.GARBAGE) else data
 
     def hears(self, topic: str) -> bool:
         """Whether a command that is sent on a topic of the station comes to the device."""
@@ -135,6 +135,10 @@ class FaultyDevices:
         return kept < 1 and self._random.random() >= kept
 
 
-def _garbage(data: bytes) -> bytes:
-    """As many bytes with all bits set: no number, no length of a text. The middleware would not send fewer."""
-    return data[:_HEADER] + b"\xff" * (len(data) - _HEADER)
+def garbage(data: bytes) -> bytes:
+    """A message with more behind it than its type has, as a node sends it that was built with another definition.
+
+    Other nonsense does not reach a station: the middleware sends no text without its length and no message that is too
+    short, and of any byte that stands for a truth it makes `true`.
+    """
+    return data + _SURPLUS

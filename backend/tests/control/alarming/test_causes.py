@@ -13,7 +13,7 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_view import QuestionView
 from sequence_planner.control.tasks import TaskProblem
-from sequence_planner.control.view import Mode
+from sequence_planner.control.view import Mode, PlanStatus
 from sequence_planner.immutable import replace
 
 
@@ -176,6 +176,31 @@ def test_abilities_of_one_resource_that_are_given_up_are_one_alarm() -> None:
         "Run the nutrunner has not begun within 5 s, tried 2 times: it is given up"
     )
     assert "put Run the nutrunner back in service" in told["given-up:nutrunner"].action
+
+
+def test_where_there_is_no_plan_what_is_out_of_service_is_to_be_put_back() -> None:
+    rig = Rig()
+    rig.start_production()
+    rig.run(1)
+    shown = alarms(rig)
+
+    def serve(of: ServiceKind, name: str, in_service: bool) -> None:
+        rig.execution.set_service(of, name, in_service, "Eva", "it squeaks", rig_now(rig))
+
+    serve(ServiceKind.RESOURCE, "robot", False)
+    assert rig.run(3, until=lambda: len(rig.completed) > 0)
+    assert "no-plan" not in there(shown, rig_now(rig)), "bolts are placed without it"
+    assert rig.run(30, until=lambda: rig.execution.plan.status is PlanStatus.NONE)
+    told = shown.current(None, rig_now(rig))["no-plan"]
+    assert told.consequence == "“Tighten bolt pair 1”, “Tighten bolt pair 2” and “Tighten bolt pair 3” wait."
+    assert told.action == "Put Robot UR10 back in service, or see what the active operations need."
+    serve(ServiceKind.ABILITY, "nutrunner.run_nut", False)
+    told = shown.current(None, rig_now(rig))["no-plan"]
+    assert told.action.startswith("Put Robot UR10 and Run the nutrunner back in service, or ")
+    serve(ServiceKind.RESOURCE, "robot", True)
+    serve(ServiceKind.ABILITY, "nutrunner.run_nut", True)
+    assert rig.run(30, until=lambda: "new_engine" in rig.completed)
+    assert "no-plan" not in there(shown, rig_now(rig))
 
 
 def test_an_errand_that_the_station_has_stopped_is_an_alarm_until_it_works_again() -> None:

@@ -2,7 +2,7 @@
 import type { AdviceAnswer } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
-import { isDue } from './due.ts';
+import { isDue, isSettled } from './due.ts';
 
 /** Milliseconds in which the server answers, also where it has given itself more time. */
 const PATIENCE = 12_000;
@@ -14,8 +14,14 @@ export class Advice {
 	pending = $state(false);
 	/** A person is at one of the offers: they stay as they are. */
 	held = $state(false);
-	#times = 0;
+	/** Answers in a row for the same state. */
+	#times = $state(0);
 	#last = -Infinity;
+
+	/** The last answer, unless there was too little time for it and it is asked for again. */
+	get settled(): AdviceAnswer | null {
+		return this.answer && isSettled(this.answer, this.#times) ? this.answer : null;
+	}
 
 	/** Keeps the offers as they are, for as long as a person is at one of them. */
 	hold(): void {

@@ -2,7 +2,7 @@ import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { AdviceAnswer } from '#lib/contract.ts';
 import { offer } from '#lib/testing/offer.ts';
-import { isDue, type Asked } from './due.ts';
+import { isDue, isSettled, type Asked } from './due.ts';
 
 const answer: AdviceAnswer = { revision: 7, offers: [offer()], reasons: null, complete: true, seconds: 0.1 };
 const asked = (over: Partial<Asked> = {}): Asked => ({ answer, refused: false, times: 1, since: 3000, ...over });
@@ -24,6 +24,16 @@ describe('ways back are asked for', () => {
 		const short = { ...answer, offers: [], complete: false };
 		expect(isDue(asked({ answer: short, times: 1 }), 7)).toBe(true);
 		expect(isDue(asked({ answer: short, times: 3, since: 60_000 }), 7)).toBe(false);
+	});
+
+	test('so too where only corrections were found in it, and now and then after that', () => {
+		const guesses = { ...answer, offers: [offer({ corrections: [{ name: 'b', now: 'placed', then: 'empty' }] })] };
+		const short = { ...guesses, complete: false };
+		expect(isDue(asked({ answer: short, times: 1 }), 7)).toBe(true);
+		expect(isDue(asked({ answer: short, times: 3 }), 7)).toBe(false);
+		expect(isDue(asked({ answer: short, times: 3, since: 11_000 }), 7)).toBe(true);
+		expect(isDue(asked({ answer: guesses, times: 1 }), 7)).toBe(false);
+		expect([isSettled(short, 1), isSettled(short, 3), isSettled(guesses, 1)]).toEqual([false, true, true]);
 	});
 
 	test('never sooner than 2 s after the last answer', () => {

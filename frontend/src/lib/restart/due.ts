@@ -24,10 +24,23 @@ export function ranOut(answer: AdviceAnswer): boolean {
 	return answer.offers.length === 0 && !answer.complete;
 }
 
+/**
+ * There was too little time, and what was found, if anything, says what nobody may have looked at: whoever looks may see
+ * that it is not so.
+ */
+function wantsMore(answer: AdviceAnswer): boolean {
+	return !answer.complete && answer.offers.every(({ corrections }) => corrections.length > 0);
+}
+
+/** Whether that is what there is to be said of a state, after as many answers as `times`. */
+export function isSettled(answer: AdviceAnswer, times: number): boolean {
+	return times >= PATIENCE || !wantsMore(answer);
+}
+
 /** Whether to ask now, of a station whose state is at `revision`. */
 export function isDue({ answer, refused, times, since }: Asked, revision: number): boolean {
 	if (since < CALM) return false;
 	if (answer === null || refused || answer.revision !== revision) return true;
 	// Asked again in the same state it has more time; what it said for good costs it nothing to say again.
-	return ranOut(answer) ? times < PATIENCE : since >= SAME_STATE;
+	return !isSettled(answer, times) || (since >= SAME_STATE && !ranOut(answer));
 }

@@ -43,3 +43,11 @@ test('a station of which too little is heard is not said to be outside its safe 
 	expect(wantedFor(view({ way_back: { ...way, violated, awaits: ['/ur10/state'] } }))).toEqual(['outside']);
 	expect(wantedFor(view({ way_back: way }))).toEqual(['outside']);
 });
+
+test('what is out of service is a reason only where there is no plan without it', () => {
+	const out = { of: 'resource', name: 'robot', title: 'Robot', since: 990, by: 'Eva', why: 'it squeaks' } as const;
+	expect(wantedFor(view({ out_of_service: [out] }))).toEqual([]);
+	const stands = view({ out_of_service: [out], plan: { ...PLAN, status: 'none' }, operations: { tighten: active } });
+	expect(wantedFor(stands)).toEqual(['noPlan', 'outOfService']);
+	expect(wantedFor({ ...stands, out_of_service: [{ ...out, of: 'operation' }] })).toEqual(['noPlan']);
+});

@@ -1,6 +1,6 @@
 /** When a person has to do with a restart at all: as long as the station works by itself, the page does not speak of one. */
 import { byUrgency } from '#lib/alarm/priority.ts';
-import type { Alarm, StationView, Value, Variable } from '#lib/contract.ts';
+import type { Alarm, OutOfService, StationView, Value, Variable } from '#lib/contract.ts';
 import { openQuestions } from './answers.ts';
 
 /** Why a person is wanted for a restart, the most telling first. */
@@ -11,6 +11,7 @@ export type Wanted =
 	| 'questions'
 	| 'unconfirmed'
 	| 'noPlan'
+	| 'outOfService'
 	| 'alarm'
 	| 'errand'
 	| 'restart'
@@ -20,6 +21,11 @@ export type Wanted =
 /** Whether nothing is planned although something is to be done. */
 export function lacksPlan(view: StationView): boolean {
 	return view.plan.status === 'none' && Object.values(view.operations).some((operation) => operation.active);
+}
+
+/** What is out of service of that with which operations are done. */
+export function notUsed(view: StationView): OutOfService[] {
+	return view.out_of_service.filter(({ of }) => of !== 'operation');
 }
 
 /** Whether the station may be safe, and what is awaited decides: nothing that is known says that it is not. */
@@ -42,6 +48,7 @@ export function wantedFor(view: StationView): Wanted[] {
 		['questions', openQuestions(view).length > 0],
 		['unconfirmed', view.unconfirmed],
 		['noPlan', lacksPlan(view)],
+		['outOfService', lacksPlan(view) && notUsed(view).length > 0],
 		['alarm', lastingAlarms(view).length > 0],
 		['errand', view.errand !== null],
 		['restart', view.mode === 'restart'],

@@ -139,11 +139,18 @@ class PlanAlarms:
             return
         if plan.status is PlanStatus.NONE and (follows or not execution.blind):
             waiting = self._consequences.waiting(execution.active)
-            yield Cause(
-                "no-plan", Priority.MEDIUM, plan.reason, waiting, "See what the active operations need.", follows
-            )
+            yield Cause("no-plan", Priority.MEDIUM, plan.reason, waiting, self._needed(), follows)
         elif plan.status is not PlanStatus.NONE and plan.answer is not None:
             yield from self._left_out(plan.answer, follows)
+
+    def _needed(self) -> str:
+        """What to do where there is no plan: what is out of service may be all that is missing."""
+        automaton, service = self._execution.automaton, self._execution.conduct.service
+        resources = [automaton.resources[name] for of, name in service if of is ServiceKind.RESOURCE]
+        abilities = [automaton.abilities[name].title for of, name in service if of is ServiceKind.ABILITY]
+        needs = "see what the active operations need."
+        out = listed([*sorted(resources), *sorted(abilities)])
+        return f"Put {out} back in service, or {needs}" if out else f"{needs[0].upper()}{needs[1:]}"
 
     def _left_out(self, answer: PlanAnswer, follows: tuple[str, ...]) -> Iterator[Cause]:
         """The active operations that the plan does not reach: because it cannot, and because nobody knows."""

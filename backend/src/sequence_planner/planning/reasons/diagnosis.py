@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.printing import print_value
@@ -46,8 +48,8 @@ def diagnose(
     return Diagnosis(reason, () if reason is None else corrections(automaton, supervisor, task, budget))
 
 
-def member_text(member: Member) -> str:
-    """A member of a reason, in the names of the model."""
+def member_text(member: Member, out_of_service: Collection[str] = ()) -> str:
+    """A member of a reason, in the names of the model; resources can be offline because they are `out_of_service`."""
     match member.part:
         case Part.VALUE if member.value is None:
             return f"{member.name} is not known"
@@ -59,7 +61,7 @@ def member_text(member: Member) -> str:
         case Part.AVOID:
             return f"{member.name} is to be avoided"
         case Part.OFFLINE:
-            return f"{member.name} is offline"
+            return f"{member.name} is {'out of service' if member.name in out_of_service else 'offline'}"
         case Part.BARRED:
             return f"{member.name} is out of service"
         case Part.LOCAL:
@@ -68,12 +70,12 @@ def member_text(member: Member) -> str:
             return f"the goal {member.name}"
 
 
-def correction_text(correction: Correction) -> str:
-    """Changes that would help, in the names of the model."""
-    return " and ".join(map(_change_text, correction.changes))
+def correction_text(correction: Correction, out_of_service: Collection[str] = ()) -> str:
+    """Changes that would help, in the names of the model; resources can be `out_of_service`."""
+    return " and ".join(_change_text(change, out_of_service) for change in correction.changes)
 
 
-def _change_text(change: Change) -> str:
+def _change_text(change: Change, out_of_service: Collection[str]) -> str:
     if change.value is not None:
         return f"{change.name} := {print_value(change.value)}"
-    return f"{change.name} in service" if change.ability else f"{change.name} online"
+    return f"{change.name} {'in service' if change.ability or change.name in out_of_service else 'online'}"

@@ -19,6 +19,7 @@ export const restart = {
 			outside: 'The station is outside its safe states.',
 			unsure: 'Whether the station is safe is not known.',
 			noPlan: 'There is no plan for what is to be done.',
+			outOfService: (what: string): string => `Out of service: ${what}.`,
 			alarm: (n: number): string => `${count(n, 'alarm lasts', 'alarms last')}.`,
 			errand: 'What a person has taken is carried out.'
 		}
@@ -60,7 +61,8 @@ export const restart = {
 		instead: (name: string, safe: string, now: string): string => `${name} is ${safe}, not ${now}`,
 		corrected: (by: string, at: string, what: string): string => `Corrected by ${by} at ${at}: ${what}`,
 		history: 'See in History',
-		lasting: (duration: string): string => `for ${duration}`
+		lasting: (duration: string): string => `for ${duration}`,
+		over: (at: string): string => `over since ${at}, not acknowledged`
 	},
 	moves: {
 		title: 'What still moves',
@@ -145,6 +147,8 @@ export const restart = {
 		see: (name: string, then: string, now: string): string => `See to it that ${name} is ${then} (now ${now}).`,
 		online: (title: string): string => `Bring ${title} back.`,
 		waits: (topics: string): string => `Waits for ${topics}; it is noticed by itself.`,
+		senseless: (topics: string): string => `It is heard, but not understood on ${topics}; when it is, that is noticed by itself.`,
+		outBecause: (why: string): string => `It is out of service: ${why}`,
 		back: 'It is back.',
 		service: (title: string): string => `Look after “${title}”, then put it back into service.`,
 		putBack: 'Put back',

@@ -18,6 +18,7 @@ export const restart: Text['restart'] = {
 			outside: 'Stationen är utanför sina säkra tillstånd.',
 			unsure: 'Det är inte känt om stationen är säker.',
 			noPlan: 'Det finns ingen plan för det som ska göras.',
+			outOfService: (what) => `Ur drift: ${what}.`,
 			alarm: (n) => `${count(n, 'larm', 'larm')} kvarstår.`,
 			errand: 'Det som någon har valt utförs.'
 		}
@@ -58,7 +59,8 @@ export const restart: Text['restart'] = {
 		instead: (name, safe, now) => `${name} är ${safe}, inte ${now}`,
 		corrected: (by, at, what) => `Rättat av ${by} ${at}: ${what}`,
 		history: 'Se i Historik',
-		lasting: (duration) => `i ${duration}`
+		lasting: (duration) => `i ${duration}`,
+		over: (at) => `över sedan ${at}, inte kvitterat`
 	},
 	moves: {
 		title: 'Vad som ännu rör sig',
@@ -143,6 +145,8 @@ export const restart: Text['restart'] = {
 		see: (name, then, now) => `Se till att ${name} är ${then} (nu ${now}).`,
 		online: (title) => `Få tillbaka ${title}.`,
 		waits: (topics) => `Väntar på ${topics}; det märks av sig självt.`,
+		senseless: (topics) => `Den hörs men förstås inte på ${topics}; när den förstås märks det av sig självt.`,
+		outBecause: (why) => `Den är ur drift: ${why}`,
 		back: 'Den är tillbaka.',
 		service: (title) => `Se över ”${title}” och ta det sedan i drift igen.`,
 		putBack: 'Ta i drift',
