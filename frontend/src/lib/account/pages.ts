@@ -19,6 +19,8 @@ export const MAIN: readonly Page[] = [
 	{ address: '/alarms', title: 'alarms', role: 'viewer' },
 	{ address: '/history', title: 'history', role: 'operator' },
 	{ address: '/ros', title: 'ros', role: 'viewer' },
+	{ address: '/check', title: 'check', role: 'viewer' },
+	{ address: '/deploy', title: 'deploy', role: 'viewer' },
 	{ address: WATCH, title: 'watch', role: 'viewer' }
 ];
 

@@ -6,6 +6,8 @@ export const pages = {
 	alarms: 'Alarms',
 	history: 'History',
 	ros: 'ROS',
+	check: 'Check',
+	deploy: 'Deploy',
 	watch: 'Watch',
 	account: 'Account',
 	journal: 'Journal',

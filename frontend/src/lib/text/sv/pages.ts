@@ -7,6 +7,8 @@ export const pages: Text['pages'] = {
 	alarms: 'Larm',
 	history: 'Historik',
 	ros: 'ROS',
+	check: 'Granskning',
+	deploy: 'Driftsättning',
 	watch: 'Klocka',
 	account: 'Konto',
 	journal: 'Journal',
