@@ -104,12 +104,10 @@ export const check = {
 		values: 'Values after this step',
 		variable: 'Variable',
 		value: 'Value',
-		before: 'Before',
 		changed: 'changed',
 		shown: 'Variables shown',
 		some: 'those that change on the way',
-		all: 'all',
-		empty: 'No variable changes on the way.'
+		all: 'all'
 	},
 
 	supervisor: 'What the supervisor adds',

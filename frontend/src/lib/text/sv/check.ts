@@ -103,12 +103,10 @@ export const check: Text['check'] = {
 		values: 'Värden efter steget',
 		variable: 'Variabel',
 		value: 'Värde',
-		before: 'Innan',
 		changed: 'ändrad',
 		shown: 'Variabler som visas',
 		some: 'de som ändras på vägen',
-		all: 'alla',
-		empty: 'Ingen variabel ändras på vägen.'
+		all: 'alla'
 	},
 
 	supervisor: 'Vad övervakaren lägger till',
