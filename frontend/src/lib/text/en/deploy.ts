@@ -35,11 +35,8 @@ export const deploy = {
 		acts: 'Acts',
 		runs: 'runs',
 		draft: 'draft',
-		system: 'the station',
 		compare: 'Compare…',
-		compareOf: (name: string): string => `Compare “${name}” with what runs`,
-		back: 'Back to this revision…',
-		backOf: (name: string): string => `Back to “${name}”…`
+		back: 'Back to this revision…'
 	},
 
 	save: {

@@ -35,11 +35,8 @@ export const deploy: Text['deploy'] = {
 		acts: 'Åtgärder',
 		runs: 'körs',
 		draft: 'utkast',
-		system: 'stationen',
 		compare: 'Jämför …',
-		compareOf: (name) => `Jämför ”${name}” med det som körs`,
-		back: 'Tillbaka till revisionen …',
-		backOf: (name) => `Tillbaka till ”${name}” …`
+		back: 'Tillbaka till revisionen …'
 	},
 
 	save: {
