@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { Trace, TraceStep } from '#lib/contract.ts';
-import { forbiddenAt, moving, rowsAt, stepTo } from './play.ts';
+import { forbiddenAt, moving, namesIn, rowsAt, stepTo } from './play.ts';
 
 function step(changes: TraceStep['changes'], forbidden: string[] = []): TraceStep {
 	return { kind: 'tick', names: [], finished: [], changes, forbidden_by: forbidden, text: '' };
@@ -38,6 +38,11 @@ test('the specifications that forbid a state are those of its step, or of the be
 
 test('some variables move on the way', () => {
 	expect(moving(TRACE)).toEqual(new Set(['hot', 'level']));
+});
+
+test('effects are named without arguments, and nothing else is', () => {
+	expect(namesIn({ kind: 'tick', names: ['robot.move(home).leaves', 'tool.starts'] })).toBe('robot.move.leaves, tool.starts');
+	expect(namesIn({ kind: 'start', names: ['robot.move(home)'] })).toBe('robot.move(home)');
 });
 
 describe('any run', () => {

@@ -19,6 +19,14 @@ export function forbiddenAt(trace: Trace, place: number): readonly string[] {
 	return place === 0 ? trace.forbidden_by : (stepTo(trace, place)?.forbidden_by ?? []);
 }
 
+/**
+ * What happens in a step by name. Effects lose their arguments: of several instances that are alike there is one effect,
+ * so they say too much.
+ */
+export function namesIn({ kind, names }: Pick<TraceStep, 'kind' | 'names'>): string {
+	return names.map((name) => (kind === 'tick' ? name.replaceAll(/\([^)]*\)/g, '') : name)).join(', ');
+}
+
 /** The variables that a step of the run changes. */
 export function moving(trace: Trace): ReadonlySet<string> {
 	return new Set(trace.steps.flatMap((step) => Object.keys(step.changes)));

@@ -96,7 +96,6 @@ export const check = {
 			activity: 'Activity of',
 			transition: 'Step'
 		} as Readonly<Record<string, string>>,
-		by: 'by',
 		finished: 'Finished:',
 		nothing: 'Nothing changes.',
 		changes: (n: number): string => `${count(n, 'variable changes', 'variables change')}.`,

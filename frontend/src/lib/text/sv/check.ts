@@ -95,7 +95,6 @@ export const check: Text['check'] = {
 			activity: 'Aktivitet hos',
 			transition: 'Steg'
 		},
-		by: 'genom',
 		finished: 'Klart:',
 		nothing: 'Inget ändras.',
 		changes: (n) => `${count(n, 'variabel ändras', 'variabler ändras')}.`,
