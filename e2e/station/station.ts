@@ -27,6 +27,7 @@ export interface Person {
 /** Who has signed in on the pages of tests that are about something else. */
 export const EVA: Person = { name: 'Eva', role: 'operator', password: 'seven green apples' };
 export const ADAM: Person = { name: 'Adam', role: 'operator', password: 'three grey herons' };
+export const ERIK: Person = { name: 'Erik', role: 'engineer', password: 'four copper kettles' };
 export const VERA: Person = { name: 'Vera', role: 'viewer', password: 'nine quiet harbours' };
 export const ADA: Person = { name: 'Ada', role: 'administrator', password: 'two wooden bridges' };
 

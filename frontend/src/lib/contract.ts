@@ -94,6 +94,21 @@ export type WhatIf = Schemas['WhatIfView'];
 export type WhatIfBody = Schemas['WhatIfBody'];
 export type Checkpoint = Schemas['Checkpoint'];
 
+export type FilesView = Schemas['FilesView'];
+export type FileMark = Schemas['FileMark'];
+export type ModelCheck = Schemas['CheckView'];
+export type Finding = Schemas['FindingDocument'];
+export type Workshop = Schemas['WorkshopView'];
+export type WorkshopMessage = Schemas['WorkshopStreamMessage'];
+export type TraceStep = Schemas['StepDocument'];
+export type Revision = Schemas['RevisionView'];
+export type Revisions = Schemas['RevisionsView'];
+export type Comparison = Schemas['ComparisonView'];
+export type PartDifference = Schemas['PartDifference'];
+export type BehaviourDifference = Schemas['BehaviourDifference'];
+export type PlanDifference = Schemas['PlanDifference'];
+export type Transfer = Schemas['TransferView'];
+
 /** Written as a record, so that the compiler misses the name of a map that is not here. */
 const MERGED: Record<keyof Schemas['StationRemoval'], true> = {
 	resources: true,

@@ -66,14 +66,21 @@ class Meant:
 def text_differences(old: Files, new: Files) -> dict[str, str]:
     """The differences of the files as `diff -u` shows them, by path."""
     return {
-        path: "".join(
-            difflib.unified_diff(
-                old.get(path, "").splitlines(True), new.get(path, "").splitlines(True), f"a/{path}", f"b/{path}"
-            )
-        )
+        path: _unified(path, old.get(path, ""), new.get(path, ""))
         for path in sorted(old.keys() | new.keys())
         if old.get(path) != new.get(path)
     }
+
+
+def _unified(path: str, old: str, new: str) -> str:
+    lines = difflib.unified_diff(_lines(old), _lines(new), f"a/{path}", f"b/{path}")
+    return "".join(line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines)
+
+
+def _lines(text: str) -> list[str]:
+    """The lines as YAML and `diff` have them: nothing but a new line ends one."""
+    *ended, last = text.split("\n")
+    return [*(f"{line}\n" for line in ended), *([last] if last else [])]
 
 
 def differences(old: Meant, new: Meant) -> list[PartDifference]:

@@ -32,7 +32,11 @@ export const GROUPS: readonly [Group, ...Group[]] = [
 	},
 	{
 		title: 'engineering',
-		pages: [{ address: '/what-if', title: 'whatIf', role: 'engineer' }]
+		pages: [
+			{ address: '/check', title: 'check', role: 'viewer' },
+			{ address: '/what-if', title: 'whatIf', role: 'engineer' },
+			{ address: '/deploy', title: 'deploy', role: 'viewer' }
+		]
 	}
 ];
 

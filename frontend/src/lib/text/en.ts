@@ -2,6 +2,8 @@
 import { front } from './en-front.ts';
 import { account } from './en/account.ts';
 import { alarms } from './en/alarms.ts';
+import { check } from './en/check.ts';
+import { deploy } from './en/deploy.ts';
 import { history } from './en/history.ts';
 import { operate } from './en/operate.ts';
 import { restart } from './en/restart.ts';
@@ -9,4 +11,4 @@ import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, account, alarms, history, operate, restart, ros, state, whatIf };
+export const en = { ...front, account, alarms, check, deploy, history, operate, restart, ros, state, whatIf };

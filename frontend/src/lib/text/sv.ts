@@ -2,6 +2,8 @@
 import { front } from './sv-front.ts';
 import { account } from './sv/account.ts';
 import { alarms } from './sv/alarms.ts';
+import { check } from './sv/check.ts';
+import { deploy } from './sv/deploy.ts';
 import { history } from './sv/history.ts';
 import { operate } from './sv/operate.ts';
 import { restart } from './sv/restart.ts';
@@ -10,4 +12,4 @@ import { state } from './sv/state.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, account, alarms, history, operate, restart, ros, state, whatIf };
+export const sv: Text = { ...front, account, alarms, check, deploy, history, operate, restart, ros, state, whatIf };

@@ -7,6 +7,8 @@ export const pages = {
 	history: 'History',
 	ros: 'ROS',
 	whatIf: 'What if',
+	check: 'Check',
+	deploy: 'Deploy',
 	watch: 'Watch',
 	account: 'Account',
 	journal: 'Journal',

@@ -8,6 +8,8 @@ export const pages: Text['pages'] = {
 	history: 'Historik',
 	ros: 'ROS',
 	whatIf: 'Tänk om',
+	check: 'Granskning',
+	deploy: 'Driftsättning',
 	watch: 'Klocka',
 	account: 'Konto',
 	journal: 'Journal',

@@ -1,0 +1,105 @@
+import type { Locator, Page } from '@playwright/test';
+import { examine } from '../station/barriers.ts';
+import { copiedModel, Drafting, type Replacement } from '../station/drafting.ts';
+import { ERIK, VERA } from '../station/station.ts';
+import { expect, test as base } from '../station/test.ts';
+
+const FORBIDS = (what: string): Replacement => [
+	'specifications.yaml',
+	'# Moving down',
+	`never_so:\n  title: Never so\n  forbidden: ${what}\n\n# Moving down`
+];
+/** From now on the tool may start by itself. */
+const BY_ITSELF: Replacement = [
+	'resources/nutrunner.yaml',
+	'when: run_tool_forward and not set_tool_idle and not tool_is_running_forward',
+	'when: not tool_is_running_forward'
+];
+
+const test = base.extend({
+	station: async ({ bench }, use) => {
+		const logs = new URL('../artefacts/logs/check', import.meta.url).pathname;
+		await use(
+			await bench.kept('check', { byItself: false, devices: false, people: [ERIK, VERA], logs, model: copiedModel() })
+		);
+	}
+});
+
+const verdict = (page: Page, is: string): Promise<void> =>
+	expect(page.getByTestId('check')).toHaveAttribute('data-verdict', is, { timeout: 40_000 });
+const player = (page: Page): Locator => page.getByTestId('trace');
+
+test('a specification that cannot be met is found, with a run that plays', async ({ station, browse, complaints }) => {
+	const drafting = await Drafting.of(station);
+	const page = await browse(ERIK, '/check');
+	await verdict(page, 'good');
+	await expect(page.getByTestId('check')).toContainText('It is checked, and can be deployed. 0 errors, 0 warnings.');
+	await expect(page.getByText('Nothing was found.')).toBeVisible();
+	const guards = page.getByRole('region', { name: 'What the supervisor adds' });
+	await expect(guards.locator('[data-guard]')).toHaveCount(6);
+	await expect(guards.locator('[data-guard="robot.move_to_position(bolt_pair_1)"]')).toContainText(
+		'no_standing_tool_on_placed_bolts(bolt_pair_1)'
+	);
+
+	await drafting.change('The tool starts by itself, and must not', BY_ITSELF, FORBIDS('nutrunner.tool_is_running_forward'));
+	await verdict(page, 'unmeetable');
+	const found = page.locator('[data-finding="specification-cannot-be-met"]');
+	await expect(found.getByRole('link')).toHaveAttribute('href', /^\/model\?file=specifications\.yaml&line=\d+$/);
+	await found.getByRole('button', { name: 'Play how it comes about, in 1 step' }).click();
+	await expect(player(page)).toContainText('The initial state');
+	await player(page).getByRole('button', { name: 'Next' }).click();
+	await expect(player(page).getByRole('status')).toContainText('This state is forbidden by never_so');
+	await expect(player(page).locator('[data-value="nutrunner.tool_is_running_forward"]')).toHaveText('true');
+	await expect(page.getByText('There is none.')).toBeVisible();
+	await drafting.undo();
+	await verdict(page, 'good');
+	expect(complaints).toEqual([]);
+});
+
+test('a longer run plays by keyboard, each step with what it changes', async ({ station, browse, complaints }) => {
+	const drafting = await Drafting.of(station);
+	await drafting.change('The first pair is never tightened', FORBIDS('bolts[bolt_pair_1] == tightened'));
+	await drafting.checked();
+	const page = await browse(VERA, '/check');
+	await verdict(page, 'good');
+	const found = page.locator('[data-finding="goal-lost"]').first();
+	await found.getByRole('button', { name: /^Play how it comes about, in \d+ steps$/ }).press('Enter');
+	const slider = player(page).getByRole('slider', { name: 'Step' });
+	await slider.focus();
+	await page.keyboard.press('ArrowRight');
+	await expect(player(page)).toHaveAttribute('data-place', '1');
+	await expect(player(page).getByRole('status')).toContainText('Start of');
+	await expect(player(page).locator('[data-changed="true"]')).not.toHaveCount(0);
+	await page.keyboard.press('End');
+	const last = Number(await slider.getAttribute('max'));
+	expect(last).toBeGreaterThan(3);
+	await expect(slider).toHaveAttribute('aria-valuetext', `Step ${last} of ${last}`);
+	await expect(player(page).locator('[data-value="bolts[bolt_pair_1]"]')).toHaveText('tightened');
+	await expect(player(page).getByRole('status')).toContainText('forbidden by never_so');
+	await expect(player(page).getByRole('button', { name: 'Next' })).toHaveAttribute('aria-disabled', 'true');
+	await page.keyboard.press('Home');
+	await expect(player(page)).toHaveAttribute('data-place', '0');
+	await player(page).getByRole('button', { name: /^2 / }).press('Enter');
+	await expect(player(page)).toHaveAttribute('data-place', '2');
+	await examine(page, 'check');
+
+	await page.setViewportSize({ width: 1440, height: 900 });
+	await page.getByLabel('Grouped by').selectOption('file');
+	await expect(page.locator('[data-group="operations.yaml"]')).toBeVisible();
+	await drafting.undo();
+	expect(complaints).toEqual([]);
+});
+
+test('what cannot be read is an error, and leads to its line', async ({ station, browse, complaints }) => {
+	const drafting = await Drafting.of(station);
+	const page = await browse(ERIK, '/check');
+	await drafting.change('A name that nobody knows', ['operations.yaml', 'goal: bolts[pair] == placed', 'goal: nuts[pair] == placed']);
+	await verdict(page, 'unusable');
+	const error = page.locator('[data-finding="unusable"]').first();
+	await expect(error).toContainText('nuts');
+	await expect(error.getByRole('link')).toHaveText(/^operations\.yaml:\d+:\d+$/);
+	await expect(error.getByRole('link')).toHaveAttribute('href', /^\/model\?file=operations\.yaml&line=\d+$/);
+	await drafting.undo();
+	await verdict(page, 'good');
+	expect(complaints).toEqual([]);
+});

@@ -1,0 +1,60 @@
+/** Findings as they are listed: in groups of one kind, or of one file. */
+import type { Finding } from '#lib/contract.ts';
+import { isError } from '#lib/workshop/verdict.ts';
+
+export type By = 'kind' | 'file';
+
+export interface Listed {
+	readonly finding: Finding;
+	/** It stays the same while more is found, so that what is open stays open. */
+	readonly key: string;
+}
+
+export interface Group {
+	/** The kind or file that they share. */
+	readonly of: string;
+	readonly listed: readonly Listed[];
+}
+
+/** The gravest kinds first; what is not named here comes after them. */
+const GRAVE = [
+	'unusable',
+	'specification-cannot-be-met',
+	'write-conflict',
+	'goal-lost',
+	'goal-out-of-reach',
+	'never-allowed',
+	'never-starts',
+	'never-active'
+];
+
+export function groupsOf(findings: readonly Finding[], by: By): Group[] {
+	const groups = new Map<string, Listed[]>();
+	const seen = new Map<string, number>();
+	for (const finding of findings) {
+		const name = [finding.kind, placeOf(finding), finding.message].join('|');
+		const nth = seen.get(name) ?? 0;
+		seen.set(name, nth + 1);
+		const of = finding[by];
+		groups.set(of, [...(groups.get(of) ?? []), { finding, key: `${name}|${nth}` }]);
+	}
+	const found = [...groups].map(([of, listed]) => ({ of, listed }));
+	return found.sort((one, other) => rank(one, by) - rank(other, by) || one.of.localeCompare(other.of));
+}
+
+/** Files with errors come first, and kinds by how grave they are. */
+function rank({ of, listed }: Group, by: By): number {
+	if (by === 'file') return listed.some(({ finding }) => isError(finding)) ? 0 : 1;
+	const place = GRAVE.indexOf(of);
+	return place < 0 ? GRAVE.length : place;
+}
+
+/** `resources/robot.yaml:12:3`. */
+export function placeOf({ file, line, column }: Pick<Finding, 'file' | 'line' | 'column'>): string {
+	return `${file}:${line}:${column}`;
+}
+
+/** Where the model is edited at that place. */
+export function addressOf({ file, line }: Pick<Finding, 'file' | 'line'>): string {
+	return `/model?${new URLSearchParams({ file, line: String(line) })}`;
+}

@@ -1,0 +1,59 @@
+/** What has to be so before the draft can be deployed; the server has the last word. */
+import type { FileMark, Revision, Revisions, StationView, Transfer, Workshop } from '#lib/contract.ts';
+import { verdictOf } from '#lib/workshop/verdict.ts';
+
+export type Need = 'saved' | 'other' | 'checked' | 'standing' | 'control' | 'fits';
+
+export interface Known {
+	readonly view: Pick<StationView, 'mode' | 'production' | 'errand' | 'analysis'>;
+	readonly workshop: Workshop;
+	/** The revisions as they are with this draft; null while they are not known. */
+	readonly revisions: Revisions | null;
+	/** Whether the station can take this draft; null while that is not known. */
+	readonly transfer: Transfer | null;
+	/** This session has control. */
+	readonly mine: boolean;
+}
+
+/** The files of the draft that are others than those of the model that runs, by path. */
+export function differing(files: Readonly<Record<string, FileMark>>): [path: string, mark: FileMark][] {
+	return Object.entries(files).filter(([, mark]) => mark.state !== 'same');
+}
+
+/** The revision that the draft is; null where it is not saved. */
+export function savedAs(revisions: Revisions | null): Revision | null {
+	return revisions?.revisions.find((each) => each.draft) ?? null;
+}
+
+/** Nothing of the model that is there can run, so nothing need be stopped, and nobody need be in control. */
+export function isUnrun({ production, analysis }: Pick<StationView, 'production' | 'analysis'>): boolean {
+	return production === 'preparing' && analysis?.supervised === false;
+}
+
+/** Nothing is started by itself. */
+export function isStanding(view: Known['view']): boolean {
+	if (isUnrun(view)) return true;
+	if (view.production === 'preparing' || view.errand !== null) return false;
+	return !(view.production === 'started' && view.mode === 'automatic');
+}
+
+/** All that is needed, in the order in which a person brings it about, and whether it is so. */
+export function needsOf({ view, workshop, revisions, transfer, mine }: Known): [need: Need, met: boolean][] {
+	const { check, number, files } = workshop;
+	return [
+		['other', differing(files).length > 0],
+		['saved', savedAs(revisions) !== null],
+		['checked', check.number === number && verdictOf(check) === 'good'],
+		['standing', isStanding(view)],
+		['control', mine || isUnrun(view)],
+		['fits', transfer?.legal === true]
+	];
+}
+
+export type Fate = 'new' | 'gone' | 'anew';
+
+/** What becomes of a variable that does not go on as it is. */
+export function fateOf({ before, after }: Transfer['changes'][number], known: boolean): Fate {
+	if (!known) return 'new';
+	return after === null && before !== null ? 'gone' : 'anew';
+}

@@ -1,0 +1,72 @@
+/**
+ * The draft of the model as the server tells it: its files, its last change, and what its check has found so far.
+ *
+ * It is told only when it changes, so it is asked for again from time to time: what is not answered is not live.
+ */
+import { createContext } from 'svelte';
+import type { ModelCheck, Workshop, WorkshopMessage } from '#lib/contract.ts';
+import type { Refusal } from '#lib/rest/refusal.ts';
+import { request } from '#lib/rest/request.ts';
+import { connect } from '#lib/stream/connection.ts';
+
+/** Milliseconds between two questions whether the server is still there, and after which it is taken for gone. */
+const ASK = 10_000;
+const SILENT = 25_000;
+
+export class WorkshopSeen {
+	/** What was told last, live or not; null before the first. */
+	view = $state.raw<Workshop | null>(null);
+	/** Whether the stream is heard. */
+	live = $state(false);
+	/** Why nothing is known of the draft. */
+	refusal = $state.raw<Refusal | null>(null);
+
+	/**
+	 * Connects to the stream at `url`; the result disconnects. `changed` is called when the draft is another one, and
+	 * `closed`, with the code, each time the connection is lost.
+	 */
+	attach(url: string, changed: () => void, closed: (code: number) => void): () => void {
+		let attached = true;
+		const connection = connect<WorkshopMessage>(
+			url,
+			{
+				opened: () => undefined,
+				heard: (message) => {
+					if (message.kind !== 'workshop') return;
+					const before = this.view?.number;
+					this.view = message.workshop;
+					this.live = true;
+					this.refusal = null;
+					if (before !== message.workshop.number) changed();
+				},
+				closed: (code) => {
+					this.live = false;
+					if (!attached) return;
+					closed(code);
+					if (this.view === null) void this.#ask();
+				}
+			},
+			SILENT
+		);
+		const timer = setInterval(() => connection.resync(), ASK);
+		return () => {
+			attached = false;
+			clearInterval(timer);
+			connection.close();
+		};
+	}
+
+	/** A handshake that is refused does not say why. */
+	async #ask(): Promise<void> {
+		const answer = await request<ModelCheck>('GET', '/api/v1/model/check');
+		if (this.view === null) this.refusal = answer.ok ? null : answer.refusal;
+	}
+}
+
+const [useWorkshop, setWorkshop] = createContext<WorkshopSeen>();
+export { useWorkshop };
+
+/** Makes it for all components below. */
+export function provideWorkshop(): WorkshopSeen {
+	return setWorkshop(new WorkshopSeen());
+}
