@@ -6,17 +6,17 @@ from sequence_planner.control.asks import Ask, AskAdvice, AskCorrection, AskDefi
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.correction_view import CorrectedView, CorrectionPreview
 from sequence_planner.control.definition_view import (
+    AbilityActionView,
     AbilityDefinitionView,
-    ActionView,
-    PartView,
-    PlaceView,
+    ConjunctView,
     PredicateView,
     ReactionView,
-    ReadView,
+    ReadValueView,
     SupervisedView,
     TimeoutsView,
     TrialView,
     TriedReactionView,
+    WrittenPlaceView,
 )
 from sequence_planner.control.offer_view import (
     AdviceView,
@@ -103,18 +103,18 @@ HOME = PredicateView(
     text="pose == home",
     holds=None,
     parts=[
-        PartView(
-            text="robot.pose == home", holds=None, reads=[ReadView(name="robot.pose", kind="measured", value=None)]
+        ConjunctView(
+            text="robot.pose == home", holds=None, reads=[ReadValueView(name="robot.pose", kind="measured", value=None)]
         )
     ],
-    place=PlaceView(file="resources/robot.yaml", line=12),
+    place=WrittenPlaceView(file="resources/robot.yaml", line=12),
 )
 DEFINITION = AbilityDefinitionView(
     name="robot.move",
     title="Move",
     resource="robot",
     arguments=[],
-    place=PlaceView(file="resources/robot.yaml", line=10),
+    place=WrittenPlaceView(file="resources/robot.yaml", line=10),
     restart=False,
     task=None,
     acknowledgement=None,
@@ -122,7 +122,7 @@ DEFINITION = AbilityDefinitionView(
     revision=7,
     enabled=HOME,
     start=HOME,
-    start_actions=[ActionView(text="robot.target := above", variable="robot.target", done=False)],
+    start_actions=[AbilityActionView(text="robot.target := above", variable="robot.target", done=False)],
     supervised=SupervisedView(guard=HOME, specifications=[SpecificationView(name="apart", title="Apart")], rest=False),
     allowed=True,
     executing=HOME,

@@ -1779,6 +1779,18 @@ export interface components {
             time: number;
         };
         /**
+         * AbilityActionView
+         * @description An action; `done` says whether its variable has by now the value that it would write.
+         */
+        AbilityActionView: {
+            /** Done */
+            done: boolean | null;
+            /** Text */
+            text: string;
+            /** Variable */
+            variable: string;
+        };
+        /**
          * AbilityDefinitionView
          * @description A ground ability as it is defined; `arguments` are the values of its parameters.
          *
@@ -1795,7 +1807,7 @@ export interface components {
             /** Arguments */
             arguments: string[];
             /** Cancel Actions */
-            cancel_actions: components["schemas"]["ActionView"][];
+            cancel_actions: components["schemas"]["AbilityActionView"][];
             /** Duration */
             duration: [
                 number,
@@ -1805,13 +1817,13 @@ export interface components {
             executing: components["schemas"]["PredicateView"];
             finish: components["schemas"]["PredicateView"] | null;
             /** Finish Actions */
-            finish_actions: components["schemas"]["ActionView"][];
+            finish_actions: components["schemas"]["AbilityActionView"][];
             finished: components["schemas"]["PredicateView"];
             /** Name */
             name: string;
             /** Obstacle */
             obstacle: string | null;
-            place: components["schemas"]["sequence_planner__control__definition_view__PlaceView"] | null;
+            place: components["schemas"]["WrittenPlaceView"] | null;
             /** Reactions */
             reactions: components["schemas"]["ReactionView"][];
             /** Real Devices */
@@ -1824,7 +1836,7 @@ export interface components {
             revision: number;
             start: components["schemas"]["PredicateView"];
             /** Start Actions */
-            start_actions: components["schemas"]["ActionView"][];
+            start_actions: components["schemas"]["AbilityActionView"][];
             supervised: components["schemas"]["SupervisedView"] | null;
             /** Task */
             task: string | null;
@@ -1874,18 +1886,6 @@ export interface components {
         AcknowledgementBody: {
             /** Revision */
             revision: number;
-        };
-        /**
-         * ActionView
-         * @description An action; `done` says whether its variable has by now the value that it would write.
-         */
-        ActionView: {
-            /** Done */
-            done: boolean | null;
-            /** Text */
-            text: string;
-            /** Variable */
-            variable: string;
         };
         /**
          * Actor
@@ -2310,6 +2310,18 @@ export interface components {
          * @description Nothing: to confirm is all that there is to say.
          */
         ConfirmationBody: Record<string, never>;
+        /**
+         * ConjunctView
+         * @description A part of a conjunction. Whether it `holds` is null as long as unknown values leave it open.
+         */
+        ConjunctView: {
+            /** Holds */
+            holds: boolean | null;
+            /** Reads */
+            reads: components["schemas"]["ReadValueView"][];
+            /** Text */
+            text: string;
+        };
         /**
          * Contract
          * @description What is wanted of a plan.
@@ -2996,8 +3008,8 @@ export interface components {
             bins: number[];
             /** End */
             end: number;
-            first: components["schemas"]["sequence_planner__history__view__PlaceView"];
-            last: components["schemas"]["sequence_planner__history__view__PlaceView"];
+            first: components["schemas"]["PlaceView"];
+            last: components["schemas"]["PlaceView"];
             /** Marks */
             marks: components["schemas"]["MarkView"][];
             /** Mode */
@@ -3406,18 +3418,6 @@ export interface components {
             state: components["schemas"]["Difference"];
         };
         /**
-         * PartView
-         * @description A part of a conjunction. Whether it `holds` is null as long as unknown values leave it open.
-         */
-        PartView: {
-            /** Holds */
-            holds: boolean | null;
-            /** Reads */
-            reads: components["schemas"]["ReadView"][];
-            /** Text */
-            text: string;
-        };
-        /**
          * PasswordBody
          * @description One's own password as it is, and as it is to be.
          */
@@ -3597,6 +3597,16 @@ export interface components {
             };
         };
         /**
+         * PlaceView
+         * @description A record's number, and when it was written.
+         */
+        PlaceView: {
+            /** Number */
+            number: number;
+            /** Time */
+            time: number;
+        };
+        /**
          * PlanAnswer
          * @description The live plan.
          */
@@ -3705,8 +3715,8 @@ export interface components {
             /** Holds */
             holds: boolean | null;
             /** Parts */
-            parts: components["schemas"]["PartView"][];
-            place: components["schemas"]["sequence_planner__control__definition_view__PlaceView"] | null;
+            parts: components["schemas"]["ConjunctView"][];
+            place: components["schemas"]["WrittenPlaceView"] | null;
             /** Text */
             text: string;
         };
@@ -3809,7 +3819,7 @@ export interface components {
          */
         ReactionView: {
             /** Actions */
-            actions: components["schemas"]["ActionView"][];
+            actions: components["schemas"]["AbilityActionView"][];
             /** Fault */
             fault: boolean;
             guard: components["schemas"]["PredicateView"];
@@ -3823,10 +3833,10 @@ export interface components {
             shortest: number;
         };
         /**
-         * ReadView
+         * ReadValueView
          * @description A variable, or a flag of an ability, that an expression reads; `value` is null where it is unknown.
          */
-        ReadView: {
+        ReadValueView: {
             /** Kind */
             kind: string;
             /** Name */
@@ -5055,10 +5065,10 @@ export interface components {
             was: string | null;
         };
         /**
-         * PlaceView
+         * WrittenPlaceView
          * @description Where something is written, in a file of the model; lines count from 1.
          */
-        sequence_planner__control__definition_view__PlaceView: {
+        WrittenPlaceView: {
             /** File */
             file: string;
             /** Line */
@@ -5075,16 +5085,6 @@ export interface components {
             now: boolean | number | string | null;
             /** Then */
             then: boolean | number | string;
-        };
-        /**
-         * PlaceView
-         * @description A record's number, and when it was written.
-         */
-        sequence_planner__history__view__PlaceView: {
-            /** Number */
-            number: number;
-            /** Time */
-            time: number;
         };
         /**
          * ChangeView
@@ -6247,7 +6247,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["sequence_planner__history__view__PlaceView"];
+                    "application/json": components["schemas"]["PlaceView"];
                 };
             };
             401: components["responses"]["Problem401"];

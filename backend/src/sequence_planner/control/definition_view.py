@@ -6,14 +6,14 @@ from sequence_planner.control.view_part import Value, View
 from sequence_planner.control.way_back_view import SpecificationView
 
 
-class PlaceView(View):
+class WrittenPlaceView(View):
     """Where something is written, in a file of the model; lines count from 1."""
 
     file: str
     line: int
 
 
-class ReadView(View):
+class ReadValueView(View):
     """A variable, or a flag of an ability, that an expression reads; `value` is null where it is unknown."""
 
     name: str
@@ -21,12 +21,12 @@ class ReadView(View):
     value: Value | None
 
 
-class PartView(View):
+class ConjunctView(View):
     """A part of a conjunction. Whether it `holds` is null as long as unknown values leave it open."""
 
     text: str
     holds: bool | None
-    reads: list[ReadView]
+    reads: list[ReadValueView]
 
 
 class PredicateView(View):
@@ -34,11 +34,11 @@ class PredicateView(View):
 
     text: str
     holds: bool | None
-    parts: list[PartView]
-    place: PlaceView | None
+    parts: list[ConjunctView]
+    place: WrittenPlaceView | None
 
 
-class ActionView(View):
+class AbilityActionView(View):
     """An action; `done` says whether its variable has by now the value that it would write."""
 
     text: str
@@ -64,7 +64,7 @@ class ReactionView(View):
     name: str
     kind: str  # starting, executing, finishing
     guard: PredicateView
-    actions: list[ActionView]
+    actions: list[AbilityActionView]
     shortest: float
     longest: float
     fault: bool
@@ -121,7 +121,7 @@ class AbilityDefinitionView(View):
     title: str
     resource: str
     arguments: list[str]
-    place: PlaceView | None
+    place: WrittenPlaceView | None
     restart: bool
     task: str | None  # what the person is asked to do who carries it out
     acknowledgement: str | None  # the variable by which that person says it is done
@@ -129,14 +129,14 @@ class AbilityDefinitionView(View):
     revision: int
     enabled: PredicateView
     start: PredicateView
-    start_actions: list[ActionView]
+    start_actions: list[AbilityActionView]
     supervised: SupervisedView | None
     allowed: bool | None
     executing: PredicateView
     finished: PredicateView
     finish: PredicateView | None
-    finish_actions: list[ActionView]
-    cancel_actions: list[ActionView]
+    finish_actions: list[AbilityActionView]
+    cancel_actions: list[AbilityActionView]
     timeouts: TimeoutsView
     reactions: list[ReactionView]
     obstacle: str | None

@@ -8,17 +8,17 @@ from sequence_planner.automaton.structure import Ability, Effect, target
 from sequence_planner.automaton.tick import start, writes
 from sequence_planner.control.command_base import CommandRefused
 from sequence_planner.control.definition_view import (
+    AbilityActionView,
     AbilityDefinitionView,
-    ActionView,
-    PartView,
-    PlaceView,
+    ConjunctView,
     PredicateView,
     ReactionView,
-    ReadView,
+    ReadValueView,
     SupervisedView,
     TimeoutsView,
     TrialView,
     TriedReactionView,
+    WrittenPlaceView,
 )
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.involving import Surroundings
@@ -84,13 +84,13 @@ class Definitions:
     def _written(self, ability: Ability, part: str, predicate: Expression) -> PredicateView:
         return self._predicate(predicate, self._place(f"{ability.name}.{part}"))
 
-    def _predicate(self, predicate: Expression, place: PlaceView | None) -> PredicateView:
+    def _predicate(self, predicate: Expression, place: WrittenPlaceView | None) -> PredicateView:
         state = self._execution.state
         return PredicateView(
             text=print_expression(predicate),
             holds=_truth(evaluate(predicate, state)),
             parts=[
-                PartView(
+                ConjunctView(
                     text=print_expression(part),
                     holds=_truth(evaluate(part, state)),
                     reads=[self._read(name) for name in dict.fromkeys(variables(part))],
@@ -100,19 +100,19 @@ class Definitions:
             place=place,
         )
 
-    def _read(self, name: str) -> ReadView:
+    def _read(self, name: str) -> ReadValueView:
         declared = self._execution.automaton.variables.get(name)
         kind = "flag" if declared is None else str(declared.kind)
-        return ReadView(name=name, kind=kind, value=self._execution.state[name])
+        return ReadValueView(name=name, kind=kind, value=self._execution.state[name])
 
-    def _actions(self, actions: Iterable[Assignment]) -> list[ActionView]:
+    def _actions(self, actions: Iterable[Assignment]) -> list[AbilityActionView]:
         return [self._action(action) for action in actions]
 
-    def _action(self, action: Assignment) -> ActionView:
+    def _action(self, action: Assignment) -> AbilityActionView:
         state, variable = self._execution.state, target(action)
         written = writes((action,), state)
         done = None if written is None or state[variable] is None else written.get(variable) == state[variable]
-        return ActionView(text=print_assignment(action), variable=variable, done=done)
+        return AbilityActionView(text=print_assignment(action), variable=variable, done=done)
 
     def _reaction(self, effect: Effect) -> ReactionView:
         return ReactionView(
@@ -143,9 +143,9 @@ class Definitions:
         after = start(execution.automaton, execution.state, ability)
         return None if after is None else execution.supervisor.allows(execution.state, after)
 
-    def _place(self, part: str) -> PlaceView | None:
+    def _place(self, part: str) -> WrittenPlaceView | None:
         place = self._execution.automaton.places.get(part)
-        return None if place is None else PlaceView(file=place.file, line=place.line)
+        return None if place is None else WrittenPlaceView(file=place.file, line=place.line)
 
 
 def _arguments(name: str) -> list[str]:
