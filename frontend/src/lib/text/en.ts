@@ -1,5 +1,6 @@
 /** All texts of the pages in English, room by room. Whatever is said there is written here, and in every other language. */
 import { front } from './en-front.ts';
+import { ability } from './en/ability.ts';
 import { account } from './en/account.ts';
 import { alarms } from './en/alarms.ts';
 import { history } from './en/history.ts';
@@ -8,4 +9,4 @@ import { restart } from './en/restart.ts';
 import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
 
-export const en = { ...front, account, alarms, history, operate, restart, ros, state };
+export const en = { ...front, ability, account, alarms, history, operate, restart, ros, state };

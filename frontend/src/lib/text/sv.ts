@@ -1,5 +1,6 @@
 /** All texts of the pages in Swedish. */
 import { front } from './sv-front.ts';
+import { ability } from './sv/ability.ts';
 import { account } from './sv/account.ts';
 import { alarms } from './sv/alarms.ts';
 import { history } from './sv/history.ts';
@@ -9,4 +10,4 @@ import { ros } from './sv/ros.ts';
 import { state } from './sv/state.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, account, alarms, history, operate, restart, ros, state };
+export const sv: Text = { ...front, ability, account, alarms, history, operate, restart, ros, state };

@@ -6,6 +6,7 @@ export const pages = {
 	alarms: 'Alarms',
 	history: 'History',
 	ros: 'ROS',
+	ability: 'Ability',
 	watch: 'Watch',
 	account: 'Account',
 	journal: 'Journal',

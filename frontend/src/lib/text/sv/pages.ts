@@ -7,6 +7,7 @@ export const pages: Text['pages'] = {
 	alarms: 'Larm',
 	history: 'Historik',
 	ros: 'ROS',
+	ability: 'Förmåga',
 	watch: 'Klocka',
 	account: 'Konto',
 	journal: 'Journal',
