@@ -303,6 +303,8 @@ def test_a_definition_says_what_of_it_holds(press: Press) -> None:
         ("at == up", True),
         ("not jammed", True),
     ]
+    assert (view.start.text, view.start.holds, view.start.parts) == ("true", True, [])
+    assert (view.finished.text, view.finished.holds, view.finished.parts) == ("false", False, [])
     assert [(each.text, each.done) for each in view.start_actions] == [("ram := down", False)]
     assert view.finish is not None
     assert [part.holds for part in view.finish.parts] == [False, False]

@@ -3709,7 +3709,7 @@ export interface components {
         };
         /**
          * PredicateView
-         * @description A predicate: it holds if all its parts do. `place` is null for what nobody has written.
+         * @description A predicate: it holds if all its parts do; a constant has none. `place` is null for what nobody has written.
          */
         PredicateView: {
             /** Holds */

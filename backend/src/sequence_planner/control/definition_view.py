@@ -30,7 +30,7 @@ class ConjunctView(View):
 
 
 class PredicateView(View):
-    """A predicate: it holds if all its parts do. `place` is null for what nobody has written."""
+    """A predicate: it holds if all its parts do; a constant has none. `place` is null for what nobody has written."""
 
     text: str
     holds: bool | None

@@ -28,7 +28,7 @@ from sequence_planner.control.trials import Trials
 from sequence_planner.control.way_back_view import SpecificationView
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.printing import print_assignment, print_expression
-from sequence_planner.expressions.syntax import Assignment, Expression, conjuncts, variables
+from sequence_planner.expressions.syntax import Assignment, Constant, Expression, conjuncts, variables
 
 
 class Definitions:
@@ -95,7 +95,7 @@ class Definitions:
                     holds=_truth(evaluate(part, state)),
                     reads=[self._read(name) for name in dict.fromkeys(variables(part))],
                 )
-                for part in conjuncts(predicate)
+                for part in (() if isinstance(predicate, Constant) else conjuncts(predicate))
             ],
             place=place,
         )

@@ -6,7 +6,6 @@ export const ability = {
 	list: 'Abilities',
 	choose: 'Choose an ability to see its automaton.',
 	unknown: (name: string): string => `The station has no ability ${name}.`,
-	open: (title: string): string => `Ability ${title}`,
 	reading: 'Reading the definition.',
 	now: 'now',
 	runs: 'runs',
@@ -42,9 +41,7 @@ export const ability = {
 		isFinished: 'is finished when',
 		neverFinished: 'Nothing says that it is finished: it can be enabled again.',
 		sets: 'then sets',
-		setsNothing: 'sets nothing',
-		back: 'and again',
-		noTask: 'Nothing'
+		setsNothing: 'sets nothing'
 	},
 	part: {
 		always: 'always',

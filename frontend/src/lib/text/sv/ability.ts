@@ -5,7 +5,6 @@ export const ability: Text['ability'] = {
 	list: 'Förmågor',
 	choose: 'Välj en förmåga för att se dess automat.',
 	unknown: (name) => `Stationen har ingen förmåga ${name}.`,
-	open: (title) => `Förmågan ${title}`,
 	reading: 'Läser definitionen.',
 	now: 'nu',
 	runs: 'pågår',
@@ -41,9 +40,7 @@ export const ability: Text['ability'] = {
 		isFinished: 'är färdig när',
 		neverFinished: 'Inget säger att den är färdig: den kan bli redo igen.',
 		sets: 'sätter då',
-		setsNothing: 'sätter ingenting',
-		back: 'och om igen',
-		noTask: 'Inget'
+		setsNothing: 'sätter ingenting'
 	},
 	part: {
 		always: 'alltid',
