@@ -1,5 +1,5 @@
 import type { Locator, Page } from '@playwright/test';
-import { examine } from '../station/barriers.ts';
+import { examine, findings } from '../station/barriers.ts';
 import { acknowledge, picture, restsOnPerson, takeControl, variable } from '../station/seen.ts';
 import { ADA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
@@ -109,9 +109,10 @@ test.describe('a station that works', () => {
 });
 
 test.describe('devices that are not known to be emulated', () => {
-	test.use({ shared: null, byItself: false, devices: true, people: 'everybody' });
+	test.use({ shared: null, byItself: false, people: 'everybody' });
 
-	test('a warning is confirmed first, and Stop ends what was tried', async ({ operate: operators, browse }) => {
+	test('a warning is confirmed first, and Stop ends what was tried', async ({ station, operate: operators, browse }) => {
+		station.emulate();
 		await operators.goto(new URL(address(moveTo('above_engine')), operators.url()).href);
 		await expect(region(operators, 'Try it')).toContainText('An engineer can try');
 		await expect(press(operators)).toBeHidden();
@@ -127,14 +128,20 @@ test.describe('devices that are not known to be emulated', () => {
 		const sure = dialog.getByRole('button', { name: 'Try it' });
 		await expect(sure).toHaveAttribute('aria-disabled', 'true');
 		await picture(operate, 'ability-real');
+		expect(await findings(operate)).toEqual([]);
 		await dialog.getByRole('checkbox').check();
 		await dialog.getByLabel('Reason').fill('to see it move');
 		await sure.click();
 		await expect(dialog).toBeHidden();
 		await expect(phase(operate)).toHaveAttribute('data-phase', 'executing');
+		await picture(operate, 'ability-real-executing');
 		await operate.getByRole('button', { name: 'Stop the trial' }).click();
 		await expect(step(operate, 'ended')).toHaveAttribute('data-mark', 'done');
 		await expect(operate.getByTestId('trial')).toContainText('to see it move');
 		await expect(operate.getByTestId('trial')).toContainText('stopped it');
+		await operate.setViewportSize({ width: 1440, height: 2200 });
+		await picture(operate, 'ability-whole');
+		await operate.setViewportSize({ width: 192, height: 1400 });
+		await picture(operate, 'ability-narrow');
 	});
 });
