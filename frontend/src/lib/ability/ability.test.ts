@@ -79,17 +79,17 @@ describe('the course of a trial', () => {
 		expect(belongs(sent, trial({ accepted: 400 }))).toBe(false);
 	});
 	test.each([
-		[{ due: 100, came: 101 }, false, null, 'came'],
-		[{ due: 100, came: null }, false, null, 'due'],
-		[{ due: 100, came: null }, false, 105, 'missing'],
-		[{ due: null, came: null }, false, 105, 'untouched'],
-		[{ due: 100, came: null }, true, 105, 'faultless'],
-		[{ due: 100, came: 101 }, true, 105, 'came']
-	] as const)('a reaction that was %j, fault %s, of a trial that ended at %s: %s', (tried, fault, ended, came) => {
-		expect(cameOf({ ...reaction, fault }, { name: reaction.name, ...tried }, trial({ ended }))).toBe(came);
+		[{ due: 100, came: 101 }, false, 200, 'came'],
+		[{ due: 100, came: null }, false, 105, 'due'],
+		[{ due: 100, came: null }, false, 105.1, 'missing'],
+		[{ due: null, came: null }, false, 200, 'untouched'],
+		[{ due: 100, came: null }, true, 200, 'faultless'],
+		[{ due: 100, came: 101 }, true, 200, 'came']
+	] as const)('a reaction of 2 s at most that was %j, fault %s, at %s: %s', (tried, fault, now, came) => {
+		expect(cameOf({ ...reaction, fault }, { name: reaction.name, ...tried }, now)).toBe(came);
 	});
 	test('of a reaction that nobody heard of nothing is said', () => {
-		expect(cameOf(reaction, undefined, trial())).toBe('untouched');
+		expect(cameOf(reaction, undefined, 200)).toBe('untouched');
 	});
 });
 

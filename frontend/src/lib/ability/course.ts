@@ -57,10 +57,20 @@ export function stepsOf(sent: number | null, trial: Trial | null): Step[] {
 
 export type Came = 'came' | 'due' | 'missing' | 'untouched' | 'faultless';
 
-/** How a reaction went: whatever could have come and did not is missing once the trial is over, unless it is a fault. */
-export function cameOf({ fault }: Pick<Reaction, 'fault'>, tried: TriedReaction | undefined, trial: Trial): Came {
+/** Seconds by which what a device does is told late at most: messages come now and then. */
+const TOLD_LATE = 1;
+
+/**
+ * How a reaction went, at the time `now`. One that could have come and has not within twice the longest time it should
+ * take is missing, whether the trial is over or not, unless it is a fault.
+ */
+export function cameOf(
+	{ fault, longest }: Pick<Reaction, 'fault' | 'longest'>,
+	tried: TriedReaction | undefined,
+	now: number
+): Came {
 	if (tried !== undefined && tried.came !== null) return 'came';
 	if (fault) return 'faultless';
 	if (tried === undefined || tried.due === null) return 'untouched';
-	return trial.ended === null ? 'due' : 'missing';
+	return now - tried.due > 2 * longest + TOLD_LATE ? 'missing' : 'due';
 }
