@@ -135,6 +135,11 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
         kind = choices.pick(tuple(ErrandKind))
         operation = choices.pick((None, *station.operations))
         taken = Errand(kind, "by hand", plan, goal, choices.chance(2), choices.chance(2), operation, "Eva", "so")
+        if kind is ErrandKind.TRIAL and station.abilities:
+            tried = choices.pick(tuple(station.abilities))
+            plan = Plan((PlanTick((), (tried,)), PlanTick((), ())), False, False)
+            taken = Errand(kind, "by hand", plan, goal, by="Eva", ability=tried)
+            execution.change_mode(Mode.PAUSED, "Eva", lived.moment)
         execution.take_errand(taken, lived.moment)
 
     return [

@@ -2,9 +2,22 @@
 
 from __future__ import annotations
 
-from sequence_planner.control.asks import Ask, AskAdvice, AskCorrection, AskGoal, AskReset, AskWhyNot
+from sequence_planner.control.asks import Ask, AskAdvice, AskCorrection, AskDefinition, AskGoal, AskReset, AskWhyNot
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.correction_view import CorrectedView, CorrectionPreview
+from sequence_planner.control.definition_view import (
+    AbilityActionView,
+    AbilityDefinitionView,
+    ConjunctView,
+    PredicateView,
+    ReactionView,
+    ReadValueView,
+    SupervisedView,
+    TimeoutsView,
+    TrialView,
+    TriedReactionView,
+    WrittenPlaceView,
+)
 from sequence_planner.control.offer_view import (
     AdviceView,
     ChangeView,
@@ -15,6 +28,7 @@ from sequence_planner.control.offer_view import (
 )
 from sequence_planner.control.view import BeliefView
 from sequence_planner.control.view_part import View
+from sequence_planner.control.way_back_view import SpecificationView
 from sequence_planner.control.why_not_view import ChangerView, ConditionView, InvolvedView, WhyNotView
 
 STEP = PreviewStepView(tick=1, ability="robot.move", title="Move", resource="robot", human=False, restart=True)
@@ -85,6 +99,59 @@ CORRECTION = CorrectionPreview(
 )
 
 
+HOME = PredicateView(
+    text="pose == home",
+    holds=None,
+    parts=[
+        ConjunctView(
+            text="robot.pose == home", holds=None, reads=[ReadValueView(name="robot.pose", kind="measured", value=None)]
+        )
+    ],
+    place=WrittenPlaceView(file="resources/robot.yaml", line=12),
+)
+DEFINITION = AbilityDefinitionView(
+    name="robot.move",
+    title="Move",
+    resource="robot",
+    arguments=[],
+    place=WrittenPlaceView(file="resources/robot.yaml", line=10),
+    restart=False,
+    task=None,
+    acknowledgement=None,
+    duration=(1.0, 2.0),
+    revision=7,
+    enabled=HOME,
+    start=HOME,
+    start_actions=[AbilityActionView(text="robot.target := above", variable="robot.target", done=False)],
+    supervised=SupervisedView(guard=HOME, specifications=[SpecificationView(name="apart", title="Apart")], rest=False),
+    allowed=True,
+    executing=HOME,
+    finished=HOME,
+    finish=None,
+    finish_actions=[],
+    cancel_actions=[],
+    timeouts=TimeoutsView(react=None, finish=3.0, retries=0, replan=False),
+    reactions=[
+        ReactionView(
+            name="robot.move.arrives", kind="executing", guard=HOME, actions=[], shortest=1.0, longest=2.0, fault=False
+        )
+    ],
+    obstacle="The mode is automatic: an ability is tried while the station is paused. Pause it first.",
+    real_devices=[],
+    trial=TrialView(
+        by="Eva",
+        reason="",
+        accepted=990.0,
+        started=990.1,
+        executing=None,
+        ended=993.0,
+        done=True,
+        why="",
+        reactions=[TriedReactionView(name="robot.move.arrives", due=990.2, came=992.0)],
+    ),
+)
+
+
 def example_answer(ask: Ask) -> View:
     """An answer of the kind that is asked for. Raises `CommandRefused` for what the station does not have."""
     match ask:
@@ -94,6 +161,10 @@ def example_answer(ask: Ask) -> View:
             return CORRECTION
         case AskGoal() | AskReset():
             return OFFER
+        case AskDefinition(ability=name):
+            if name != DEFINITION.name:
+                raise CommandRefused("unknown-ability", "There is no such ability", "Look at what it has.", 404)
+            return DEFINITION
         case AskWhyNot(of=of, name=name):
             if of != "goal" and name not in ("robot.move", "tighten"):
                 raise CommandRefused(f"unknown-{of}", f"There is no such {of}", "Look at what it has.", 404)

@@ -83,6 +83,8 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/pipelines/edges": ("viewer", "read"),
     "GET /api/v1/why-not/{of}/{name}": ("viewer", "read"),
     "POST /api/v1/why-not/goal": ("engineer", None),
+    "GET /api/v1/abilities/{name}/definition": ("viewer", "read"),
+    "POST /api/v1/trials": ("engineer", None),
     "GET /api/v1/advice": ("operator", None),
     "POST /api/v1/errands/goal-preview": ("engineer", None),
     "POST /api/v1/errands/reset-preview": ("operator", None),

@@ -24,6 +24,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/abilities/{name}/definition": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Definition
+         * @description Its guards, actions and expected reactions as they are written, what of them holds now, and its last trial.
+         */
+        get: operations["definition_api_v1_abilities__name__definition_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/advice": {
         parameters: {
             query?: never;
@@ -1657,6 +1677,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/trials": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Try Ability
+         * @description Start the ability alone, at once; `POST /errands/stop` ends that. It takes control, and the paused mode.
+         *
+         *     409 `not-startable` says what its guards or the supervisor lack; `real-devices`: they have not been confirmed.
+         */
+        post: operations["try_ability_api_v1_trials_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/watches": {
         parameters: {
             query?: never;
@@ -1876,6 +1918,73 @@ export interface components {
             tick: number;
             /** Time */
             time: number;
+        };
+        /**
+         * AbilityActionView
+         * @description An action; `done` says whether its variable has by now the value that it would write.
+         */
+        AbilityActionView: {
+            /** Done */
+            done: boolean | null;
+            /** Text */
+            text: string;
+            /** Variable */
+            variable: string;
+        };
+        /**
+         * AbilityDefinitionView
+         * @description A ground ability as it is defined; `arguments` are the values of its parameters.
+         *
+         *     All that holds does so in the state of `revision`. `allowed` says whether the supervisor would allow a start in it,
+         *     null where that cannot be told. `finish` is null for an ability that is done at its start. `supervised` is null
+         *     where nothing is added, or not known yet. `obstacle` says why it cannot be tried now; `real_devices` what speaks
+         *     against its devices being emulated, which has to be confirmed.
+         */
+        AbilityDefinitionView: {
+            /** Acknowledgement */
+            acknowledgement: string | null;
+            /** Allowed */
+            allowed: boolean | null;
+            /** Arguments */
+            arguments: string[];
+            /** Cancel Actions */
+            cancel_actions: components["schemas"]["AbilityActionView"][];
+            /** Duration */
+            duration: [
+                number,
+                number
+            ] | null;
+            enabled: components["schemas"]["PredicateView"];
+            executing: components["schemas"]["PredicateView"];
+            finish: components["schemas"]["PredicateView"] | null;
+            /** Finish Actions */
+            finish_actions: components["schemas"]["AbilityActionView"][];
+            finished: components["schemas"]["PredicateView"];
+            /** Name */
+            name: string;
+            /** Obstacle */
+            obstacle: string | null;
+            place: components["schemas"]["WrittenPlaceView"] | null;
+            /** Reactions */
+            reactions: components["schemas"]["ReactionView"][];
+            /** Real Devices */
+            real_devices: string[];
+            /** Resource */
+            resource: string;
+            /** Restart */
+            restart: boolean;
+            /** Revision */
+            revision: number;
+            start: components["schemas"]["PredicateView"];
+            /** Start Actions */
+            start_actions: components["schemas"]["AbilityActionView"][];
+            supervised: components["schemas"]["SupervisedView"] | null;
+            /** Task */
+            task: string | null;
+            timeouts: components["schemas"]["TimeoutsView"];
+            /** Title */
+            title: string;
+            trial: components["schemas"]["TrialView"] | null;
         };
         /**
          * AbilityView
@@ -2367,6 +2476,18 @@ export interface components {
          */
         ConfirmationBody: Record<string, never>;
         /**
+         * ConjunctView
+         * @description A part of a conjunction. Whether it `holds` is null as long as unknown values leave it open.
+         */
+        ConjunctView: {
+            /** Holds */
+            holds: boolean | null;
+            /** Reads */
+            reads: components["schemas"]["ReadValueView"][];
+            /** Text */
+            text: string;
+        };
+        /**
          * Contract
          * @description What is wanted of a plan.
          * @enum {string}
@@ -2718,8 +2839,12 @@ export interface components {
         /**
          * ErrandView
          * @description What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for.
+         *
+         *     `ability` is the one that is tried.
          */
         ErrandView: {
+            /** Ability */
+            ability: string | null;
             /** By */
             by: string;
             /** Ends */
@@ -3077,9 +3202,11 @@ export interface components {
         };
         /**
          * LastErrandView
-         * @description How the last errand has ended: `done`, or why not.
+         * @description How the last errand has ended: `done`, or why not. `ability` is the one that was tried.
          */
         LastErrandView: {
+            /** Ability */
+            ability: string | null;
             /** Done */
             done: boolean;
             /** Ended */
@@ -3841,6 +3968,19 @@ export interface components {
             why: components["schemas"]["DiagnosisView"] | null;
         };
         /**
+         * PredicateView
+         * @description A predicate: it holds if all its parts do; a constant has none. `place` is null for what nobody has written.
+         */
+        PredicateView: {
+            /** Holds */
+            holds: boolean | null;
+            /** Parts */
+            parts: components["schemas"]["ConjunctView"][];
+            place: components["schemas"]["WrittenPlaceView"] | null;
+            /** Text */
+            text: string;
+        };
+        /**
          * PreviewStepView
          * @description One start. `tick` counts from the tick in which the plan begins.
          */
@@ -3955,6 +4095,37 @@ export interface components {
             possible: (boolean | number | string)[];
             /** Variable */
             variable: string;
+        };
+        /**
+         * ReactionView
+         * @description An expected reaction of the device, in so many seconds at least and at most; nobody counts on a `fault`.
+         */
+        ReactionView: {
+            /** Actions */
+            actions: components["schemas"]["AbilityActionView"][];
+            /** Fault */
+            fault: boolean;
+            guard: components["schemas"]["PredicateView"];
+            /** Kind */
+            kind: string;
+            /** Longest */
+            longest: number;
+            /** Name */
+            name: string;
+            /** Shortest */
+            shortest: number;
+        };
+        /**
+         * ReadValueView
+         * @description A variable, or a flag of an ability, that an expression reads; `value` is null where it is unknown.
+         */
+        ReadValueView: {
+            /** Kind */
+            kind: string;
+            /** Name */
+            name: string;
+            /** Value */
+            value: boolean | number | string | null;
         };
         /**
          * ReasonBody
@@ -4692,6 +4863,20 @@ export interface components {
             variables: number;
         };
         /**
+         * SupervisedView
+         * @description What the supervisor adds to the start: `guard` is null where no short one was found.
+         *
+         *     `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could be
+         *     reached any more.
+         */
+        SupervisedView: {
+            guard: components["schemas"]["PredicateView"] | null;
+            /** Rest */
+            rest: boolean;
+            /** Specifications */
+            specifications: components["schemas"]["SpecificationView"][];
+        };
+        /**
          * SuppressBody
          * @description Which alarm is taken out of service, and why.
          */
@@ -4800,6 +4985,23 @@ export interface components {
             start: number;
         };
         /**
+         * TimeoutsView
+         * @description Seconds after the start in which it must have reacted, and have finished; null where there is no limit.
+         *
+         *     With `replan` it is then called off and planned anew, `retries` times with it, later without; otherwise there is an
+         *     alarm and no more.
+         */
+        TimeoutsView: {
+            /** Finish */
+            finish: number | null;
+            /** React */
+            react: number | null;
+            /** Replan */
+            replan: boolean;
+            /** Retries */
+            retries: number;
+        };
+        /**
          * TopicView
          * @description A ROS 2 topic of the station. Without a message for `deadline` seconds it is fresh no longer; null: never.
          */
@@ -4873,6 +5075,59 @@ export interface components {
             violated: string[];
             /** Ways */
             ways: string[][];
+        };
+        /**
+         * TrialBody
+         * @description `real_devices` confirms that devices may move which are not emulated ones.
+         */
+        TrialBody: {
+            /** Ability */
+            ability: string;
+            /**
+             * Real Devices
+             * @default false
+             */
+            real_devices: boolean;
+            /** Reason */
+            reason?: string | null;
+        };
+        /**
+         * TrialView
+         * @description The last trial of the ability: accepted, started, seen executing, and ended at these times.
+         *
+         *     It is `done` when the ability has finished; otherwise `why` says how it ended.
+         */
+        TrialView: {
+            /** Accepted */
+            accepted: number;
+            /** By */
+            by: string;
+            /** Done */
+            done: boolean;
+            /** Ended */
+            ended: number | null;
+            /** Executing */
+            executing: number | null;
+            /** Reactions */
+            reactions: components["schemas"]["TriedReactionView"][];
+            /** Reason */
+            reason: string;
+            /** Started */
+            started: number | null;
+            /** Why */
+            why: string;
+        };
+        /**
+         * TriedReactionView
+         * @description Since when a reaction could be expected in a trial, and when it came; null where it was not.
+         */
+        TriedReactionView: {
+            /** Came */
+            came: number | null;
+            /** Due */
+            due: number | null;
+            /** Name */
+            name: string;
         };
         /**
          * TypedEdgeView
@@ -5233,6 +5488,16 @@ export interface components {
             was: string | null;
         };
         /**
+         * WrittenPlaceView
+         * @description Where something is written, in a file of the model; lines count from 1.
+         */
+        WrittenPlaceView: {
+            /** File */
+            file: string;
+            /** Line */
+            line: number;
+        };
+        /**
          * ChangeView
          * @description A variable that gets another value; `now` is null where it is unknown.
          */
@@ -5423,6 +5688,43 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    definition_api_v1_abilities__name__definition_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                name: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AbilityDefinitionView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -8732,6 +9034,48 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    try_ability_api_v1_trials_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["TrialBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {

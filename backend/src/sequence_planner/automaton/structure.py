@@ -150,7 +150,8 @@ class Automaton(Immutable):
     A station's automaton goes by the tick. With `one_at_a_time` it is a plain automaton: it has neither flags nor
     finishes, its abilities are its controllable transitions and its effects the others, and a step is one of them.
     `initial` describes the initial states of one that has several; each declared initial value then is that of one of
-    them. `goals` are formulas over its runs. `places` says where a part was written, by its name.
+    them. `goals` are formulas over its runs. `places` says where a part was written, by its name; `reactions` which
+    effects are written with an ability.
     """
 
     name: str
@@ -169,6 +170,7 @@ class Automaton(Immutable):
     initial: Expression | None = None
     goals: tuple[Expression, ...] = ()
     places: Mapping[str, Place] = uncompared(default={})
+    reactions: Mapping[str, tuple[str, ...]] = uncompared(default={})
 
     def names(self, kind: Kind) -> tuple[str, ...]:
         """The variables of a kind, in order of declaration."""

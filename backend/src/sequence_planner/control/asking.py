@@ -11,11 +11,13 @@ from sequence_planner.control.asks import (
     Ask,
     AskAdvice,
     AskCorrection,
+    AskDefinition,
     AskGoal,
     AskReset,
     AskWhyNot,
 )
 from sequence_planner.control.corrections import Corrections
+from sequence_planner.control.definitions import Definitions
 from sequence_planner.control.offers import Offers
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.view_part import View
@@ -31,6 +33,7 @@ class Asking:
     corrections: Corrections
     offers: Offers
     why_not: WhyNot
+    definitions: Definitions
 
     async def answer(self, ask: Ask) -> View:
         """The document that answers it. Raises `CommandRefused`."""
@@ -49,3 +52,5 @@ class Asking:
                 return await self.offers.reset(operation)
             case AskWhyNot():
                 return await self.why_not.answer(ask)
+            case AskDefinition(ability=ability):
+                return self.definitions.of(ability)

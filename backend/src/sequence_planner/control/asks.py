@@ -10,6 +10,7 @@ from typing import Annotated, ClassVar, Generic, Literal, TypeVar
 from pydantic import BaseModel, ConfigDict, Field
 
 from sequence_planner.control.correction_view import CorrectionPreview
+from sequence_planner.control.definition_view import AbilityDefinitionView
 from sequence_planner.control.offer_view import AdviceView, OfferView
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.control.restart_commands import GivenValues
@@ -83,6 +84,13 @@ class AskWhyNot(AskBase[WhyNotView]):
     name: str = Field(max_length=LONGEST_PREDICATE)
 
 
+class AskDefinition(AskBase[AbilityDefinitionView]):
+    """How an ability is defined, and what of that holds now."""
+
+    kind: Literal["ask-definition"] = "ask-definition"
+    ability: str = Field(max_length=LONGEST_PREDICATE)
+
+
 class AskCorrection(AskBase[CorrectionPreview]):
     """What a correction of these estimates would bring about."""
 
@@ -92,6 +100,6 @@ class AskCorrection(AskBase[CorrectionPreview]):
 
 
 Ask = Annotated[
-    AboutPipelines | AboutFlows | AskCorrection | AskAdvice | AskGoal | AskReset | AskWhyNot,
+    AboutPipelines | AboutFlows | AskCorrection | AskAdvice | AskGoal | AskReset | AskWhyNot | AskDefinition,
     Field(discriminator="kind"),
 ]

@@ -36,10 +36,12 @@ from sequence_planner.control.restart_commands import (
     ForceVariable,
     ReleaseForce,
     TakeErrand,
+    TryAbility,
     UndoCorrection,
 )
 from sequence_planner.control.task_commands import TaskCommand
 from sequence_planner.control.tasks import TaskDesk
+from sequence_planner.control.trials import Trials
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ class CommandDesk:
     overrides: Overrides
     corrections: Corrections
     offers: Offers
+    trials: Trials
     forcing: Forcing
     alarms: Alarms
     start_production: Callable[[], None]
@@ -81,6 +84,8 @@ class CommandDesk:
                 self.corrections.carry_out(command, moment)
             case TakeErrand():
                 self.offers.take(command, moment)
+            case TryAbility():
+                self.trials.carry_out(command, moment)
             case ForceVariable() | ReleaseForce():
                 self.forcing.carry_out(command, moment)
             case AlarmCommand():

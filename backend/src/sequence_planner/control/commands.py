@@ -33,6 +33,7 @@ from sequence_planner.control.restart_commands import (
     ReleaseForce,
     StopErrand,
     TakeErrand,
+    TryAbility,
     UndoCorrection,
 )
 from sequence_planner.control.task_commands import AcknowledgeTask, ReportProblem, SolveProblem
@@ -105,6 +106,7 @@ Command = Annotated[
     | ConfirmEstimates
     | DecideOutputs
     | TakeErrand
+    | TryAbility
     | StopErrand
     | ForceVariable
     | ReleaseForce

@@ -40,13 +40,14 @@ class OutOfService(Immutable):
 
 
 class LastErrand(Immutable):
-    """How the last errand has ended; `by` names who ended it, None where the station did."""
+    """How the last errand has ended, or the trial of an `ability`; `by` names who ended it, None for the station."""
 
     title: str
     done: bool
     why: str
     ended: Moment
     by: str | None = None
+    ability: str | None = None
 
 
 Service = Mapping[tuple[ServiceKind, str], OutOfService]

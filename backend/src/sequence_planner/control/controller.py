@@ -29,6 +29,7 @@ from sequence_planner.control.belief import Beliefs
 from sequence_planner.control.command_desk import CommandDesk
 from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.corrections import Corrections
+from sequence_planner.control.definitions import Definitions
 from sequence_planner.control.devices import Devices
 from sequence_planner.control.doubting import Doubting
 from sequence_planner.control.execution import Execution
@@ -44,6 +45,7 @@ from sequence_planner.control.pipeline_graph import pipelines_view
 from sequence_planner.control.questions import Questions
 from sequence_planner.control.release import Release
 from sequence_planner.control.tasks import TaskDesk
+from sequence_planner.control.trials import Trials
 from sequence_planner.control.view import Production, StationIdentity, StationView
 from sequence_planner.control.view_part import View
 from sequence_planner.control.viewing import Doubts, Viewing
@@ -102,24 +104,27 @@ class Controller:
         self._adviser = Adviser(automaton, supervisor)
         self._corrections = Corrections(self.execution, self._adviser, self._beliefs, self._doubting)
         offers = Offers(self.execution, self._adviser, self._corrections, self._doubting.impossible)
+        around = Surroundings(feeds.heard_on, self._viewing.since, self._beliefs, lambda: self._viewing.guards)
+        trials = Trials(self.execution, around, self.devices.real_devices)
         self._orders = CommandDesk(
             modes=ModeDesk(self.execution, self._outside),
             tasks=self.desk,
             overrides=self.devices.overrides,
             corrections=self._corrections,
             offers=offers,
+            trials=trials,
             forcing=Forcing(self.execution),
             alarms=self._alarms,
             start_production=self._start_production,
             real_devices=self.devices.real_devices,
         )
-        around = Surroundings(feeds.heard_on, self._viewing.since, self._beliefs, lambda: self._viewing.guards)
         self._asking = Asking(
             pipelines=partial(pipelines_view, station.pipelines),
             flows=self.devices.flows,
             corrections=self._corrections,
             offers=offers,
             why_not=WhyNot(self.execution, around, self._adviser),
+            definitions=Definitions(self.execution, around, trials),
         )
         self._measured: dict[str, Value | None] = {}
         self._is_unjournalled = False

@@ -5,7 +5,7 @@ Pure: it has no clock, does no I/O and starts nothing but in its own state. `exe
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.state_set import StateSet, Supervisor
@@ -19,7 +19,7 @@ from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.live_plan import LivePlan, Present
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.pursued import Pursued
-from sequence_planner.control.timeouts import after_another_try, to_call_off
+from sequence_planner.control.timeouts import after_another_try, overdue, to_call_off
 from sequence_planner.control.view import Mode, Production
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.types import Value
@@ -98,7 +98,7 @@ class Course:
     def pursued(self) -> Pursued:
         """What plans are made for: the goals of active operations, or that of an errand."""
         if self.errand is not None:
-            return Pursued({ERRAND: self.errand.pursued})
+            return Pursued() if self.errand.ability else Pursued({ERRAND: self.errand.pursued})
         return self._operations
 
     @property
@@ -129,7 +129,7 @@ class Course:
         """Whether time alone makes a difference in the next tick: a force ends, or what runs is to be called off."""
         if any(force.until.monotonic <= now.monotonic for force in self.conduct.forces.values()):
             return True
-        return bool(self._overdue(now))
+        return bool(self._overdue(now)) or self._trial_overdue(now) is not None
 
     def simulated(self) -> CompiledRun:
         """A run that goes on from the present, for those who want to see what would become of it."""
@@ -214,15 +214,20 @@ class Course:
             return (), ()
         self.conduct, given_up = after_another_try(self.conduct, self.automaton, overdue, now)
         self._face()
-        _, writes = cancelled(self.automaton, self._run.state, overdue)
-        if self.safe and not self._is_safe_with(writes):
-            writes = {}  # it goes on as it is: nothing that is done here leads out of the safe states
-        self._run.sense(writes)
-        kept, self.conduct = self.conduct.keeping(self._run.values, self.automaton.outputs)
-        self._write(kept)
+        self._cancel(overdue)
         for name in overdue:
             self.plan.order.finish(name, now)
         return tuple(overdue), given_up
+
+    def _cancel(self, names: Iterable[str]) -> tuple[str, ...]:
+        """Take the cancel actions of these abilities; those that were called off by it."""
+        called_off, writes = cancelled(self.automaton, self._run.state, names)
+        if self.safe and not self._is_safe_with(writes):
+            called_off, writes = (), {}  # it goes on as it is: nothing that is done here leads out of the safe states
+        self._run.sense(writes)
+        kept, self.conduct = self.conduct.keeping(self._run.values, self.automaton.outputs)
+        self._write(kept)
+        return called_off
 
     def _overdue(self, now: Moment) -> Mapping[str, str]:
         """The abilities that are to be called off because they are overdue, each with what has not come in time."""
@@ -255,7 +260,7 @@ class Course:
     def _look_after_errand(self, now: Moment) -> None:
         """An errand whose goal holds is done; with it an operation that is reset begins anew."""
         errand = self.errand
-        if errand is None or not holds(errand.goal, self._run.values):
+        if errand is None or errand.ability is not None or not holds(errand.goal, self._run.values):
             return
         if errand.operation is not None:
             self.active -= {errand.operation}
@@ -273,8 +278,37 @@ class Course:
         """Notice that the plan is done with, or that the state has departed from it."""
         if self.conduct.executes_operations:
             self.plan.look(self._present, self.active)
+        elif self.errand is not None and self.errand.ability is not None:
+            self._look_after_trial(self.errand.ability, now)
         elif self.errand is not None and not self.blind and not self.plan.still_leads(self._present):
             self._end_errand("the station departed from it, so that it no longer led to its goal", now)
+
+    def _look_after_trial(self, ability: str, now: Moment) -> None:
+        """A trial starts in the first tick after it was taken, and is over when its run is, or when that is overdue."""
+        title, order = self.automaton.abilities[ability].title, self.plan.order
+        if order.ahead:
+            self._end_errand(f"{title} could not start any more", now)
+        elif all(step.ability != ability for step in order.running):
+            self._end_errand("", now, done=True)
+        elif (what := self._trial_overdue(now)) is not None:
+            self._break_off(ability, now)
+            self._end_errand(f"{title} {what}", now)
+
+    def _trial_overdue(self, now: Moment) -> str | None:
+        """What has not come in time of the ability that is tried; None while it is in time, or nothing is tried."""
+        tried = None if self.errand is None else self.errand.ability
+        late = (
+            overdue(step, self.automaton.abilities[step.ability], now.monotonic)
+            for step in self.plan.order.running
+            if step.ability == tried
+        )
+        return next((what for what in late if what is not None), None)
+
+    def _break_off(self, ability: str, now: Moment) -> None:
+        """Call off a run of an ability, where it says how that is done; otherwise the run goes on to its end."""
+        if any(step.ability == ability for step in self.plan.order.running):
+            for name in self._cancel((ability,)):
+                self.plan.order.finish(name, now)
 
     def _start(self, now: Moment) -> tuple[str, ...]:
         """Step 5: the first abilities of the order start, as long as they may."""
@@ -358,5 +392,5 @@ class Course:
     def _end_errand(self, why: str, now: Moment, *, by: str | None = None, done: bool = False) -> None:
         errand = self.errand
         if errand is not None:
-            self._change(errand=None, last_errand=LastErrand(errand.title, done, why, now, by))
+            self._change(errand=None, last_errand=LastErrand(errand.title, done, why, now, by, errand.ability))
             self.plan.drop("what was taken is done" if done else f"what was taken has ended: {why}")

@@ -1,7 +1,7 @@
 """An errand: a plan that a person has seen and taken, and that is carried out as it is and never made anew.
 
 A way back, the reset of an operation and a goal by hand are errands. They have their abilities from one plan; what they
-are for is a goal of its own beside the operations, which wait meanwhile.
+are for is a goal of its own beside the operations, which wait meanwhile. So is a trial: one start of one ability.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ class ErrandKind(StrEnum):
     WAY_BACK = "way-back"  # into the safe states, or to where operations can go on
     RESET = "reset"  # to the precondition of an operation
     GOAL = "goal"  # to what an engineer has asked for
+    TRIAL = "trial"  # one run of an ability alone, to see what it does
 
 
 NAME = "errand"  # of its goal, beside those of operations
@@ -29,6 +30,9 @@ class Errand(Immutable):
     """`goal` is what its `plan` reaches. With `unsupervised` starts outside the safe states go by written guards alone,
     as a person has confirmed; from inside none leads out all the same. `operation` is the one that is reset. With
     `restart` its plan may have restart abilities, and it is carried out in restart mode only.
+
+    With an `ability` it is a trial of that: it starts at once or not at all, and is done when that run has ended. Then
+    `goal` only says by what an end is known.
     """
 
     kind: ErrandKind
@@ -41,6 +45,7 @@ class Errand(Immutable):
     by: str = ""
     why: str = ""
     taken: Moment = Moment(0.0, 0.0)
+    ability: str | None = None
 
     @property
     def pursued(self) -> Goal:

@@ -160,13 +160,16 @@ class Execution(Course):
         """Carry out a plan that a person has taken."""
         self._end_errand("another was taken", now, by=errand.by)
         self._change(errand=errand)
-        self.plan.carry_out(errand.plan, ERRAND, errand.title)
+        self.plan.carry_out(errand.plan, frozenset() if errand.ability else frozenset({ERRAND}), errand.title)
         self._tell(ErrandTaken(errand, now), self.state)
 
     def stop_errand(self, by: str, now: Moment) -> None:
-        """Start no more of it."""
+        """Start no more of it. What is only tried is called off with it."""
+        before, errand = self.state, self.errand
+        if errand is not None and errand.ability is not None:
+            self._break_off(errand.ability, now)
         self._end_errand(f"{by} stopped it", now, by=by)
-        self._tell(ErrandStopped(by, now), self.state)
+        self._tell(ErrandStopped(by, now), before)
 
     # Its plan.
 

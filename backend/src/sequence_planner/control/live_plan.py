@@ -171,9 +171,9 @@ class LivePlan:
             self._asked_better = None  # it may be an answer about what was for a moment, such as a device being silent
         return True
 
-    def carry_out(self, plan: Plan, goal: str, reason: str) -> None:
-        """Follow a plan for one goal that a person has taken."""
-        self.order.adopt(plan, {goal}, {goal})
+    def carry_out(self, plan: Plan, goals: frozenset[str], reason: str) -> None:
+        """Follow a plan that a person has taken, as long as it leads to `goals`; one without is followed regardless."""
+        self.order.adopt(plan, goals, goals)
         self.status, self.reason = PlanStatus.FOLLOWED, reason
         self._rest()
 

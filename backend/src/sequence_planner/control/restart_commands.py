@@ -84,8 +84,22 @@ class TakeErrand(CommandBase):
         return f"offer {self.offer}"
 
 
+class TryAbility(CommandBase):
+    """One run of an ability alone. `real_devices` confirms that devices may move which are not emulated ones."""
+
+    kind: Literal["try-ability"] = "try-ability"
+    for_control: ClassVar[bool] = True
+    ability: str = Field(max_length=400)
+    real_devices: bool = False
+
+    @property
+    def subject(self) -> str:
+        """The ability."""
+        return self.ability
+
+
 class StopErrand(CommandBase):
-    """What is carried out is started no further."""
+    """What is carried out is started no further; what is only tried is called off."""
 
     kind: Literal["stop-errand"] = "stop-errand"
 

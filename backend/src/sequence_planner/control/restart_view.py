@@ -27,23 +27,28 @@ class ServiceView(View):
 
 
 class ErrandView(View):
-    """What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for."""
+    """What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for.
 
-    kind: str  # way-back, reset, goal
+    `ability` is the one that is tried.
+    """
+
+    kind: str  # way-back, reset, goal, trial
     title: str
     by: str
     why: str
     since: float
     ends: str  # when it is done, in the model's language
+    ability: str | None
 
 
 class LastErrandView(View):
-    """How the last errand has ended: `done`, or why not."""
+    """How the last errand has ended: `done`, or why not. `ability` is the one that was tried."""
 
     title: str
     done: bool
     why: str
     ended: float
+    ability: str | None
 
 
 class UndecidedOutputView(View):

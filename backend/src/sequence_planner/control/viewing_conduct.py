@@ -40,6 +40,7 @@ def errand_view(execution: Execution) -> ErrandView | None:
         why=errand.why,
         since=errand.taken.epoch,
         ends=print_expression(errand.goal),
+        ability=errand.ability,
     )
 
 
@@ -48,7 +49,7 @@ def last_errand_view(conduct: Conduct) -> LastErrandView | None:
     last = conduct.last_errand
     if last is None:
         return None
-    return LastErrandView(title=last.title, done=last.done, why=last.why, ended=last.ended.epoch)
+    return LastErrandView(title=last.title, done=last.done, why=last.why, ended=last.ended.epoch, ability=last.ability)
 
 
 def force_views(conduct: Conduct) -> dict[str, ForceView]:

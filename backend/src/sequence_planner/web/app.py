@@ -19,6 +19,7 @@ from starlette.concurrency import run_in_threadpool
 from sequence_planner.history.process import HistoryProcess
 from sequence_planner.storage.location import revisions_folder
 from sequence_planner.web import (
+    abilities,
     actions,
     alarms,
     attachments,
@@ -77,6 +78,7 @@ PARTS = (
     errands.advice_router,
     errands.router,
     why_not.router,
+    abilities.router,
     attachments.router,
     ros.router,
     pipelines.router,

@@ -63,6 +63,12 @@ export function previewCorrection(values: Readonly<Record<string, Value>>): Prom
 	return request('POST', '/api/v1/corrections/preview', { body: { values }, patience: PLANNING });
 }
 
+/** Has the ability run once, alone. 409: its guard, the supervisor or the mode does not allow it, or devices are real. */
+export function tryAbility(ability: string, realDevices: boolean, reason: string): Promise<Refusal | null> {
+	const body = { ability, real_devices: realDevices, reason: reason === '' ? null : reason };
+	return command('POST', '/api/v1/trials', { body });
+}
+
 /** Starts no further what is being carried out. */
 export function stopErrand(): Promise<Refusal | null> {
 	return command('POST', '/api/v1/errands/stop', { body: {} });

@@ -6,7 +6,7 @@ import { nextAct, type Next, type Standing } from './next.ts';
 
 const QUESTION = { variable: 'b', believed: 'placed', possible: ['empty'], because: [] };
 const UNDECIDED = { 'robot.go': { value: true, reacts: [], quiet: [false] } };
-const ERRAND = { kind: 'reset', title: '', by: 'Eva', why: '', since: 0, ends: '' } as const;
+const ERRAND = { kind: 'reset', title: '', by: 'Eva', why: '', since: 0, ends: '', ability: null } as const;
 const HANDS = offer({ kind: 'physical', online: ['robot'] });
 const TAKE = offer({ kind: 'restart', errand: preview('back') });
 const WAY_BACK = { violated: [], threatened: [], differences: [], awaits: [], ticks: null, steps: [], breaks: [], reason: '' };

@@ -1,5 +1,6 @@
 /** All texts of the pages in English, room by room. Whatever is said there is written here, and in every other language. */
 import { front } from './en-front.ts';
+import { ability } from './en/ability.ts';
 import { account } from './en/account.ts';
 import { alarms } from './en/alarms.ts';
 import { check } from './en/check.ts';
@@ -11,4 +12,4 @@ import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, account, alarms, check, deploy, history, operate, restart, ros, state, whatIf };
+export const en = { ...front, ability, account, alarms, check, deploy, history, operate, restart, ros, state, whatIf };

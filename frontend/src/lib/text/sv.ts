@@ -1,5 +1,6 @@
 /** All texts of the pages in Swedish. */
 import { front } from './sv-front.ts';
+import { ability } from './sv/ability.ts';
 import { account } from './sv/account.ts';
 import { alarms } from './sv/alarms.ts';
 import { check } from './sv/check.ts';
@@ -12,4 +13,4 @@ import { state } from './sv/state.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, account, alarms, check, deploy, history, operate, restart, ros, state, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, operate, restart, ros, state, whatIf };

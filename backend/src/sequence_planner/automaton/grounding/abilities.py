@@ -20,13 +20,16 @@ CANCEL = Writing("a cancel", _COMMANDS)
 EFFECT = Writing("an effect", (Kind.MEASURED,))
 
 
-def ground_abilities(meaning: Meaning) -> tuple[dict[str, Ability], tuple[Effect, ...]]:
-    """All abilities by name, and what is expected of the devices.
+def ground_abilities(
+    meaning: Meaning,
+) -> tuple[dict[str, Ability], tuple[Effect, ...], dict[str, tuple[str, ...]]]:
+    """All abilities by name, what is expected of the devices, and by ability the names of its part of that.
 
     A reaction that is said once for each value of a parameter it does not depend on is one reaction.
     """
     abilities: dict[str, Ability] = {}
     effects: dict[tuple[object, ...], Effect] = {}
+    reactions: dict[str, tuple[str, ...]] = {}
     for resource, name, document, binding in meaning.declarations.abilities():
         scope = meaning.scope(binding, f"{instance_name(f'{resource}.{name}', binding)}.", f"{resource}.")
         ability = _ability(meaning, resource, name, document, binding, scope)
@@ -35,9 +38,11 @@ def ground_abilities(meaning: Meaning) -> tuple[dict[str, Ability], tuple[Effect
         for effect_name, effect_document in document.effects.items():
             effect = _effect(meaning, f"{ability.name}.{effect_name}", resource, effect_document, scope)
             written = (resource, str(name), str(effect_name))
-            if effects.setdefault((written, effect.guard, effect.actions), effect) is effect:
+            shared = effects.setdefault((written, effect.guard, effect.actions), effect)
+            if shared is effect:
                 meaning.declarations.places[effect.name] = effect_name.place
-    return abilities, tuple(effects.values())
+            reactions[ability.name] = (*reactions.get(ability.name, ()), shared.name)
+    return abilities, tuple(effects.values()), reactions
 
 
 def _ability(

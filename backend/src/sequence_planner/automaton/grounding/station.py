@@ -19,7 +19,7 @@ def ground(station: Station) -> Automaton:
     findings = Findings()
     declarations = Declarations(station, findings)
     meaning = Meaning(declarations, findings)
-    abilities, effects = ground_abilities(meaning)
+    abilities, effects, reactions = ground_abilities(meaning)
     operations = ground_operations(meaning, station.operations)
     specifications = ground_specifications(meaning, station.specifications, station.resources)
     work_masters = ground_work_masters(meaning, station.work_masters, operations)
@@ -40,6 +40,7 @@ def ground(station: Station) -> Automaton:
         rest=rest,
         work_masters=work_masters,
         places=declarations.places,
+        reactions=reactions,
     )
     if findings.all:
         raise ModelError(findings.all)

@@ -221,6 +221,7 @@ export const history = {
 		'confirm-estimates': 'Confirmed estimates',
 		'decide-outputs': 'Decided on outputs',
 		'take-errand': 'Took a plan to be carried out',
+		'try-ability': 'Tried an ability',
 		'stop-errand': 'Stopped what was carried out',
 		'force-variable': 'Forced a variable',
 		'release-force': 'Released a forced variable',

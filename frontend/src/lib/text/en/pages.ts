@@ -9,6 +9,7 @@ export const pages = {
 	whatIf: 'What if',
 	check: 'Check',
 	deploy: 'Deploy',
+	ability: 'Ability',
 	watch: 'Watch',
 	account: 'Account',
 	journal: 'Journal',

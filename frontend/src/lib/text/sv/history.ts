@@ -220,6 +220,7 @@ export const history: Text['history'] = {
 		'confirm-estimates': 'Bekräftade skattade värden',
 		'decide-outputs': 'Bestämde utgångar',
 		'take-errand': 'Antog en plan att utföra',
+		'try-ability': 'Provade en förmåga',
 		'stop-errand': 'Stoppade det som utfördes',
 		'force-variable': 'Tvingade en variabel',
 		'release-force': 'Hävde tvånget på en variabel',

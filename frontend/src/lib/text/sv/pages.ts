@@ -10,6 +10,7 @@ export const pages: Text['pages'] = {
 	whatIf: 'Tänk om',
 	check: 'Granskning',
 	deploy: 'Driftsättning',
+	ability: 'Förmåga',
 	watch: 'Klocka',
 	account: 'Konto',
 	journal: 'Journal',
