@@ -91,6 +91,18 @@ export type Branch = Schemas['BranchView'];
 export type BranchBody = Schemas['BranchBody'];
 export type Checkpoint = Schemas['Checkpoint'];
 
+export type DraftView = Schemas['DraftView'];
+export type FilesView = Schemas['FilesView'];
+export type FileView = Schemas['FileView'];
+export type FileMark = Schemas['FileMark'];
+export type DraftChange = Schemas['ChangeView'];
+export type ModelCheck = Schemas['CheckView'];
+export type Finding = Schemas['FindingDocument'];
+export type Workshop = Schemas['WorkshopView'];
+export type WorkshopMessage = Schemas['WorkshopStreamMessage'];
+export type Edit = Schemas['ChangeBody']['edits'][number];
+export type Json = Schemas['JsonValue'];
+
 /** Written as a record, so that the compiler misses the name of a map that is not here. */
 const MERGED: Record<keyof Schemas['StationRemoval'], true> = {
 	resources: true,

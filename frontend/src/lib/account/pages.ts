@@ -19,6 +19,7 @@ export const MAIN: readonly Page[] = [
 	{ address: '/alarms', title: 'alarms', role: 'viewer' },
 	{ address: '/history', title: 'history', role: 'operator' },
 	{ address: '/ros', title: 'ros', role: 'viewer' },
+	{ address: '/model', title: 'model', role: 'viewer' },
 	{ address: WATCH, title: 'watch', role: 'viewer' }
 ];
 

@@ -34,8 +34,15 @@ export interface Connection {
 	close(): void;
 }
 
-/** Connects to `url`, where each message is a `Message` in JSON, and keeps connecting until `close`. */
-export function connect<Message = StreamMessage>(url: string, listener: Listener<Message>): Connection {
+/**
+ * Connects to `url`, where each message is a `Message` in JSON, and keeps connecting until `close`. After `silent`
+ * milliseconds in which nothing was heard it connects anew.
+ */
+export function connect<Message = StreamMessage>(
+	url: string,
+	listener: Listener<Message>,
+	silent = SILENT
+): Connection {
 	let socket: WebSocket | null = null;
 	let attempts = 0;
 	let retry: ReturnType<typeof setTimeout> | undefined;
@@ -44,7 +51,7 @@ export function connect<Message = StreamMessage>(url: string, listener: Listener
 
 	function heardSomething(): void {
 		clearTimeout(watch);
-		watch = setTimeout(() => drop(NO_WORD), SILENT);
+		watch = setTimeout(() => drop(NO_WORD), silent);
 	}
 
 	function drop(code: number): void {

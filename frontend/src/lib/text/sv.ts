@@ -3,10 +3,11 @@ import { front } from './sv-front.ts';
 import { account } from './sv/account.ts';
 import { alarms } from './sv/alarms.ts';
 import { history } from './sv/history.ts';
+import { model } from './sv/model.ts';
 import { operate } from './sv/operate.ts';
 import { restart } from './sv/restart.ts';
 import { ros } from './sv/ros.ts';
 import { state } from './sv/state.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, account, alarms, history, operate, restart, ros, state };
+export const sv: Text = { ...front, account, alarms, history, model, operate, restart, ros, state };
