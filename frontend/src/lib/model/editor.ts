@@ -8,7 +8,7 @@ import { autocompletion, closeCompletion, completionKeymap, type CompletionConte
 import { defaultKeymap, history, historyKeymap } from '@codemirror/commands';
 import { yaml } from '@codemirror/lang-yaml';
 import { HighlightStyle, StreamLanguage, syntaxHighlighting } from '@codemirror/language';
-import { forceLinting, linter, setDiagnostics, type Diagnostic } from '@codemirror/lint';
+import { linter, setDiagnostics, type Diagnostic } from '@codemirror/lint';
 import { Compartment, EditorState, Prec, RangeSetBuilder, StateEffect, StateField, type ChangeSpec, type Extension } from '@codemirror/state';
 import { Decoration, EditorView, hoverTooltip, keymap, lineNumbers, type DecorationSet } from '@codemirror/view';
 import { tags } from '@lezer/highlight';
@@ -169,6 +169,9 @@ export interface ExpressionOptions extends Common {
 	readonly onenter: () => void;
 }
 
+/** Something outside of the text has changed. */
+const again = StateEffect.define<null>();
+
 export interface ExpressionEditor extends Editor {
 	/** Looks again for what is wrong: something else of the model has changed. */
 	recheck(): void;
@@ -189,8 +192,8 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 		const found = await options.complete(context.state.doc.toString(), context.pos);
 		if (found === null || found.options.length === 0 || context.aborted) return null;
 		return {
-			from: found.from,
-			to: found.to,
+			from: found.start,
+			to: found.end,
 			options: found.options.map(({ label, insert, detail }) => ({ label, apply: insert, detail })),
 			validFor: /^\w*$/
 		};
@@ -218,14 +221,14 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 
 	const { view, editor, note, attributes } = edited(host, options, [
 		EXPRESSIONS,
-		Prec.high(keymap.of(completionKeymap)),
-		keymap.of([
+		Prec.highest(keymap.of(completionKeymap)),
+		Prec.high(keymap.of([
 			{ key: 'Shift-Alt-f', run: () => (void format(), true) },
 			{ key: 'Enter', run: () => (options.onenter(), true) },
 			{ key: 'Escape', run: closeCompletion }
-		]),
+		])),
 		autocompletion({ override: [complete], icons: false, defaultKeymap: false }),
-		linter(lint, { delay: 250 }),
+		linter(lint, { delay: 250, needsRefresh: ({ transactions }) => transactions.some(({ effects }) => effects.some((each) => each.is(again))) }),
 		EditorView.clipboardInputFilter.of((text) => text.replaceAll(/\s*\n\s*/g, ' ')),
 		hoverTooltip(async (_, at) => {
 			const found = await options.hover(view.state.doc.toString(), at);
@@ -248,7 +251,7 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 			};
 		})
 	]);
-	return { ...editor, format, recheck: () => forceLinting(view) };
+	return { ...editor, format, recheck: () => view.dispatch({ effects: again.of(null) }) };
 }
 
 /** Something that is found in a file, on a line (from 1). */

@@ -201,6 +201,22 @@ export const model = {
 	parts: (n: number): string => count(n, 'part', 'parts'),
 	open: (name: string): string => `Open ${name}`,
 	hover: {
+		kind: {
+			measured: 'Measured variable',
+			output: 'Output variable',
+			estimated: 'Estimated variable',
+			flag: 'Flag',
+			activity: 'Activity',
+			parameter: 'Parameter',
+			value: 'Value',
+			keyword: 'Word',
+			resource: 'Resource',
+			ability: 'Ability',
+			operation: 'Operation',
+			enumeration: 'Enumeration'
+		},
+		domain: (values: string, isCut: boolean): string => `One of ${values}${isCut ? ' …' : ''}`,
+		nowOf: (name: string, value: string): string => `${name} now: ${value}`,
 		type: (type: string): string => `Type: ${type}`,
 		initial: (value: string): string => `First value: ${value}`,
 		now: (value: string): string => `Now: ${value}`,

@@ -195,6 +195,22 @@ export const model: Text['model'] = {
 	parts: (n) => count(n, 'del', 'delar'),
 	open: (name) => `Öppna ${name}`,
 	hover: {
+		kind: {
+			measured: 'Mätt variabel',
+			output: 'Utgående variabel',
+			estimated: 'Skattad variabel',
+			flag: 'Flagga',
+			activity: 'Aktivitet',
+			parameter: 'Parameter',
+			value: 'Värde',
+			keyword: 'Ord',
+			resource: 'Resurs',
+			ability: 'Förmåga',
+			operation: 'Operation',
+			enumeration: 'Uppräkning'
+		},
+		domain: (values, isCut) => `Ett av ${values}${isCut ? ' …' : ''}`,
+		nowOf: (name, value) => `${name} nu: ${value}`,
 		type: (type) => `Typ: ${type}`,
 		initial: (value) => `Första värde: ${value}`,
 		now: (value) => `Nu: ${value}`,
