@@ -7,6 +7,7 @@
 import type {
 	DraftChange,
 	DraftView,
+	Edit,
 	FileMark,
 	FilesView,
 	FileView,
@@ -17,7 +18,6 @@ import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
 import { connect } from '#lib/stream/connection.ts';
 import { asJson, type Json } from './content.ts';
-import type { AnyEdit } from './uses.ts';
 import type { Writing } from './writing.svelte.ts';
 
 const ADDRESS = '/api/v1/model';
@@ -82,9 +82,15 @@ export class Draft {
 	}
 
 	/** Carries edits out; why not, or null. */
-	async change(title: string, edits: readonly AnyEdit[]): Promise<Refusal | null> {
+	async change(title: string, edits: readonly Edit[]): Promise<Refusal | null> {
 		if (edits.length === 0) return null;
 		return this.#act('changes', { title: title.slice(0, 300), edits });
+	}
+
+	/** Calls a part otherwise, wherever it is named. What is being typed counts as done before. */
+	async rename(part: string, name: string): Promise<Refusal | null> {
+		await this.flush();
+		return this.#act('rename', { part, name });
 	}
 
 	/** Takes back, or does again, what this person did last. What is being typed counts as done before. */
@@ -126,7 +132,7 @@ export class Draft {
 		return [...this.#writings.values()].some((each) => each.dirty);
 	}
 
-	async #act(what: 'changes' | 'undo' | 'redo', body: object): Promise<Refusal | null> {
+	async #act(what: 'changes' | 'rename' | 'undo' | 'redo', body: object): Promise<Refusal | null> {
 		const answer = await request<FilesView>('POST', `${ADDRESS}/${what}`, { body, patience: PATIENCE });
 		if (answer.ok) {
 			this.#take(answer.value);

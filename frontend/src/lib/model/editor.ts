@@ -130,6 +130,8 @@ function edited(host: HTMLElement, options: Common, more: Extension): { view: Ed
 				keymap.of([...defaultKeymap, ...historyKeymap]),
 				EditorView.lineWrapping,
 				lock.of(locked(options.locked)),
+				// What scrolls is reached by the keyboard through what is in it.
+				EditorView.contentAttributes.of({ tabindex: '0' }),
 				attributes.of(EditorView.contentAttributes.of({ 'aria-label': options.label })),
 				more,
 				EditorView.updateListener.of((update) => {

@@ -1,5 +1,5 @@
-/** Where a part of the model is used, and how it is renamed everywhere. */
-import type { Edit } from '#lib/contract.ts';
+/** Where a part of the model is named, and what could not be without it. */
+import type { Finding } from '#lib/contract.ts';
 import { request, type Answer } from '#lib/rest/request.ts';
 
 export interface Usage {
@@ -9,20 +9,25 @@ export interface Usage {
 	readonly column: number;
 	readonly length: number;
 	readonly written: string;
-	/** Where it is, in words. */
-	readonly where: string;
+	/** It is where the part is declared. */
+	readonly declares: boolean;
+	/** The part in which it is named. */
+	readonly used_by: string;
 }
 
-/** Calls a part otherwise, wherever it is named. */
-export interface Rename {
-	readonly kind: 'rename';
-	readonly part: string;
-	readonly name: string;
+export interface Usages {
+	readonly usages: readonly Usage[];
+	readonly dependants: readonly Usage[];
+	/** Texts that hold the name and make no sense. */
+	readonly unread: readonly Finding[];
+	/** Why the name is not the model's alone; null where it is. */
+	readonly bound: string | null;
 }
 
-export type AnyEdit = Edit | Rename;
+/** Milliseconds in which all files of a large model are looked through. */
+const PATIENCE = 20_000;
 
 /** Where the part is named. */
-export function usagesOf(part: string): Promise<Answer<{ usages: readonly Usage[] }>> {
-	return request('GET', `/api/v1/model/usages?part=${encodeURIComponent(part)}`);
+export function usagesOf(part: string): Promise<Answer<Usages>> {
+	return request('GET', `/api/v1/model/usages?${new URLSearchParams({ part })}`, { patience: PATIENCE });
 }

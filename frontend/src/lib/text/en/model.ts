@@ -254,6 +254,9 @@ export const model = {
 		do: 'Rename',
 		places: (n: number): string =>
 			n === 0 ? 'Nothing else names it.' : `It is named in ${count(n, 'place', 'places')}; all of them follow:`,
+		unread: (n: number): string => n === 1
+				? 'One text that makes no sense has the name, and stays as it is:'
+				: `${n} texts that make no sense have the name, and stay as they are:`,
 		asking: 'Being looked up: where it is named.'
 	},
 	remove: {
@@ -266,7 +269,6 @@ export const model = {
 	change: {
 		add: (kind: string, name: string): string => `${kind} ${name} added`,
 		duplicate: (name: string, of: string): string => `${name} made as a copy of ${of}`,
-		rename: (of: string, name: string): string => `${of} renamed ${name}`,
 		remove: (kind: string, name: string): string => `${kind} ${name} deleted`,
 		move: (name: string): string => `${name} moved`,
 		field: (name: string, field: string): string => `${name}: ${field}`,

@@ -248,6 +248,9 @@ export const model: Text['model'] = {
 		do: 'Byt namn',
 		places: (n) =>
 			n === 0 ? 'Inget annat nämner den.' : `Den nämns på ${count(n, 'ställe', 'ställen')}; alla följer med:`,
+		unread: (n) => n === 1
+				? 'En text som inte går att förstå har namnet, och lämnas som den är:'
+				: `${n} texter som inte går att förstå har namnet, och lämnas som de är:`,
 		asking: 'Slås upp: var den nämns.'
 	},
 	remove: {
@@ -259,7 +262,6 @@ export const model: Text['model'] = {
 	change: {
 		add: (kind, name) => `${kind} ${name} tillagd`,
 		duplicate: (name, of) => `${name} gjord som kopia av ${of}`,
-		rename: (of, name) => `${of} fick namnet ${name}`,
 		remove: (kind, name) => `${kind} ${name} borttagen`,
 		move: (name) => `${name} flyttad`,
 		field: (name, field) => `${name}: ${field}`,
