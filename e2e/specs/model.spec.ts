@@ -103,8 +103,12 @@ test('names are completed and explained, and a condition is formatted, by keyboa
 	await page.keyboard.press('Escape');
 	await page.keyboard.press('Shift+Alt+F');
 	await expect(enabled).toHaveText('previous_pose == home and not moving');
-	await enabled.getByText('previous_pose').hover({ position: { x: 20, y: 8 } });
-	await expect(page.locator('.cm-tooltip-hover')).toContainText('Measured variable');
+	// What the pointer rests on is explained; while the check comes back it may have to come again.
+	await expect(async () => {
+		await page.mouse.move(0, 0);
+		await enabled.getByText('previous_pose').hover({ position: { x: 20, y: 8 } });
+		await expect(page.locator('.cm-tooltip-hover')).toContainText('Measured variable', { timeout: 2000 });
+	}).toPass();
 	await expect(page.locator('.cm-tooltip-hover')).toContainText('bolt_pair_1');
 });
 
@@ -195,17 +199,17 @@ test('dialogs refuse bad names with why, and do what they say', async ({ browse 
 	const refuses = async (bad: readonly [string, string][], label: string, word: string): Promise<void> => {
 		for (const [name, why] of bad) {
 			await dialog(page).getByLabel(label).fill(name);
-			await expect(dialog(page).getByRole('alert').first()).toContainText(why);
+			await expect(dialog(page).getByRole('alert').filter({ hasText: why })).toBeVisible();
 			await dialog(page).getByRole('button', { name: word, exact: true }).click();
 			await expect(dialog(page)).toBeVisible();
 		}
 	};
 	const BAD: [string, string][] = [
-		['', 'Write a name'],
 		['2nd', 'begins with no digit'],
 		['two words', 'letters from A to Z'],
 		['and', 'word of the language'],
-		['move_to_previous', 'already']
+		['move_to_previous', 'already'],
+		['', 'Write a name']
 	];
 	await form(page).getByRole('button', { name: 'Add…' }).click();
 	await refuses(BAD, 'Name', 'Add');
@@ -232,7 +236,7 @@ test('a renamed variable is renamed wherever it is named; before it is deleted i
 	await form(page).getByRole('button', { name: 'Rename…' }).click();
 	await expect(dialog(page)).toContainText(/It is named in \d+ places/);
 	await dialog(page).getByLabel('New name').fill('previous_pose');
-	await expect(dialog(page).getByRole('alert').first()).toContainText('already');
+	await expect(dialog(page).getByRole('alert').filter({ hasText: 'already' })).toBeVisible();
 	await dialog(page).getByLabel('New name').fill('place');
 	await dialog(page).getByRole('button', { name: 'Rename', exact: true }).click();
 	await expect(form(page).getByRole('heading').first()).toContainText('place');

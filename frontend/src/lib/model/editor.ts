@@ -71,6 +71,18 @@ const EXPRESSIONS = StreamLanguage.define<null>({
 	}
 });
 
+/**
+ * What is typed over bold letters would be made bold by the browser, with a style that the Content-Security-Policy
+ * refuses: it is put there as plain text.
+ */
+function typedOver(event: InputEvent, view: EditorView): boolean {
+	const { state } = view;
+	if (event.inputType !== 'insertText' || event.isComposing || event.data === null) return false;
+	if (state.readOnly || state.selection.main.empty) return false;
+	view.dispatch(state.replaceSelection(event.data), { userEvent: 'input.type', scrollIntoView: true });
+	return true;
+}
+
 /** A shadow root in `host`, and a place in it for words that belong to the editor. */
 function rooted(host: HTMLElement): { root: ShadowRoot; note: HTMLElement } {
 	const root = host.shadowRoot ?? host.attachShadow({ mode: 'open' });
@@ -137,7 +149,7 @@ function edited(host: HTMLElement, options: Common, more: Extension): { view: Ed
 				EditorView.updateListener.of((update) => {
 					if (update.docChanged && !shows) options.onwrite(update.state.doc.toString());
 				}),
-				EditorView.domEventHandlers({ blur: () => options.onleave() })
+				EditorView.domEventHandlers({ blur: () => options.onleave(), beforeinput: typedOver })
 			]
 		})
 	});
