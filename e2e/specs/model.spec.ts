@@ -71,7 +71,7 @@ test('a variable and an ability with guard and action are added; what is wrong i
 
 	await expression(page, 'Enabled').fill('pose == home and not is_checked');
 	await expect(field(page, 'enabled').locator('.cm-lintRange-error')).toHaveCount(0);
-	await form(page).getByRole('button', { name: 'Add to Start: Actions' }).click();
+	await form(page).getByRole('button', { name: 'Add an entry: Start: Actions' }).click();
 	await expression(page, 'Start: Actions, 1').fill('is_checked := true');
 	await expect(file(page)).toContainText('is_checked := true');
 	await expect(problems(page).getByRole('status')).not.toContainText('error', { timeout: 60_000 });
@@ -200,7 +200,8 @@ test('dialogs refuse bad names with why, and do what they say', async ({ browse 
 		for (const [name, why] of bad) {
 			await dialog(page).getByLabel(label).fill(name);
 			await expect(dialog(page).getByRole('alert').filter({ hasText: why })).toBeVisible();
-			await dialog(page).getByRole('button', { name: word, exact: true }).click();
+			await expect(dialog(page).getByRole('button', { name: word, exact: true })).toHaveAttribute('aria-disabled', 'true');
+			await page.keyboard.press('Enter');
 			await expect(dialog(page)).toBeVisible();
 		}
 	};

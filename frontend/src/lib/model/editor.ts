@@ -193,7 +193,11 @@ export interface ExpressionEditor extends Editor {
 	format(): Promise<void>;
 }
 
+/** Milliseconds after which a text is looked at again where the server did not say what is wrong with it. */
+const ASK_AGAIN = 3000;
+
 export function expressionEditor(host: HTMLElement, options: ExpressionOptions): ExpressionEditor {
+	let gone = false;
 	async function format(): Promise<void> {
 		const text = view.state.doc.toString();
 		const form = text.trim() === '' || view.state.readOnly ? null : await options.format(text);
@@ -213,9 +217,13 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 		};
 	}
 
+	let later: ReturnType<typeof setTimeout> | undefined;
 	async function lint(): Promise<Diagnostic[]> {
+		clearTimeout(later);
 		const text = view.state.doc.toString();
 		const wrong = text.trim() === '' ? [] : await options.check(text);
+		if (gone) return [];
+		if (wrong === null) later = setTimeout(() => view.dispatch({ effects: again.of(null) }), ASK_AGAIN);
 		if (wrong === null || view.state.doc.toString() !== text) return [];
 		options.onwrong(wrong);
 		note.textContent = wrong.map(({ message }) => message).join('. ');
@@ -265,7 +273,16 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 			};
 		})
 	]);
-	return { ...editor, format, recheck: () => view.dispatch({ effects: again.of(null) }) };
+	return {
+		...editor,
+		format,
+		recheck: () => view.dispatch({ effects: again.of(null) }),
+		destroy() {
+			clearTimeout(later);
+			gone = true;
+			editor.destroy();
+		}
+	};
 }
 
 /** Something that is found in a file, on a line (from 1). */
@@ -291,6 +308,9 @@ export interface FileEditor extends Editor {
 	/** Puts the cursor on a line (from 1), in sight. */
 	goTo(line: number, column: number): void;
 }
+
+/** Pixels above the line that is scrolled to. */
+const MARGIN = 40;
 
 const choose = StateEffect.define<{ from: number; to: number } | null>();
 const chosen = StateField.define<DecorationSet>({
@@ -328,9 +348,14 @@ export function fileEditor(host: HTMLElement, options: FileOptions): FileEditor 
 	return {
 		...editor,
 		choose(lines, sight) {
-			const effects: StateEffect<unknown>[] = [choose.of(lines)];
-			if (lines && sight) effects.push(EditorView.scrollIntoView(lineAt(lines.from + 1).from, { y: 'start', yMargin: 40 }));
-			view.dispatch({ effects });
+			view.dispatch({ effects: choose.of(lines) });
+			if (!lines || !sight) return;
+			// Only the editor is scrolled: what is chosen in the tree must not move the page.
+			const { from } = lineAt(lines.from + 1);
+			view.requestMeasure({
+				read: () => view.lineBlockAt(from).top - MARGIN,
+				write: (top) => (view.scrollDOM.scrollTop = top)
+			});
 		},
 		underline(marks) {
 			const found = marks.map(({ line, column, message, isError }): Diagnostic => {
