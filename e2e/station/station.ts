@@ -29,6 +29,8 @@ export const EVA: Person = { name: 'Eva', role: 'operator', password: 'seven gre
 export const ADAM: Person = { name: 'Adam', role: 'operator', password: 'three grey herons' };
 export const ERIK: Person = { name: 'Erik', role: 'engineer', password: 'four copper kettles' };
 export const VERA: Person = { name: 'Vera', role: 'viewer', password: 'nine quiet harbours' };
+export const INA: Person = { name: 'Ina', role: 'engineer', password: 'eight amber lanterns' };
+export const IVO: Person = { name: 'Ivo', role: 'engineer', password: 'four wide rivers' };
 export const ADA: Person = { name: 'Ada', role: 'administrator', password: 'two wooden bridges' };
 
 /** A connection is not kept: whoever waits for a process does not see that the server has closed it meanwhile. */

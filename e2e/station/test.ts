@@ -1,10 +1,12 @@
 /** The test function of all specs: with a station, an operator's page and a watch. */
 import { test as base, expect, type BrowserContext, type BrowserContextOptions, type Page } from '@playwright/test';
+import { cpSync, mkdtempSync, rmSync } from 'node:fs';
+import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { Bench } from './bench.ts';
-import { ADA, ADAM, EVA, Station, VERA, type Person } from './station.ts';
+import { ADA, ADAM, EVA, INA, IVO, Station, VERA, type Person } from './station.ts';
 
-const PEOPLE = { nobody: [], Eva: [EVA], everybody: [ADA, EVA, ADAM, VERA] } as const;
+const PEOPLE = { nobody: [], Eva: [EVA], everybody: [ADA, EVA, ADAM, VERA], engineers: [INA, IVO, VERA] } as const;
 
 interface Given {
 	/** Name of the station to share with the other tests of that name; null for one of the test's own. */
@@ -15,6 +17,8 @@ interface Given {
 	devices: boolean;
 	/** Who can sign in at a station that waits for the test. */
 	people: keyof typeof PEOPLE;
+	/** The model of which a station of the test's own has a copy for itself; null where it only reads the usual one. */
+	copied: string | null;
 	station: Station;
 	/** Opens a page in a browser of its own, signed in as somebody or as nobody. */
 	browse: (person: Person | null, address: string, screen?: Screen) => Promise<Page>;
@@ -55,6 +59,7 @@ export const test = base.extend<Given, { bench: Bench }>({
 	byItself: [true, { option: true }],
 	devices: [false, { option: true }],
 	people: ['Eva', { option: true }],
+	copied: [null, { option: true }],
 	complaints: async ({}, use) => {
 		await use([]);
 	},
@@ -67,16 +72,23 @@ export const test = base.extend<Given, { bench: Bench }>({
 		{ scope: 'worker' }
 	],
 	station: [
-		async ({ bench, shared, byItself, devices, people }, use, info) => {
+		async ({ bench, shared, byItself, devices, people, copied }, use, info) => {
 			const project = info.project.name;
 			const given = { byItself, devices, people: PEOPLE[people] };
 			if (shared !== null) {
 				await use(await bench.kept(shared, { ...given, logs: logsOf(`${shared} ${project}`) }));
 				return;
 			}
-			const station = await Station.start({ ...given, logs: logsOf(`${info.titlePath.join(' ')} ${project}`) });
+			const logs = logsOf(`${info.titlePath.join(' ')} ${project}`);
+			const folder = copied === null ? null : mkdtempSync(join(tmpdir(), 'model-'));
+			// It keeps its name: the station is called after it.
+			const model = folder === null || copied === null ? null : join(folder, copied);
+			if (model !== null && copied !== null)
+				cpSync(join(import.meta.dirname, '../../models', copied), model, { recursive: true });
+			const station = await Station.start({ ...given, logs, ...(model !== null && { model }) });
 			await use(station);
 			await station.stop();
+			if (folder !== null) rmSync(folder, { recursive: true });
 		},
 		{ timeout: 90_000 }
 	],

@@ -104,6 +104,9 @@ export type Checkpoint = Schemas['Checkpoint'];
 
 export type FilesView = Schemas['FilesView'];
 export type FileMark = Schemas['FileMark'];
+export type DraftView = Schemas['DraftView'];
+export type FileView = Schemas['FileView'];
+export type DraftChange = Schemas['ChangeView'];
 export type ModelCheck = Schemas['CheckView'];
 export type Finding = Schemas['FindingDocument'];
 export type Workshop = Schemas['WorkshopView'];
@@ -116,6 +119,8 @@ export type PartDifference = Schemas['PartDifference'];
 export type BehaviourDifference = Schemas['BehaviourDifference'];
 export type PlanDifference = Schemas['PlanDifference'];
 export type Transfer = Schemas['TransferView'];
+export type Edit = Schemas['ChangeBody']['edits'][number];
+export type Json = Schemas['JsonValue'];
 
 /** Written as a record, so that the compiler misses the name of a map that is not here. */
 const MERGED: Record<keyof Schemas['StationRemoval'], true> = {

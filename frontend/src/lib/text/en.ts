@@ -6,10 +6,11 @@ import { alarms } from './en/alarms.ts';
 import { check } from './en/check.ts';
 import { deploy } from './en/deploy.ts';
 import { history } from './en/history.ts';
+import { model } from './en/model.ts';
 import { operate } from './en/operate.ts';
 import { restart } from './en/restart.ts';
 import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, check, deploy, history, operate, restart, ros, state, whatIf };
+export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, restart, ros, state, whatIf };

@@ -6,6 +6,7 @@ import { alarms } from './sv/alarms.ts';
 import { check } from './sv/check.ts';
 import { deploy } from './sv/deploy.ts';
 import { history } from './sv/history.ts';
+import { model } from './sv/model.ts';
 import { operate } from './sv/operate.ts';
 import { restart } from './sv/restart.ts';
 import { ros } from './sv/ros.ts';
@@ -13,4 +14,4 @@ import { state } from './sv/state.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, operate, restart, ros, state, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, restart, ros, state, whatIf };

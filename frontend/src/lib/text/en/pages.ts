@@ -5,6 +5,7 @@ export const pages = {
 	state: 'State',
 	alarms: 'Alarms',
 	history: 'History',
+	model: 'Model',
 	ros: 'ROS',
 	whatIf: 'What if',
 	check: 'Check',

@@ -6,6 +6,7 @@ export const pages: Text['pages'] = {
 	state: 'Tillstånd',
 	alarms: 'Larm',
 	history: 'Historik',
+	model: 'Modell',
 	ros: 'ROS',
 	whatIf: 'Tänk om',
 	check: 'Granskning',

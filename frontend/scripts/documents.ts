@@ -1,0 +1,109 @@
+/**
+ * Writes `src/lib/model/documents.ts`, what the documents of a model may hold, from the JSON Schemas in `docs/schemas`.
+ *
+ * With `--check` nothing is written: it fails where the file is not what it would write.
+ */
+import { readFileSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
+import type { FieldShape, PartShape } from '../src/lib/model/shape.ts';
+
+interface Schema {
+	readonly $ref?: string;
+	readonly $defs?: Readonly<Record<string, Schema>>;
+	readonly type?: string;
+	readonly description?: string;
+	readonly properties?: Readonly<Record<string, Schema>>;
+	readonly required?: readonly string[];
+	readonly additionalProperties?: Schema | boolean;
+	readonly anyOf?: readonly Schema[];
+	readonly items?: Schema;
+	readonly enum?: readonly (string | number)[];
+	readonly default?: unknown;
+	readonly minimum?: number;
+	readonly exclusiveMinimum?: number;
+	readonly maximum?: number;
+}
+
+const FOLDER = join(import.meta.dirname, '../../docs/schemas');
+const TARGET = join(import.meta.dirname, '../src/lib/model/documents.ts');
+const FILES = ['station', 'resource', 'operations', 'specifications', 'work_masters'];
+const HEAD = `/** What the documents of a model may hold. Made by \`scripts/documents.ts\` from \`docs/schemas\`: do not edit. */
+import type { PartShape } from './shape.ts';
+
+export const PARTS: Readonly<Record<string, PartShape>> = `;
+
+/** \`AbilityDocument\` is the part \`ability\`. */
+const partName = (reference: string): string =>
+	(reference.split('/').at(-1) ?? '')
+		.replace(/Document$/, '')
+		.replace(/(?<=[a-z])(?=[A-Z])/g, '_')
+		.toLowerCase();
+
+const isText = (schema: Schema | undefined): boolean => schema?.type === 'string' && schema.enum === undefined;
+const isPredicate = (schema: Schema | undefined): boolean =>
+	schema?.anyOf?.map((each) => each.type).join() === 'string,boolean';
+
+function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
+	const within = typeof schema.additionalProperties === 'object' ? schema.additionalProperties : undefined;
+	if (schema.$ref !== undefined) return { kind: 'part', part: partName(schema.$ref) };
+	if (schema.enum !== undefined) return { kind: 'choice', choices: schema.enum };
+	if (isPredicate(schema)) return { kind: 'predicate' };
+	if (schema.type === 'string') return { kind: 'text' };
+	if (schema.type === 'boolean') return { kind: 'flag' };
+	if (schema.type === 'number' || schema.type === 'integer') return { kind: 'number' };
+	if (schema.type === 'array' && isText(schema.items)) return { kind: 'texts' };
+	if (schema.type === 'array' && isPredicate(schema.items)) return { kind: 'predicates' };
+	if (within?.$ref !== undefined) return { kind: 'parts', part: partName(within.$ref) };
+	if (within?.type === 'array' && isText(within.items)) return { kind: 'lists' };
+	if (isText(within)) return { kind: 'names' };
+	if (isPredicate(within)) return { kind: 'zone' };
+	const ways = schema.anyOf ?? [];
+	const choice = ways.find((each) => each.enum !== undefined);
+	if (choice?.enum !== undefined) return { kind: 'choice', choices: choice.enum };
+	if (ways.map((each) => each.type).join() === 'number,array') return { kind: 'interval' };
+	if (ways.map((each) => each.type).join() === 'boolean,integer,string') return { kind: 'value' };
+	return { kind: 'yaml' };
+}
+
+function fieldOf(schema: Schema, required: boolean): FieldShape {
+	const bound = schema.anyOf?.find((each) => each.type === 'number') ?? schema;
+	const isScalar = ['string', 'number', 'boolean'].includes(typeof schema.default);
+	return {
+		...kindOf(schema),
+		help: (schema.description ?? '').replaceAll(/\s+/g, ' '),
+		required,
+		...(isScalar && { otherwise: schema.default as string | number | boolean }),
+		...(schema.type === 'integer' && { whole: true }),
+		...(bound.minimum !== undefined && { least: bound.minimum }),
+		...(bound.exclusiveMinimum !== undefined && { above: bound.exclusiveMinimum }),
+		...(bound.maximum !== undefined && { most: bound.maximum })
+	};
+}
+
+function partOf(schema: Schema): PartShape {
+	const fields = Object.entries(schema.properties ?? {}).map(
+		([name, field]) => [name, fieldOf(field, schema.required?.includes(name) ?? false)] as const
+	);
+	return { about: (schema.description ?? '').replaceAll(/\s+/g, ' '), fields: Object.fromEntries(fields) };
+}
+
+const parts: Record<string, PartShape> = {};
+for (const file of FILES) {
+	const schema = JSON.parse(readFileSync(join(FOLDER, `${file}.schema.json`), 'utf8')) as Schema;
+	if (schema.properties) parts[file] = partOf(schema);
+	for (const [name, each] of Object.entries(schema.$defs ?? {}))
+		if (!/Stage|Example/.test(name)) parts[partName(name)] = partOf(each);
+}
+// Only what a form is made of: the stages of pipelines are written as YAML.
+const used = new Set(['station', 'resource', 'operation', 'specification', 'work_master']);
+for (const name of used)
+	for (const field of Object.values(parts[name]?.fields ?? {})) if (field.part !== undefined) used.add(field.part);
+const kept = Object.fromEntries(Object.entries(parts).filter(([name]) => used.has(name)));
+const text = `${HEAD}${JSON.stringify(kept, null, '\t')};\n`;
+
+if (process.argv.includes('--check')) {
+	if (readFileSync(TARGET, 'utf8') !== text) {
+		console.error('src/lib/model/documents.ts is not what the schemas say: npm run types');
+		process.exit(1);
+	}
+} else writeFileSync(TARGET, text);

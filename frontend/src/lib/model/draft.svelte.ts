@@ -1,0 +1,228 @@
+/**
+ * The draft of the model as this page knows it: one for all engineers of the station.
+ *
+ * The stream says what is new; a file is read again when its digest is another one. What this page does itself comes back
+ * with the answer, and counts at once.
+ */
+import type {
+	DraftChange,
+	DraftView,
+	Edit,
+	FileMark,
+	FilesView,
+	FileView,
+	ModelCheck,
+	WorkshopMessage
+} from '#lib/contract.ts';
+import type { Refusal } from '#lib/rest/refusal.ts';
+import { request } from '#lib/rest/request.ts';
+import { connect } from '#lib/stream/connection.ts';
+import { asJson, type Json } from './content.ts';
+import type { Writing } from './writing.svelte.ts';
+
+const ADDRESS = '/api/v1/model';
+/** Milliseconds between two questions whether the server is still there, and after which it is taken for gone. */
+const ASK = 10_000;
+const SILENT = 25_000;
+/** Of more files than this all are asked for. */
+const MOST_NAMED = 50;
+/** Milliseconds in which an edit of a large model is carried out. */
+const PATIENCE = 20_000;
+
+export class Draft {
+	/** Whether the stream is heard. */
+	live = $state(false);
+	/** The number of the last change; null before anything was heard. */
+	number = $state<number | null>(null);
+	marks = $state.raw<Readonly<Record<string, FileMark>>>({});
+	files = $state.raw<Readonly<Record<string, FileView>>>({});
+	/** What was last read of each file, also where its text cannot be read now. */
+	contents = $state.raw<Readonly<Record<string, Json | undefined>>>({});
+	check = $state.raw<ModelCheck | null>(null);
+	changes = $state.raw<readonly DraftChange[]>([]);
+	undo = $state<string | null>(null);
+	redo = $state<string | null>(null);
+	/** All files were read once. */
+	whole = $state(false);
+	/** Why it is not known. */
+	refusal = $state.raw<Refusal | null>(null);
+	/** What was typed and is not in the draft, by where it belongs. */
+	unwritten = $state.raw<ReadonlyMap<string, Writing<unknown>>>(new Map());
+	readonly #writings = new Map<string, Writing<unknown>>();
+	/** The change after which each file was read. */
+	readonly #read = new Map<string, number>();
+	#reading = false;
+	#asked = 0;
+
+	/** Connects to the server's stream; the result disconnects. */
+	attach(url: string, ended: () => void): () => void {
+		const connection = connect<WorkshopMessage>(
+			url,
+			{
+				opened: () => undefined,
+				heard: (message) => this.#heard(message),
+				closed: (code) => {
+					this.live = false;
+					if (code === 4401) ended();
+					else if (this.number === null) void this.#describe();
+				}
+			},
+			SILENT
+		);
+		const timer = setInterval(() => connection.resync(), ASK);
+		return () => {
+			clearInterval(timer);
+			connection.close();
+		};
+	}
+
+	/** The text of a file; empty where there is none. */
+	text(path: string): string {
+		return this.files[path]?.text ?? '';
+	}
+
+	/** Carries edits out; why not, or null. */
+	async change(title: string, edits: readonly Edit[]): Promise<Refusal | null> {
+		if (edits.length === 0) return null;
+		return this.#act('changes', { title: title.slice(0, 300), edits });
+	}
+
+	/** Calls a part otherwise, wherever it is named. What is being typed counts as done before. */
+	async rename(part: string, name: string): Promise<Refusal | null> {
+		await this.flush();
+		return this.#act('rename', { part, name });
+	}
+
+	/** Takes back, or does again, what this person did last. What is being typed counts as done before. */
+	async again(what: 'undo' | 'redo'): Promise<Refusal | null> {
+		await this.flush();
+		return this.#act(what, {});
+	}
+
+	/** Sends whatever was typed. */
+	async flush(): Promise<void> {
+		await Promise.all([...this.#writings.values()].map((each) => each.flush()));
+	}
+
+	/** What is written at `key`, made unless it is still there. */
+	writing<Value>(key: string, make: () => Writing<Value>): Writing<Value> {
+		const before = this.#writings.get(key);
+		if (before?.dirty) return before as Writing<Value>;
+		const writing = make();
+		this.#writings.set(key, writing as Writing<unknown>);
+		return writing;
+	}
+
+	/** Its field goes out of sight: what was typed is sent, and kept where that is refused. */
+	async leave(key: string, writing: Writing<unknown>): Promise<void> {
+		await writing.flush();
+		if (this.#writings.get(key) !== writing) return;
+		if (writing.dirty) this.unwritten = new Map([...this.unwritten, [key, writing]]);
+		else this.#writings.delete(key);
+	}
+
+	/** Something that was not written is in sight again, or let go. */
+	settle(key: string): void {
+		if (!this.unwritten.has(key)) return;
+		this.unwritten = new Map([...this.unwritten].filter(([each]) => each !== key));
+	}
+
+	/** Whether something was typed that is not in the draft. */
+	get isUnwritten(): boolean {
+		return [...this.#writings.values()].some((each) => each.dirty);
+	}
+
+	async #act(what: 'changes' | 'rename' | 'undo' | 'redo', body: object): Promise<Refusal | null> {
+		const answer = await request<FilesView>('POST', `${ADDRESS}/${what}`, { body, patience: PATIENCE });
+		if (answer.ok) {
+			this.#take(answer.value);
+			return null;
+		}
+		// Both versions are shown where it was refused because of somebody else's: theirs must be there first.
+		if (answer.refusal.status === 409 || answer.refusal.status === 422) await this.#load(null);
+		return answer.refusal;
+	}
+
+	#heard(message: WorkshopMessage): void {
+		if (message.kind !== 'workshop') return;
+		const { workshop } = message;
+		const isNew = workshop.number !== this.number;
+		this.live = true;
+		this.number = workshop.number;
+		this.marks = workshop.files;
+		this.check = workshop.check;
+		this.refusal = null;
+		this.#forget();
+		void this.#follow();
+		if (isNew) void this.#describe();
+	}
+
+	/** Files that are gone. */
+	#forget(): void {
+		const gone = Object.keys(this.files).filter((path) => !this.marks[path]?.digest);
+		// A file that this page has just made may not have been told of yet.
+		const old = gone.filter((path) => (this.#read.get(path) ?? 0) <= (this.number ?? 0));
+		if (old.length === 0) return;
+		const drop = <Value>(all: Readonly<Record<string, Value>>): Record<string, Value> =>
+			Object.fromEntries(Object.entries(all).filter(([path]) => !old.includes(path)));
+		this.files = drop(this.files);
+		this.contents = drop(this.contents);
+	}
+
+	/** Reads what has become another one, until all is as the stream says. */
+	async #follow(): Promise<void> {
+		if (this.#reading) return;
+		this.#reading = true;
+		for (let asked = 0; asked < 5; asked++) {
+			const others = Object.entries(this.marks)
+				.filter(([path, { digest }]) => digest !== null && this.files[path]?.digest !== digest)
+				.map(([path]) => path)
+				.filter((path) => (this.#read.get(path) ?? -1) < (this.number ?? 0));
+			if (others.length === 0) break;
+			if (!(await this.#load(others.length > MOST_NAMED ? null : others))) break;
+		}
+		this.#reading = false;
+		if (Object.values(this.marks).length > 0) this.whole = true;
+	}
+
+	async #load(paths: readonly string[] | null): Promise<boolean> {
+		const query = new URLSearchParams((paths ?? []).map((path) => ['path', path]));
+		const address = paths === null ? `${ADDRESS}/files` : `${ADDRESS}/files?${query}`;
+		const answer = await request<FilesView>('GET', address, { patience: PATIENCE });
+		if (answer.ok) this.#take(answer.value);
+		else this.refusal = answer.refusal;
+		return answer.ok;
+	}
+
+	#take({ number, files }: FilesView): void {
+		const shown = { ...this.files };
+		const contents = { ...this.contents };
+		for (const [path, file] of Object.entries(files)) {
+			if (number < (this.#read.get(path) ?? 0)) continue;
+			this.#read.set(path, number);
+			if (file === null) {
+				delete shown[path];
+				delete contents[path];
+			} else {
+				shown[path] = file;
+				if (file.wrong === null) contents[path] = asJson(file.content);
+			}
+		}
+		this.files = shown;
+		this.contents = contents;
+	}
+
+	/** Who did what, and what can be undone. */
+	async #describe(): Promise<void> {
+		const asked = ++this.#asked;
+		const answer = await request<DraftView>('GET', ADDRESS);
+		if (asked !== this.#asked) return;
+		if (!answer.ok) {
+			this.refusal = answer.refusal;
+			return;
+		}
+		this.changes = answer.value.changes;
+		this.undo = answer.value.undo;
+		this.redo = answer.value.redo;
+	}
+}

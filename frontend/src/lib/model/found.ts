@@ -1,0 +1,43 @@
+/** Which entries the findings of a check are about. */
+import type { Finding } from '#lib/contract.ts';
+import { pathAt, placesOf } from './places.ts';
+import { around, nodeAt, type Lookup, type Node } from './tree.ts';
+
+/** A finding with the entry that it is about; null where that is none of the tree. */
+export interface Found {
+	readonly finding: Finding;
+	readonly node: Node | null;
+}
+
+export interface Count {
+	readonly errors: number;
+	readonly warnings: number;
+}
+
+/** The findings with their entries, in the order in which they came. */
+export function foundIn(
+	findings: readonly Finding[],
+	lookup: Lookup,
+	text: (file: string) => string
+): Found[] {
+	const places = new Map<string, ReturnType<typeof placesOf>>();
+	return findings.map((finding) => {
+		const known = places.get(finding.file) ?? placesOf(text(finding.file));
+		places.set(finding.file, known);
+		return { finding, node: nodeAt(lookup, finding.file, pathAt(known, finding.line)) };
+	});
+}
+
+/** How many there are at each entry and in it, by its id. */
+export function countsOf(found: readonly Found[], lookup: Lookup): Map<string, Count> {
+	const counts = new Map<string, Count>();
+	for (const { finding, node } of found) {
+		if (node === null) continue;
+		for (const { id } of [...around(lookup, node.id), node]) {
+			const { errors, warnings } = counts.get(id) ?? { errors: 0, warnings: 0 };
+			const isError = finding.severity === 'error';
+			counts.set(id, { errors: errors + (isError ? 1 : 0), warnings: warnings + (isError ? 0 : 1) });
+		}
+	}
+	return counts;
+}

@@ -1,0 +1,88 @@
+/**
+ * What the server knows of the language of conditions and actions: the only authority on it.
+ *
+ * It counts the characters of a text, where this page counts units of UTF-16.
+ */
+import type { Value } from '#lib/contract.ts';
+import { request } from '#lib/rest/request.ts';
+import type { Path } from './content.ts';
+
+/** Where an expression stands. */
+export interface Spot {
+	readonly file: string;
+	readonly path: Path;
+}
+
+/** Part of a text. */
+interface Span {
+	readonly start: number;
+	readonly end: number;
+}
+
+/** Something wrong in a text. */
+export interface Wrong extends Span {
+	readonly message: string;
+}
+
+export interface Option {
+	readonly label: string;
+	readonly insert: string;
+	readonly kind: string;
+	readonly detail: string;
+}
+
+/** What can stand in place of a part of a text, the most useful first. */
+export interface Completion extends Span {
+	readonly options: readonly Option[];
+}
+
+/** What a name is; `names` are the full names of what it can stand for. */
+export interface Hover extends Span {
+	readonly name: string;
+	readonly kind: string;
+	readonly names: readonly string[];
+	readonly type: string | null;
+	readonly domain: readonly Value[];
+	readonly initial: Value | null;
+	readonly title: string | null;
+	readonly declared: { readonly file: string; readonly line: number; readonly column: number } | null;
+}
+
+const counted = (text: string, offset: number): number => [...text.slice(0, offset)].length;
+const placed = (text: string, offset: number): number => [...text].slice(0, offset).join('').length;
+
+/** With its places as this page counts them. */
+function here<Found extends Span>(text: string, found: Found): Found {
+	return { ...found, start: placed(text, found.start), end: placed(text, found.end) };
+}
+
+/** Milliseconds in which a text is looked at, the first time after a change of a large model. */
+const PATIENCE = 20_000;
+
+async function ask<Value>(what: string, body: object): Promise<Value | null> {
+	const answer = await request<Value>('POST', `/api/v1/model/language/${what}`, { body, patience: PATIENCE });
+	return answer.ok ? answer.value : null;
+}
+
+/** What is wrong with it; null where the server did not say. */
+export async function wrongIn({ file, path }: Spot, text: string): Promise<readonly Wrong[] | null> {
+	const answer = await ask<{ problems: readonly Wrong[] }>('check', { file, path, text });
+	return answer === null ? null : answer.problems.map((each) => here(text, each));
+}
+
+/** What could stand at `offset`; null where nothing is known. */
+export async function completionOf({ file, path }: Spot, text: string, offset: number): Promise<Completion | null> {
+	const answer = await ask<Completion>('completion', { file, path, text, offset: counted(text, offset) });
+	return answer === null ? null : here(text, answer);
+}
+
+/** What is named at `offset`; null where nothing is. */
+export async function hoverOf({ file, path }: Spot, text: string, offset: number): Promise<Hover | null> {
+	const answer = await ask<{ hover: Hover | null }>('hover', { file, path, text, offset: counted(text, offset) });
+	return answer === null || answer.hover === null ? null : here(text, answer.hover);
+}
+
+/** The same in its usual form; null where the server did not say. */
+export async function formatted({ file, path }: Spot, text: string): Promise<string | null> {
+	return (await ask<{ text: string }>('format', { file, path, text }))?.text ?? null;
+}

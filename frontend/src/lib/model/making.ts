@@ -1,0 +1,150 @@
+/** What is made, copied, moved and taken away: each as the edits that do it. */
+import type { Edit } from '#lib/contract.ts';
+import { isMapping, same, valueAt, type Json, type Path } from './content.ts';
+import { IN_RESOURCE, messageFile, STATION, type EntryKind, type InResource, type Node } from './tree.ts';
+
+/** Where something can be made: below which path of which file, and what. */
+export interface Place {
+	readonly kind: EntryKind;
+	readonly file: string;
+	/** The mapping that it becomes an entry of; null for a file of its own. */
+	readonly path: Path | null;
+	/** The section it stands in, by which its place is told from others of the same kind. */
+	readonly section: string;
+}
+
+/** Where something can be made at a node, what is nearest first. */
+export function placesAt(node: Node | null, around: readonly Node[]): Place[] {
+	const resource = node?.kind === 'resource' ? node : around.find((each) => each.kind === 'resource');
+	const ability = node?.kind === 'ability' ? node : around.find((each) => each.kind === 'ability');
+	const inAbility: Place[] = ability
+		? [{ kind: 'effect', file: ability.file, path: [...ability.path, 'effects'], section: 'effects' }]
+		: [];
+	const inResource: Place[] = resource
+		? (Object.keys(IN_RESOURCE) as InResource[]).map((key) => {
+				return { kind: IN_RESOURCE[key], file: resource.file, path: [key], section: key };
+			})
+		: [];
+	const elsewhere: Place[] = [
+		{ kind: 'resource', file: '', path: null, section: 'resources' },
+		{ kind: 'enumeration', file: STATION, path: ['enumerations'], section: 'enumerations' },
+		{ kind: 'variable', file: STATION, path: ['estimated'], section: 'variables' },
+		{ kind: 'operation', file: 'operations.yaml', path: [], section: 'operations' },
+		{ kind: 'specification', file: 'specifications.yaml', path: [], section: 'specifications' },
+		{ kind: 'work_master', file: 'work_masters.yaml', path: [], section: 'work_masters' },
+		{ kind: 'message', file: '', path: null, section: 'messages' }
+	];
+	const all = [...inAbility, ...inResource, ...elsewhere];
+	const here = [node, ...around.toReversed()].flatMap((each) => (each ? [each] : []));
+	const nearest = here
+		.map((each) => all.find((place) => (each.kind === 'section' ? place.section === each.name : place.kind === each.kind)))
+		.find((place) => place !== undefined);
+	return nearest === undefined ? all : [nearest, ...all.filter((place) => place !== nearest)];
+}
+
+const inWords = (name: string): string => {
+	const words = name.replaceAll('_', ' ').trim();
+	return words.slice(0, 1).toUpperCase() + words.slice(1);
+};
+
+/** What something begins as; `given` is what was asked for beside its name. */
+export function beginning(kind: EntryKind, name: string, given: Readonly<Record<string, Json>>): Json {
+	const title = { title: inWords(name) };
+	switch (kind) {
+		case 'variable':
+			return { type: 'bool', ...given };
+		case 'ability':
+			return { ...title, enabled: false };
+		case 'effect':
+			return { kind: 'executing', when: false, do: [], ...given };
+		case 'operation':
+			return { ...title, precondition: false, goal: true };
+		case 'specification':
+			return { ...title, forbidden: false };
+		case 'work_master':
+			return { ...title, operations: {} };
+		case 'resource':
+			return title;
+		default:
+			return given['values'] ?? given;
+	}
+}
+
+/** Edits that make it. */
+export function made(place: Place, name: string, given: Readonly<Record<string, Json>>): Edit[] {
+	const value = beginning(place.kind, name, given);
+	if (place.kind === 'message') return [{ kind: 'text', file: messageFile(name), was: null, text: '' }];
+	if (place.path === null)
+		return Object.entries(isMapping(value) ? value : {}).map(([key, inner]) => {
+			return { kind: 'add', file: `resources/${name}.yaml`, path: [key], value: inner };
+		});
+	return [{ kind: 'add', file: place.file, path: [...place.path, name], value }];
+}
+
+/** Where it would be found that was made there. */
+export function madeAt(place: Place, name: string): { file: string; path: Path } {
+	if (place.kind === 'message') return { file: messageFile(name), path: [] };
+	if (place.path === null) return { file: `resources/${name}.yaml`, path: [] };
+	return { file: place.file, path: [...place.path, name] };
+}
+
+/** Edits that make another one like it, called `name`. */
+export function copied(node: Node, name: string, content: Json | undefined, text: string): Edit[] {
+	if (node.kind === 'resource') return [{ kind: 'text', file: `resources/${name}.yaml`, was: null, text }];
+	if (node.kind === 'message') return [{ kind: 'text', file: messageFile(name), was: null, text }];
+	const value = valueAt(content, node.path) ?? null;
+	return [{ kind: 'add', file: node.file, path: [...node.path.slice(0, -1), name], value, after: node.name }];
+}
+
+/** Where a copy would be found. */
+export function copiedAt(node: Node, name: string): { file: string; path: Path } {
+	if (node.kind === 'resource') return { file: `resources/${name}.yaml`, path: [] };
+	if (node.kind === 'message') return { file: messageFile(name), path: [] };
+	return { file: node.file, path: [...node.path.slice(0, -1), name] };
+}
+
+/** Edits that take it out; with the last of its kind its section goes too. */
+export function removed(node: Node, content: Json | undefined, text: string): Edit[] {
+	if (node.path.length === 0) return [{ kind: 'text', file: node.file, was: text, text: null }];
+	return taken(node.file, content, node.path, 0);
+}
+
+/** Edits that take the entry at `path` out, and what has nothing in it then, as far as it is deeper than `keep` steps. */
+export function taken(file: string, content: Json | undefined, path: Path, keep: number): Edit[] {
+	let at = path;
+	while (at.length - 1 > keep) {
+		const parent = valueAt(content, at.slice(0, -1));
+		const size = typeof parent === 'object' && parent !== null ? Object.keys(parent).length : 0;
+		if (size > 1) break;
+		at = at.slice(0, -1);
+	}
+	return [{ kind: 'remove', file, path: [...at], was: valueAt(content, at) ?? null }];
+}
+
+/** Edits that put it one further up or down among its siblings; none where it is there already. */
+export function moved(node: Node, siblings: readonly Node[], content: Json | undefined, by: 1 | -1): Edit[] {
+	const at = siblings.findIndex((each) => each.id === node.id);
+	const beside = siblings[at + by];
+	if (at < 0 || beside === undefined || node.path.length === 0) return [];
+	const step = String(beside.path.at(-1));
+	const was = valueAt(content, node.path) ?? null;
+	return [{ kind: 'move', file: node.file, path: [...node.path], was, ...(by < 0 ? { before: step } : { after: step }) }];
+}
+
+/** Edits that let the entry at `path` be `value` that was `was`; undefined is no entry. `keep` as in `taken`. */
+export function written(
+	file: string,
+	content: Json | undefined,
+	path: Path,
+	was: Json | undefined,
+	value: Json | undefined,
+	keep: number
+): Edit[] {
+	if (same(was, value)) return [];
+	if (was === undefined) return value === undefined ? [] : [{ kind: 'add', file, path: [...path], value }];
+	if (value !== undefined) return [{ kind: 'set', file, path: [...path], was, value }];
+	const edits = taken(file, content, path, keep);
+	const [only] = edits;
+	// Somebody may have changed it since: what was seen is what is taken out.
+	return only?.kind === 'remove' && only.path.length === path.length ? [{ ...only, was }] : edits;
+}

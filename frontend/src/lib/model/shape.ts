@@ -1,0 +1,42 @@
+/** What the parts of a model's documents look like: their fields, and of what kind each is. */
+
+/** How a field is written. `part` is one part below its name, `parts` are any number, each below a name of its own. */
+export type FieldKind =
+	| 'text'
+	| 'number'
+	| 'flag'
+	| 'choice'
+	| 'interval'
+	| 'value'
+	| 'names'
+	| 'texts'
+	| 'lists'
+	| 'predicate'
+	| 'predicates'
+	| 'zone'
+	| 'part'
+	| 'parts'
+	| 'yaml';
+
+export interface FieldShape {
+	readonly kind: FieldKind;
+	/** What it is for, as the documents say. */
+	readonly help: string;
+	readonly required: boolean;
+	/** The part that is below it. */
+	readonly part?: string;
+	readonly choices?: readonly (string | number)[];
+	/** What counts where it is left out. */
+	readonly otherwise?: string | number | boolean;
+	/** Only whole numbers. */
+	readonly whole?: boolean;
+	readonly least?: number;
+	/** It is more than this. */
+	readonly above?: number;
+	readonly most?: number;
+}
+
+export interface PartShape {
+	readonly about: string;
+	readonly fields: Readonly<Record<string, FieldShape>>;
+}

@@ -1,0 +1,233 @@
+/** The parts of a model as a tree: made from what its files hold. */
+import type { FileMark } from '#lib/contract.ts';
+import { entriesOf, isMapping, textAt, valueAt, type Json, type Path } from './content.ts';
+
+/** What a person can make, name and delete. */
+export type EntryKind =
+	| 'enumeration'
+	| 'variable'
+	| 'resource'
+	| 'topic'
+	| 'flow'
+	| 'service'
+	| 'action'
+	| 'ability'
+	| 'effect'
+	| 'operation'
+	| 'specification'
+	| 'work_master'
+	| 'message';
+
+/** Where entries of one kind stand together. */
+export type SectionName =
+	| 'enumerations'
+	| 'variables'
+	| 'resources'
+	| 'topics'
+	| 'flows'
+	| 'services'
+	| 'actions'
+	| 'measured'
+	| 'output'
+	| 'estimated'
+	| 'abilities'
+	| 'operations'
+	| 'specifications'
+	| 'work_masters'
+	| 'messages';
+
+export interface Node {
+	/** Its file and path: the same for as long as it is called so. */
+	readonly id: string;
+	readonly kind: EntryKind | 'station' | 'section';
+	/** What it is called in the model; the name of the section for one. */
+	readonly name: string;
+	readonly title: string | null;
+	/** Empty for a section of files. */
+	readonly file: string;
+	readonly path: Path;
+	readonly children: readonly Node[];
+}
+
+export const STATION = 'station.yaml';
+const IN_FILES = { operations: 'operation', specifications: 'specification', work_masters: 'work_master' } as const;
+
+/** The sections of a resource, by the key under which each stands, and what is in them. */
+export const IN_RESOURCE = {
+	topics: 'topic',
+	flows: 'flow',
+	services: 'service',
+	actions: 'action',
+	measured: 'variable',
+	output: 'variable',
+	estimated: 'variable',
+	abilities: 'ability'
+} as const satisfies Partial<Record<SectionName, EntryKind>>;
+
+export type InResource = keyof typeof IN_RESOURCE;
+
+export const idOf = (file: string, path: Path): string => [file, ...path.map((step) => encodeURIComponent(step))].join('#');
+
+/** The file of a resource is called after it; null where the file is another one. */
+export const resourceOf = (file: string): string | null => /^resources\/(\w+)\.yaml$/.exec(file)?.[1] ?? null;
+/** `messages/p/msg/Name.msg` is the definition `p/msg/Name`. */
+export const messageOf = (file: string): string | null => /^messages\/(\w+\/(?:msg|srv|action)\/\w+)\.\w+$/.exec(file)?.[1] ?? null;
+/** Where the definition `p/msg/Name` stands. */
+export const messageFile = (name: string): string => `messages/${name}.${name.split('/')[1] ?? 'msg'}`;
+
+function entry(kind: EntryKind, file: string, path: Path, value: Json, children: readonly Node[] = []): Node {
+	const title = textAt(value, ['title']);
+	return { id: idOf(file, path), kind, name: String(path.at(-1)), title, file, path, children };
+}
+
+function section(name: SectionName, file: string, path: Path, children: readonly Node[]): Node {
+	const id = file === '' ? `#${name}` : idOf(file, path);
+	return { id, kind: 'section', name, title: null, file, path, children };
+}
+
+function entriesIn(kind: EntryKind, file: string, path: Path, content: Json | undefined): Node[] {
+	return entriesOf(valueAt(content, path)).map(([name, value]) => {
+		const here = [...path, name];
+		return entry(kind, file, here, value, kind === 'ability' ? entriesIn('effect', file, [...here, 'effects'], content) : []);
+	});
+}
+
+function resource(file: string, name: string, content: Json | undefined): Node {
+	const sections = (Object.keys(IN_RESOURCE) as InResource[])
+		.map((key) => section(key, file, [key], entriesIn(IN_RESOURCE[key], file, [key], content)))
+		.filter(({ children }) => children.length > 0);
+	return { ...entry('resource', file, [], isMapping(content) ? content : {}, sections), name };
+}
+
+/** The tree of a model of these files; `contents` has what was last read of each. */
+export function treeOf(
+	files: Readonly<Record<string, Pick<FileMark, 'digest'>>>,
+	contents: Readonly<Record<string, Json | undefined>>
+): Node[] {
+	const there = Object.keys(files).filter((path) => files[path]?.digest !== null).sort();
+	const station = contents[STATION];
+	const resources = there.flatMap((file) => {
+		const name = resourceOf(file);
+		return name === null ? [] : [resource(file, name, contents[file])];
+	});
+	const messages = there.flatMap((file): Node[] => {
+		const name = messageOf(file);
+		return name === null ? [] : [{ id: idOf(file, []), kind: 'message', name, title: null, file, path: [], children: [] }];
+	});
+	return [
+		{
+			id: idOf(STATION, []),
+			kind: 'station',
+			name: textAt(station, ['name']) ?? '',
+			title: textAt(station, ['title']),
+			file: STATION,
+			path: [],
+			children: [
+				section('enumerations', STATION, ['enumerations'], entriesIn('enumeration', STATION, ['enumerations'], station)),
+				section('variables', STATION, ['estimated'], entriesIn('variable', STATION, ['estimated'], station))
+			]
+		},
+		section('resources', '', [], resources),
+		...(Object.entries(IN_FILES) as [keyof typeof IN_FILES, EntryKind][]).map(([name, kind]) => {
+			const file = `${name}.yaml`;
+			return section(name, file, [], entriesIn(kind, file, [], contents[file]));
+		}),
+		section('messages', '', [], messages)
+	];
+}
+
+/** All nodes, each before those in it. */
+export function* nodesOf(tree: readonly Node[]): Generator<Node> {
+	for (const node of tree) {
+		yield node;
+		yield* nodesOf(node.children);
+	}
+}
+
+/** A tree as it can be looked up. */
+export interface Lookup {
+	readonly byId: ReadonlyMap<string, Node>;
+	readonly parents: ReadonlyMap<string, Node>;
+}
+
+export function lookupOf(tree: readonly Node[]): Lookup {
+	const byId = new Map<string, Node>();
+	const parents = new Map<string, Node>();
+	for (const node of nodesOf(tree)) {
+		byId.set(node.id, node);
+		for (const child of node.children) parents.set(child.id, node);
+	}
+	return { byId, parents };
+}
+
+/** The nodes around `node`, from the outermost. */
+export function around(lookup: Lookup, id: string): Node[] {
+	const parent = lookup.parents.get(id);
+	return parent ? [...around(lookup, parent.id), parent] : [];
+}
+
+/** The innermost node that the entry at `path` of `file` belongs to. */
+export function nodeAt(lookup: Lookup, file: string, path: Path): Node | null {
+	for (let length = path.length; length >= 0; length--) {
+		const found = lookup.byId.get(idOf(file, path.slice(0, length)));
+		if (found) return found;
+	}
+	return null;
+}
+
+/** Which part of the model it is, for what is asked and done by name; null for what has no such name. */
+export function partOf(node: Node): string | null {
+	const resource = resourceOf(node.file);
+	const own = (name: string): string => (resource === null ? name : `${resource}.${name}`);
+	switch (node.kind) {
+		case 'station':
+		case 'section':
+		case 'message':
+			return null;
+		case 'variable':
+		case 'ability':
+		case 'flow':
+			return `${node.kind}:${own(node.name)}`;
+		case 'effect':
+			return `effect:${own(String(node.path[1]))}.${node.name}`;
+		default:
+			return `${node.kind}:${node.name}`;
+	}
+}
+
+/** The shape of a node's document: what its form has. */
+export function shapeOf(node: Node): string | null {
+	return node.kind === 'section' || node.kind === 'enumeration' || node.kind === 'message' ? null : node.kind;
+}
+
+/** A row of the tree as it is seen: how deep it is, and its place among its siblings. */
+export interface Row {
+	readonly node: Node;
+	readonly level: number;
+	readonly place: number;
+	readonly siblings: number;
+	readonly isOpen: boolean;
+}
+
+/** The rows that are in sight where the nodes in `open` are open; with `sought`, what fits it and what is around that. */
+export function rowsOf(tree: readonly Node[], open: ReadonlySet<string>, sought: string): Row[] {
+	const words = sought.trim().toLowerCase();
+	const fits = (node: Node): boolean =>
+		node.kind !== 'section' && [node.name, node.title].some((text) => text?.toLowerCase().includes(words));
+	/** With what fits in it; with all that is in it where it fits itself. */
+	const sift = (nodes: readonly Node[]): Node[] =>
+		nodes.flatMap((node) => {
+			if (fits(node)) return [node];
+			const children = sift(node.children);
+			return children.length > 0 ? [{ ...node, children }] : [];
+		});
+	const rows: Row[] = [];
+	const add = (nodes: readonly Node[], level: number): void =>
+		nodes.forEach((node, index) => {
+			const isOpen = node.children.length > 0 && (open.has(node.id) || (words !== '' && !fits(node)));
+			rows.push({ node, level, place: index + 1, siblings: nodes.length, isOpen });
+			if (isOpen) add(node.children, level + 1);
+		});
+	add(words === '' ? tree : sift(tree), 1);
+	return rows;
+}
