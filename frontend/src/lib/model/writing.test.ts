@@ -2,8 +2,8 @@ import { beforeEach, describe, expect, test, vi } from 'vitest';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { Writing } from './writing.svelte.ts';
 
-const CHANGED: Refusal = { title: 'Changed', detail: '', status: 409, kind: 'part-changed', retryAfter: null };
-const AWAY: Refusal = { title: 'Away', detail: '', status: null, kind: null, retryAfter: null };
+const CHANGED: Refusal = { title: 'Changed', detail: '', status: 409, kind: 'part-changed', retryAfter: null, place: null };
+const AWAY: Refusal = { title: 'Away', detail: '', status: null, kind: null, retryAfter: null, place: null };
 
 describe('what is typed in a field', () => {
 	let draft: string;
