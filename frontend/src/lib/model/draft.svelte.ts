@@ -11,41 +11,33 @@ import type {
 	FileMark,
 	FilesView,
 	FileView,
-	ModelCheck,
-	WorkshopMessage
+	ModelCheck
 } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
-import { connect } from '#lib/stream/connection.ts';
+import { ENDED } from '#lib/stream/connection.ts';
+import { WorkshopSeen } from '#lib/workshop/workshop.svelte.ts';
 import { asJson, type Json } from './content.ts';
 import type { Writing } from './writing.svelte.ts';
 
 const ADDRESS = '/api/v1/model';
-/** Milliseconds between two questions whether the server is still there, and after which it is taken for gone. */
-const ASK = 10_000;
-const SILENT = 25_000;
 /** Of more files than this all are asked for. */
 const MOST_NAMED = 50;
 /** Milliseconds in which an edit of a large model is carried out. */
 const PATIENCE = 20_000;
 
 export class Draft {
-	/** Whether the stream is heard. */
-	live = $state(false);
-	/** The number of the last change; null before anything was heard. */
-	number = $state<number | null>(null);
-	marks = $state.raw<Readonly<Record<string, FileMark>>>({});
+	/** What the stream says. */
+	readonly #seen = new WorkshopSeen();
 	files = $state.raw<Readonly<Record<string, FileView>>>({});
 	/** What was last read of each file, also where its text cannot be read now. */
 	contents = $state.raw<Readonly<Record<string, Json | undefined>>>({});
-	check = $state.raw<ModelCheck | null>(null);
 	changes = $state.raw<readonly DraftChange[]>([]);
 	undo = $state<string | null>(null);
 	redo = $state<string | null>(null);
 	/** All files were read once. */
 	whole = $state(false);
-	/** Why it is not known. */
-	refusal = $state.raw<Refusal | null>(null);
+	#refusal = $state.raw<Refusal | null>(null);
 	/** What was typed and is not in the draft, by where it belongs. */
 	unwritten = $state.raw<ReadonlyMap<string, Writing<unknown>>>(new Map());
 	readonly #writings = new Map<string, Writing<unknown>>();
@@ -56,24 +48,36 @@ export class Draft {
 
 	/** Connects to the server's stream; the result disconnects. */
 	attach(url: string, ended: () => void): () => void {
-		const connection = connect<WorkshopMessage>(
+		return this.#seen.attach(
 			url,
-			{
-				opened: () => undefined,
-				heard: (message) => this.#heard(message),
-				closed: (code) => {
-					this.live = false;
-					if (code === 4401) ended();
-					else if (this.number === null) void this.#describe();
-				}
-			},
-			SILENT
+			(isNew) => this.#told(isNew),
+			(code) => {
+				if (code === ENDED) ended();
+			}
 		);
-		const timer = setInterval(() => connection.resync(), ASK);
-		return () => {
-			clearInterval(timer);
-			connection.close();
-		};
+	}
+
+	/** Whether the stream is heard. */
+	get live(): boolean {
+		return this.#seen.live;
+	}
+
+	/** The number of the last change; null before anything was heard. */
+	get number(): number | null {
+		return this.#seen.view?.number ?? null;
+	}
+
+	get marks(): Readonly<Record<string, FileMark>> {
+		return this.#seen.view?.files ?? {};
+	}
+
+	get check(): ModelCheck | null {
+		return this.#seen.view?.check ?? null;
+	}
+
+	/** Why it is not known. */
+	get refusal(): Refusal | null {
+		return this.#seen.refusal ?? this.#refusal;
 	}
 
 	/** The text of a file; empty where there is none. */
@@ -143,15 +147,8 @@ export class Draft {
 		return answer.refusal;
 	}
 
-	#heard(message: WorkshopMessage): void {
-		if (message.kind !== 'workshop') return;
-		const { workshop } = message;
-		const isNew = workshop.number !== this.number;
-		this.live = true;
-		this.number = workshop.number;
-		this.marks = workshop.files;
-		this.check = workshop.check;
-		this.refusal = null;
+	#told(isNew: boolean): void {
+		this.#refusal = null;
 		this.#forget();
 		void this.#follow();
 		if (isNew) void this.#describe();
@@ -190,7 +187,7 @@ export class Draft {
 		const address = paths === null ? `${ADDRESS}/files` : `${ADDRESS}/files?${query}`;
 		const answer = await request<FilesView>('GET', address, { patience: PATIENCE });
 		if (answer.ok) this.#take(answer.value);
-		else this.refusal = answer.refusal;
+		else this.#refusal = answer.refusal;
 		return answer.ok;
 	}
 
@@ -218,7 +215,7 @@ export class Draft {
 		const answer = await request<DraftView>('GET', ADDRESS);
 		if (asked !== this.#asked) return;
 		if (!answer.ok) {
-			this.refusal = answer.refusal;
+			this.#refusal = answer.refusal;
 			return;
 		}
 		this.changes = answer.value.changes;

@@ -22,10 +22,10 @@ export class WorkshopSeen {
 	refusal = $state.raw<Refusal | null>(null);
 
 	/**
-	 * Connects to the stream at `url`; the result disconnects. `changed` is called when the draft is another one, and
-	 * `closed`, with the code, each time the connection is lost.
+	 * Connects to the stream at `url`; the result disconnects. `told` is called with each message, and whether the draft is
+	 * another one; `closed`, with the code, each time the connection is lost.
 	 */
-	attach(url: string, changed: () => void, closed: (code: number) => void): () => void {
+	attach(url: string, told: (isNew: boolean) => void, closed: (code: number) => void): () => void {
 		let attached = true;
 		const connection = connect<WorkshopMessage>(
 			url,
@@ -37,7 +37,7 @@ export class WorkshopSeen {
 					this.view = message.workshop;
 					this.live = true;
 					this.refusal = null;
-					if (before !== message.workshop.number) changed();
+					told(before !== message.workshop.number);
 				},
 				closed: (code) => {
 					this.live = false;
