@@ -4,10 +4,9 @@ import { join } from 'node:path';
 import { examine } from '../station/barriers.ts';
 import { copiedModel, Drafting, type Replacement } from '../station/drafting.ts';
 import { startProduction, takeControl } from '../station/seen.ts';
-import { ERIK, EVA, VERA, type Station } from '../station/station.ts';
+import { ERIK, EVA, Station, VERA } from '../station/station.ts';
 import { expect, test as base } from '../station/test.ts';
 
-const MODEL = copiedModel();
 const TITLED = 'Bolt tightening station, rebuilt';
 /** The station is called otherwise, and the next engine comes only when the robot is out of the way. */
 const REBUILT: Replacement[] = [
@@ -20,11 +19,17 @@ const NO_TOOL: Replacement = [
 	'no_tool:\n  title: The robot never holds the tool\n  forbidden: robot.tool_is_attached\n\n# Moving down'
 ];
 
-const test = base.extend({
-	station: async ({ bench }, use) => {
-		const logs = new URL('../artefacts/logs/deploy', import.meta.url).pathname;
+/** Each test has a station of its own: it is another one after a deployment. */
+const test = base.extend<{ model: string }>({
+	model: async ({}, use) => {
+		await use(copiedModel());
+	},
+	station: async ({ model }, use, info) => {
+		const logs = join(import.meta.dirname, '../artefacts/logs', `deploy-${info.testId}`);
 		const people = [EVA, ERIK, VERA];
-		await use(await bench.kept('deploy', { byItself: false, devices: true, people, logs, model: MODEL }));
+		const station = await Station.start({ byItself: false, devices: true, people, logs, model });
+		await use(station);
+		await station.stop();
 	}
 });
 
@@ -54,6 +59,7 @@ async function holdsTool(station: Station): Promise<void> {
 }
 
 test('a changed model is saved, compared, refused while at work, deployed when held, and rolled back', async ({
+	model,
 	station,
 	browse,
 	complaints
@@ -122,7 +128,7 @@ test('a changed model is saved, compared, refused while at work, deployed when h
 	await need(page, 'standing', true);
 	await deploy(page, 'Rebuilt');
 	await expect(page).toHaveTitle(new RegExp(TITLED));
-	expect(readFileSync(join(MODEL, 'station.yaml'), 'utf8')).toContain(TITLED);
+	expect(readFileSync(join(model, 'station.yaml'), 'utf8')).toContain(TITLED);
 
 	await page.getByRole('button', { name: 'Back to this revision… As the station was' }).click();
 	await expect(page.getByRole('dialog')).toContainText('can be undone');
