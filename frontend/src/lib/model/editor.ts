@@ -76,11 +76,24 @@ const EXPRESSIONS = StreamLanguage.define<null>({
  * refuses: it is put there as plain text.
  */
 function typedOver(event: InputEvent, view: EditorView): boolean {
-	const { state } = view;
-	if (event.inputType !== 'insertText' || event.isComposing || event.data === null) return false;
-	if (state.readOnly || state.selection.main.empty) return false;
-	view.dispatch(state.replaceSelection(event.data), { userEvent: 'input.type', scrollIntoView: true });
+	const { data } = event;
+	if (event.inputType !== 'insertText' || event.isComposing || data === null || view.state.readOnly) return false;
+	if (view.state.selection.ranges.length > 1) return false;
+	const { from, to } = selected(view);
+	if (from >= to) return false;
+	const selection = { anchor: from + data.length };
+	view.dispatch({ changes: { from, to, insert: data }, selection, userEvent: 'input.type', scrollIntoView: true });
 	return true;
+}
+
+/** What is selected in the document, of which the editor may not have heard yet; not every browser tells it. */
+function selected(view: EditorView): { from: number; to: number } {
+	const { anchorNode, anchorOffset = 0, focusNode, focusOffset = 0 } =
+		(view.root as Partial<Pick<Document, 'getSelection'>>).getSelection?.() ?? {};
+	if (!anchorNode || !focusNode || ![anchorNode, focusNode].every((node) => view.contentDOM.contains(node)))
+		return view.state.selection.main;
+	const ends = [view.posAtDOM(anchorNode, anchorOffset), view.posAtDOM(focusNode, focusOffset)];
+	return { from: Math.min(...ends), to: Math.max(...ends) };
 }
 
 /** A shadow root in `host`, and a place in it for words that belong to the editor. */
