@@ -19,7 +19,7 @@ from pathlib import Path
 
 STANDARD_INPUT = 0
 DEMONSTRATION_DATABASE = "demonstration.sqlite"  # in the launcher's folder; nothing of it is kept
-DEPLOYED = 3  # the exit code with which the controller makes room for one that runs another model
+DEPLOYED = 75  # the exit code with which the controller makes room for one that runs another model
 NEEDED = b"\n"  # what a spare reads when it is needed
 LAST_WORDS = 5.0  # seconds in which a process may end in good order
 

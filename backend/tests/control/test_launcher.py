@@ -16,6 +16,7 @@ import pytest
 from running.stations import MODEL, REPOSITORY, command, environment, finished, foreign_node, free_port, station
 from sequence_planner import launcher
 from sequence_planner.launcher import UNUSABLE, Part
+from sequence_planner.lifeline import DEPLOYED
 from sequence_planner.ros.transport import QualityOfService
 
 
@@ -67,6 +68,15 @@ def test_what_dies_is_started_again_ever_later() -> None:
     first, second, third = starts(dying, 3)
     assert 0.5 < second - first < third - second
     dying.end()
+
+
+def test_what_makes_room_for_another_model_is_followed_at_once() -> None:
+    leaving = part(f"raise SystemExit({DEPLOYED})")
+    leaving.spawn()
+    first, second = starts(leaving, 2)
+    assert second - first < launcher.FIRST_PAUSE
+    assert leaving.deployed
+    leaving.end()
 
 
 def test_what_had_recovered_is_started_again_soon(monkeypatch: pytest.MonkeyPatch) -> None:

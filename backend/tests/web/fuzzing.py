@@ -65,7 +65,9 @@ def station(folder: Path) -> Iterator[tuple[Server, Telling]]:
     """A server all of whose operations have something to answer, and its controller; files go to `folder`."""
     database = f"sqlite:///{folder / 'station.sqlite'}"
     path = folder / "controller.sock"
-    settings = Settings(controller_socket=path, page=folder / "page", database=database, port=free_port())
+    (model := folder / "model").mkdir()
+    (model / "station.yaml").write_text("name: cell\n", encoding="utf-8")
+    settings = Settings(controller_socket=path, page=folder / "page", database=database, port=free_port(), model=model)
     loop = Loop()
     controller, server = Telling(loop, path), Server(loop, settings)
     controller.link = ControllerLink(path, controller.handle, controller.answer)

@@ -23,6 +23,12 @@ NOT_GUESSED = {
     "POST /api/v1/session/demonstration",
     "PUT /api/v1/session/password",
     "POST /api/v1/ros/attachments",
+    "GET /api/v1/model/usages",  # nothing has a name there
+    "POST /api/v1/model/changes",
+    "POST /api/v1/model/rename",
+    "POST /api/v1/model/undo",
+    "POST /api/v1/model/redo",
+    "POST /api/v1/model/deployments",
     "POST /api/v1/watches/pairing",
     "GET /api/v1/watches/self",
 }

@@ -3431,6 +3431,11 @@ export interface components {
             vendor: string | null;
         };
         /**
+         * NothingBody
+         * @description Nothing more is to be said.
+         */
+        NothingBody: Record<string, never>;
+        /**
          * OfferAnswer
          * @description A pairing that nobody has redeemed yet. Its code is not told again.
          */
@@ -7426,7 +7431,11 @@ export interface operations {
             path?: never;
             cookie?: never;
         };
-        requestBody?: never;
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NothingBody"];
+            };
+        };
         responses: {
             /** @description Successful Response */
             200: {
@@ -7437,9 +7446,14 @@ export interface operations {
                     "application/json": components["schemas"]["FilesView"];
                 };
             };
+            400: components["responses"]["Problem400"];
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
             409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -7654,7 +7668,11 @@ export interface operations {
             path?: never;
             cookie?: never;
         };
-        requestBody?: never;
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NothingBody"];
+            };
+        };
         responses: {
             /** @description Successful Response */
             200: {
@@ -7665,9 +7683,14 @@ export interface operations {
                     "application/json": components["schemas"]["FilesView"];
                 };
             };
+            400: components["responses"]["Problem400"];
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
             409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {

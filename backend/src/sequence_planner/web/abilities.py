@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 from fastapi import APIRouter, Path
-from pydantic import Field
+from pydantic import Field, StrictBool
 
 from sequence_planner.control.asks import AskDefinition
 from sequence_planner.control.definition_view import AbilityDefinitionView
@@ -24,7 +24,7 @@ class TrialBody(Body):
     """`real_devices` confirms that devices may move which are not emulated ones."""
 
     ability: Annotated[str, Field(min_length=1, max_length=LONGEST_ABILITY)]
-    real_devices: bool = False
+    real_devices: StrictBool = False
     reason: Reason = None
 
 

@@ -51,6 +51,10 @@ class ChangeBody(Body):
     edits: Annotated[list[Edit], Field(min_length=1, max_length=MOST_EDITS)]
 
 
+class NothingBody(Body):
+    """Nothing more is to be said."""
+
+
 class RenameBody(Body):
     """A part of the model by its id, such as `variable:robot.pose`, and what it shall be called."""
 
@@ -111,7 +115,7 @@ async def usages(shop: TheWorkshop, part: PartId) -> UsagesView:
 
 
 @router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def undo(shop: TheWorkshop, actor: Actor) -> FilesView:
+async def undo(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
     """Take back your last change that is not taken back yet; the files that are others now."""
     try:
         return await shop.undo(actor)
@@ -120,7 +124,7 @@ async def undo(shop: TheWorkshop, actor: Actor) -> FilesView:
 
 
 @router.post("/redo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def redo(shop: TheWorkshop, actor: Actor) -> FilesView:
+async def redo(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
     """Do again what you took back last; the files that are others now."""
     try:
         return await shop.redo(actor)

@@ -47,11 +47,11 @@ def _offer(
         return None
     plan = consultation.find(after.production()).plan
     if plan is not None:
-        return consultation.making.offer(OfferKind.PHYSICAL, after, plan, acts)
+        return consultation.making.offer(OfferKind.PHYSICAL, after, plan, acts, begun=after.goals)
     if (some := consultation.some(after)) is None or not some[2].goals:
         return None
     plan, left_out, _ = some
-    return consultation.making.offer(OfferKind.PHYSICAL, after, plan, acts, left_out=left_out)
+    return consultation.making.offer(OfferKind.PHYSICAL, after, plan, acts, left_out=left_out, begun=after.goals)
 
 
 def _begun(consultation: Consultation, after: Situation, waiting: Goals) -> Goals:

@@ -40,8 +40,11 @@ class Making:
         errand: Errand | None = None,
         operation: str | None = None,
         left_out: tuple[Goal, ...] = (),
+        begun: tuple[Goal, ...] | None = None,
     ) -> Offer:
-        """The offer of `acts`, then of `errand`, which end in `end`, and of the plan from there."""
+        """The offer of `acts`, then of `errand`, which end in `end`, and of the plan from there, for the goals of the
+        situation or for those that are only `begun` by it.
+        """
         returning = [name for act in acts if act.kind is ActKind.RETURN for name, _ in act.values]
         changed: State = {**self._here.state, **{name: value for act in acts for name, value in act.values}}
         measured = changes_between(self._automaton, self._here.state, changed, Kind.MEASURED)
@@ -51,7 +54,10 @@ class Making:
         unsupervised = errand is not None and errand.walk.unsupervised
         ticks = (*(() if plan is None else plan.ticks), *(() if then is None else then.ticks))
         given_up = [*_of(left_out), *(name for name in self._violated if name != operation)]
-        reached = [*_of(self._here.goals or end.goals), *(name for name in self._violated if name == operation)]
+        reached = [
+            *_of(self._here.goals if begun is None else begun),
+            *(name for name in self._violated if name == operation),
+        ]
         effort = Effort(
             changes=len(corrections),
             physical=sum(act.kind is ActKind.DEVICE for act in acts),
