@@ -52,6 +52,7 @@ test('a variable is found by words of it, and seen to change @theme', async ({ o
 	await expect(state.getByText('No variable is like that.')).toBeVisible();
 
 	await state.getByLabel('Search').fill('empty bolts');
+	await expect(state.locator('[data-row]')).not.toHaveCount(0); // the one that a person is asked to place
 	const before = await state.locator('[data-row]').count();
 	const pair = await acknowledge(watch);
 	await expect(state.locator('[data-row]')).toHaveCount(before - 1);
