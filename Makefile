@@ -75,8 +75,9 @@ figures: install page e2e/node_modules/done.stamp chromium ## Measure the pages 
 bench: install-bench ## Measure
 	cd backend && for each in benchmarks/*.py; do echo "$$each" && .venv/bin/python "$$each" || exit 1; done
 
-campaign: install-test ## The long runs themselves, resumable
+campaign: install-test page e2e/node_modules/done.stamp chromium ## The long runs themselves, resumable
 	cd backend && SHARE_OF_EXAMPLES=4 .venv/bin/pytest -m 'not heavy' -n auto --dist worksteal
+	cd e2e && LONG=yes FAULTS=10 npx playwright test --project light --grep '@long|alarm to production'
 	cd backend && for each in campaigns/*.py; do echo "$$each" && PYTHONPATH=tests .venv/bin/python "$$each" || exit 1; done
 
 types: install frontend/node_modules/done.stamp ## Make the page's types and the editors' schemas again from the models

@@ -2,7 +2,7 @@
  * End-to-end tests: a real Chromium, the real server, and emulated devices that speak real DDS.
  *
  * Each station has a free port and a DDS domain of its own (`station/station.ts`); tests that do not disturb one another
- * share one (`station/bench.ts`). What a theme can change is tagged `@theme` and runs in both.
+ * share one (`station/bench.ts`). What a theme can change is tagged `@theme` and runs in both; `@long` runs in campaigns.
  */
 import { defineConfig } from '@playwright/test';
 import { chromium } from './station/chromium.ts';
@@ -25,6 +25,8 @@ export default defineConfig({
 	reporter: [['list'], ['html', { outputFolder: 'artefacts/report', open: 'never' }]],
 	// One station at a time: the machines that run this have two cores, and each station is several processes.
 	workers: 1,
+	// What takes long is for the campaigns: `LONG=yes`.
+	...(process.env['LONG'] ? {} : { grepInvert: /@long/ }),
 	forbidOnly: Boolean(process.env['CI']),
 	timeout: 120_000,
 	expect: { timeout: 15_000 },

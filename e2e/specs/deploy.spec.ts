@@ -144,7 +144,7 @@ test('a changed model is saved, compared, refused while at work, deployed when h
 	expect(complaints).toEqual([]);
 });
 
-test('what is not checked, or would be illegal, is not deployed, and the page says why', async ({
+test('what is not checked, or would be illegal, is not deployed, and the page says why @long', async ({
 	station,
 	browse,
 	complaints

@@ -95,11 +95,11 @@ test('text of twice the size is still all there where much is shown', async ({ o
 test.describe('every page', () => {
 	test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody' });
 
-	for (const [language, locale] of [
-		['English', 'en-GB'],
-		['Swedish', 'sv-SE']
+	for (const [language, locale, tag] of [
+		['English', 'en-GB', ''],
+		['Swedish', 'sv-SE', ' @long']
 	] as const) {
-		test(`in ${language} has all there on small screens, in large text and in forced colours`, async ({ browse }) => {
+		test(`in ${language}${tag} has all there on small screens, in large text and in forced colours`, async ({ browse }) => {
 			const page = await browse(ADA, '/', { ...DESK, locale });
 			for (const path of PAGES) {
 				await page.goto(path);
