@@ -22,7 +22,7 @@ WHO = (Role.ADMINISTRATOR, Role.OPERATOR, Role.VIEWER, None)
 def as_one(seed: str) -> Counter[str]:
     """Requests of somebody with one of the roles, or of nobody. AssertionError for an answer that is not described."""
     role = WHO[int(seed.rpartition(".")[2]) % len(WHO)]
-    with tempfile.TemporaryDirectory() as folder, station(Path(folder)) as (server, _):
+    with tempfile.TemporaryDirectory() as folder, station(Path(folder), with_model=True) as (server, _):
         found = fuzz(server, role, examples=EXAMPLES, seed=zlib.crc32(seed.encode()))
     assert not found.wrong, "; ".join(found.wrong)
     answers = sum(found.statuses.values(), Counter[int]())

@@ -61,13 +61,21 @@ def described(ctx: CheckContext, response: Response, case: Case[Any]) -> None:
 
 
 @contextmanager
-def station(folder: Path) -> Iterator[tuple[Server, Telling]]:
-    """A server all of whose operations have something to answer, and its controller; files go to `folder`."""
+def station(folder: Path, *, with_model: bool = False) -> Iterator[tuple[Server, Telling]]:
+    """A server whose operations have something to answer, those about the model and the past only where it has a model;
+    and its controller. Files go to `folder`.
+    """
     database = f"sqlite:///{folder / 'station.sqlite'}"
     path = folder / "controller.sock"
     (model := folder / "model").mkdir()
     (model / "station.yaml").write_text("name: cell\n", encoding="utf-8")
-    settings = Settings(controller_socket=path, page=folder / "page", database=database, port=free_port(), model=model)
+    settings = Settings(
+        controller_socket=path,
+        page=folder / "page",
+        database=database,
+        port=free_port(),
+        model=model if with_model else None,
+    )
     loop = Loop()
     controller, server = Telling(loop, path), Server(loop, settings)
     controller.link = ControllerLink(path, controller.handle, controller.answer)

@@ -7,7 +7,7 @@ import multiprocessing
 import os
 import signal
 import tempfile
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 import pytest
@@ -91,13 +91,13 @@ class Desk:
         return self.told[-1]
 
 
-def run(scenario: Callable[[Desk], object], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def run(scenario: Callable[[Desk], Awaitable[None]], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
 
     async def live() -> None:
         desk = Desk()
         try:
-            await scenario(desk)  # type: ignore[misc]
+            await scenario(desk)
         finally:
             await desk.desk.close()
 
