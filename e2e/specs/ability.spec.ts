@@ -20,7 +20,7 @@ async function tried(page: Page): Promise<void> {
 test.describe('a station that works', () => {
 	test.use({ shared: 'trying' });
 
-	test('@theme an ability is seen as it is, tried alone, and refused where the supervisor does not allow it', async ({
+	test('an ability is seen as it is, tried alone, and refused where the supervisor does not allow it', async ({
 		station,
 		operate,
 		watch
@@ -111,7 +111,7 @@ test.describe('a station that works', () => {
 test.describe('devices that are not known to be emulated', () => {
 	test.use({ shared: null, byItself: false, people: 'everybody' });
 
-	test('a warning is confirmed first, and Stop ends what was tried', async ({ station, operate: operators, browse }) => {
+	test('a warning is confirmed first, and Stop ends what was tried @long', async ({ station, operate: operators, browse }) => {
 		station.emulate();
 		await operators.goto(new URL(address(moveTo('above_engine')), operators.url()).href);
 		await expect(region(operators, 'Try it')).toContainText('An engineer can try');

@@ -91,7 +91,7 @@ test('a variable and an ability with guard and action are added; what is wrong i
 	expect(complaints).toEqual([]);
 });
 
-test('names are completed and explained, and a condition is formatted, by keyboard', async ({ browse }) => {
+test('names are completed and explained, and a condition is formatted, by keyboard @long', async ({ browse }) => {
 	const page = await browse(INA, at(ROBOT, 'abilities', 'move_to_previous'));
 	await ready(page);
 	const enabled = expression(page, 'Enabled');
@@ -112,7 +112,7 @@ test('names are completed and explained, and a condition is formatted, by keyboa
 	await expect(page.locator('.cm-tooltip-hover')).toContainText('bolt_pair_1');
 });
 
-test('what is written in the file is in the form, with its comments, and the form follows', async ({ browse }) => {
+test('what is written in the file is in the form, with its comments, and the form follows @long', async ({ browse }) => {
 	const page = await browse(INA, at(ROBOT, 'abilities', 'move_to_previous'));
 	await ready(page);
 	await expect(field(page, 'title').getByRole('textbox')).toHaveValue('Move to the previous pose');
@@ -231,7 +231,7 @@ test('dialogs refuse bad names with why, and do what they say', async ({ browse 
 	await expect(form(page).getByRole('heading').first()).toContainText('Abilities');
 });
 
-test('a renamed variable is renamed wherever it is named; before it is deleted it is said what names it', async ({ browse }) => {
+test('a renamed variable is renamed wherever it is named; before it is deleted it is said what names it @long', async ({ browse }) => {
 	const page = await browse(INA, at(ROBOT, 'measured', 'pose'));
 	await ready(page);
 	await form(page).getByRole('button', { name: 'Rename…' }).click();
@@ -251,7 +251,7 @@ test('a renamed variable is renamed wherever it is named; before it is deleted i
 	await page.keyboard.press('Escape');
 });
 
-test('the tree is gone through by keyboard and searched; who may not edit can look', async ({ browse }) => {
+test('the tree is gone through by keyboard and searched; who may not edit can look @long', async ({ browse }) => {
 	const page = await browse(VERA, '/model');
 	await ready(page);
 	await expect(page.getByText('To change it the role engineer is needed')).toBeVisible();
