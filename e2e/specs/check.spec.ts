@@ -56,7 +56,7 @@ test('a specification that cannot be met is found, with a run that plays', async
 	expect(complaints).toEqual([]);
 });
 
-test('a longer run plays by keyboard, each step with what it changes @long', async ({ station, browse, complaints }) => {
+test('a longer run plays by keyboard, each step with what it changes', async ({ station, browse, complaints }) => {
 	const drafting = await Drafting.of(station);
 	await drafting.change('The first pair is never tightened', FORBIDS('bolts[bolt_pair_1] == tightened'));
 	await drafting.checked();
