@@ -45,7 +45,7 @@ test('silent devices make values unknown and name the topics awaited; when they 
 	await expect.poll(() => tightenings(operate), { timeout: 60_000 }).toBeGreaterThan(before);
 });
 
-test('somebody moves the robot by hand while it works, and work goes on', async ({ station, operate, watch }) => {
+test('somebody moves the robot by hand while it works, and work goes on @long', async ({ station, operate, watch }) => {
 	await expect(done(watch)).toHaveAttribute('aria-disabled', 'false', { timeout: 60_000 });
 	const before = await tightenings(operate);
 	await acknowledge(watch);

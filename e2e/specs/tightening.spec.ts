@@ -4,7 +4,7 @@ import { expect, test } from '../station/test.ts';
 /** An engine that others have begun may take two rounds before the pairs of the next are all this test's. */
 const ROUNDS = PAIRS.length + 2;
 
-test('the operator acknowledges on the watch and three bolt pairs are tightened @theme', async ({
+test('the operator acknowledges on the watch and three bolt pairs are tightened', async ({
 	operate,
 	watch,
 	complaints
