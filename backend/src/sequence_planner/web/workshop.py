@@ -61,6 +61,8 @@ class Workshop:
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
         self._opening = asyncio.Lock()
+        self._tied: tuple[int, str] | None = None  # the number of a draft, and its graph
+        self._tying = asyncio.Lock()
 
     async def close(self) -> None:
         """End what is being checked and answered."""
@@ -129,6 +131,16 @@ class Workshop:
             raise EditError(found)
         assert isinstance(found, UsagesView)
         return found
+
+    async def tied(self) -> str:
+        """What is tied to what, as JSON of a `GraphView`: found once for each draft. Raises `WorkEndedError`."""
+        async with self._tying:
+            draft = await self.open()
+            if self._tied is None or self._tied[0] != draft.number:
+                found = await worked("tied", draft.number, draft.files)
+                assert isinstance(found, str)
+                self._tied = draft.number, found
+            return self._tied[1]
 
     async def undo(self, by: Actor) -> FilesView:
         """Take back what somebody did last. Raises `EditError`."""

@@ -23,7 +23,8 @@ from sequence_planner.workshop.comparison import (
 )
 from sequence_planner.workshop.comparison_view import ComparisonView, TransferView
 from sequence_planner.workshop.files import Files, write_files
-from sequence_planner.workshop.references import Usage, dependants, parse_part, renamed, usages
+from sequence_planner.workshop.graph_view import graph_view
+from sequence_planner.workshop.references import Usage, dependants, graph, parse_part, renamed, station_of, usages
 from sequence_planner.workshop.transfer import transfer
 from sequence_planner.workshop.view import UsagesView, UsageView
 from sequence_planner.workshop.what_if import what_if
@@ -91,10 +92,17 @@ def used(files: Files, part: str, folder: Path) -> Iterator[UsagesView | str]:
         return
     yield UsagesView(
         usages=list(map(_usage_view, found.found)),
+        unwritten=list(map(_usage_view, found.unwritten)),
         dependants=list(map(_usage_view, without.found)),
         unread=[error_document(each) for each in (*found.skipped, *found.unread)],
         bound=found.bound,
     )
+
+
+def tied(number: int, files: Files, folder: Path) -> Iterator[str]:
+    """What is tied to what in draft `number`, as JSON of a `GraphView`; `folder` is empty."""
+    found = graph(files, _messages(files, folder))
+    yield graph_view(number, found, *station_of(files)).model_dump_json()
 
 
 def simulated(
