@@ -804,6 +804,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model/graph": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Graph
+         * @description The model as a whole: all that has a name, on the layers of the station, and what is tied to what.
+         */
+        get: operations["graph_api_v1_model_graph_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/model/language/check": {
         parameters: {
             query?: never;
@@ -3029,6 +3049,20 @@ export interface components {
             types: string[];
         };
         /**
+         * GraphView
+         * @description All things of the draft after its change `number`, and all ties between them; `unread` could not be read.
+         */
+        GraphView: {
+            /** Number */
+            number: number;
+            /** Things */
+            things: components["schemas"]["ThingView"][];
+            /** Ties */
+            ties: components["schemas"]["TieView"][];
+            /** Unread */
+            unread: components["schemas"]["FindingDocument"][];
+        };
+        /**
          * GuardDocument
          * @description What the supervisor adds to the guards of `starts`; `guard` is null when only the states themselves say it.
          *
@@ -3081,7 +3115,8 @@ export interface components {
          * @description What the name between `start` and `end` is.
          *
          *     `names` are the full names it has, of which the page knows the values; a reference through a parameter has one for
-         *     each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`.
+         *     each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`, and `part` is the id
+         *     by which it is looked for in the model, but for a parameter.
          */
         HoverView: {
             declared: components["schemas"]["DeclarationView"] | null;
@@ -3096,6 +3131,8 @@ export interface components {
             name: string;
             /** Names */
             names: string[];
+            /** Part */
+            part: string | null;
             /** Pattern */
             pattern: string;
             /** Resource */
@@ -3256,6 +3293,12 @@ export interface components {
             /** Sequence */
             sequence: number;
         };
+        /**
+         * Manner
+         * @description What who uses a thing does with it. Those of a pipeline are said from its side: it feeds a variable.
+         * @enum {string}
+         */
+        Manner: "runs" | "after" | "brings" | "goal" | "precondition" | "formula" | "forbids" | "excludes" | "orders" | "zone" | "rest" | "guard" | "progress" | "acknowledgement" | "commands" | "writes" | "effect" | "expects" | "reads" | "feeds" | "sends" | "source" | "carries" | "example" | "ranges" | "names";
         /**
          * MarkView
          * @description A record as a time line shows it. Of its content there is what is drawn.
@@ -4533,6 +4576,12 @@ export interface components {
             summary: string;
         };
         /**
+         * Standing
+         * @description Where a thing comes from.
+         * @enum {string}
+         */
+        Standing: "declared" | "implied" | "missing";
+        /**
          * StateAnswer
          * @description Every variable.
          */
@@ -4990,6 +5039,62 @@ export interface components {
             start: number;
         };
         /**
+         * ThingView
+         * @description Something with a name: `id` is that of a part, such as `variable:robot.pose`, or `station` for the station.
+         *
+         *     `layer` is that of the paper: 0 ROS 2, 1 abilities and estimates, 2 operations and specifications, 3 the order of
+         *     work. `within` is the index of the thing that it is a part of, as a value is of an enumeration. File, line and
+         *     column are where it is declared, or else first used; the file is null where it is given.
+         */
+        ThingView: {
+            /** Column */
+            column: number;
+            /** File */
+            file: string | null;
+            /** Id */
+            id: string;
+            /** Kind */
+            kind: string;
+            /** Layer */
+            layer: number;
+            /** Line */
+            line: number;
+            /** Name */
+            name: string;
+            /** Resource */
+            resource: string | null;
+            /** Section */
+            section: string | null;
+            standing: components["schemas"]["Standing"];
+            /** Title */
+            title: string | null;
+            /** Within */
+            within: number | null;
+        };
+        /**
+         * TieView
+         * @description A use of the thing with index `thing` by that with index `by`, at the entry `at` within that.
+         *
+         *     `written` is false where no text names it: then a field of a message has its name, and line and column are of `by`.
+         */
+        TieView: {
+            /** At */
+            at: string;
+            /** By */
+            by: number;
+            /** Column */
+            column: number;
+            /** File */
+            file: string;
+            /** Line */
+            line: number;
+            manner: components["schemas"]["Manner"];
+            /** Thing */
+            thing: number;
+            /** Written */
+            written: boolean;
+        };
+        /**
          * TimeoutsView
          * @description Seconds after the start in which it must have reacted, and have finished; null where there is no limit.
          *
@@ -5199,8 +5304,9 @@ export interface components {
          * UsagesView
          * @description Where a part is named, and which of these places outside of it could not be without it.
          *
-         *     `unread` are texts that make no sense and hold the name, and files that cannot be read; `bound` says why the name
-         *     is not the model's alone.
+         *     `unwritten` are entries that use it though nothing in them names it, such as a topic whose message has a field of
+         *     that name; they stand at their own names. `unread` are texts that make no sense and hold the name, and files that
+         *     cannot be read; `bound` says why the name is not the model's alone.
          */
         UsagesView: {
             /** Bound */
@@ -5209,6 +5315,8 @@ export interface components {
             dependants: components["schemas"]["UsageView"][];
             /** Unread */
             unread: components["schemas"]["FindingDocument"][];
+            /** Unwritten */
+            unwritten: components["schemas"]["UsageView"][];
             /** Usages */
             usages: components["schemas"]["UsageView"][];
         };
@@ -7244,6 +7352,39 @@ export interface operations {
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    graph_api_v1_model_graph_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["GraphView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
