@@ -25,6 +25,7 @@ from sequence_planner.workshop.language_worker import Draft, answer
 from sequence_planner.workshop.questions import LanguageQuestionKind, PlaceInText
 from sequence_planner.workshop.references import dependants, parse_part, renamed
 from sequence_planner.workshop.showing import Reader
+from sequence_planner.workshop.tasks import tied
 
 RESOURCES, ABILITIES = 200, 5
 LOOKS = 20
@@ -135,6 +136,10 @@ def measure(model: dict[str, str], folder: Path) -> None:
     print(", ".join(f"{kind.value} {middle(ask(kind)):.1f} ms" for kind in LanguageQuestionKind))
     part = parse_part("resource:machine_5")
     print(f"what depends on a resource: {seconds(lambda: dependants(model, part)):.2f} s")
+    folder.joinpath("whole").mkdir()
+    found: list[str] = []
+    whole = seconds(lambda: found.extend(tied(1, model, folder / "whole")))
+    print(f"the model as a whole: {whole:.2f} s, {len(found[0]) / 1e6:.2f} MB")
     print(f"a resource is renamed: {seconds(lambda: renamed(model, part, 'mill')):.2f} s")
 
 
