@@ -21,7 +21,8 @@ export function looseEnds(whole: Whole): Map<number, Loose> {
 	function why(thing: Thing): Loose | null {
 		if (thing.standing === 'missing') return 'missing';
 		if (PURPOSES.has(thing.kind)) return null;
-		if (thing.section === 'measured' && !has(thing, ['feeds'])) return 'unfed';
+		// What a person acknowledges comes from a watch or from the page.
+		if (thing.section === 'measured' && !has(thing, ['feeds', 'acknowledgement'])) return 'unfed';
 		if (thing.section === 'output' && !has(thing, ['sends'])) return 'unsent';
 		if (thing.section === 'estimated' && !has(thing, WRITING)) return 'unwritten';
 		if (thing.kind === 'enumeration' || thing.kind === 'message') return used(thing) ? null : 'unneeded';

@@ -2,6 +2,13 @@
 import type { ModelTie } from '#lib/contract.ts';
 import { leadsUp, withInside, type Manner, type Thing, type Whole } from './graph.ts';
 
+/** In which order manners are listed: what matters most first. */
+const MANNERS: readonly Manner[] = [
+	'runs', 'after', 'brings', 'goal', 'precondition', 'formula', 'forbids', 'excludes', 'orders', 'zone', 'rest',
+	'commands', 'writes', 'effect', 'feeds', 'sends', 'guard', 'progress', 'acknowledgement', 'expects', 'reads',
+	'source', 'carries', 'ranges', 'names', 'example'
+];
+
 /** Another thing to which the chosen one is tied in some manner. */
 export interface Other {
 	readonly thing: Thing;
@@ -22,16 +29,24 @@ export interface Uses {
 	readonly down: readonly Manners[];
 }
 
+interface Group {
+	readonly isUp: boolean;
+	readonly manner: Manner;
+	readonly isUsed: boolean;
+	readonly others: Map<string, Other & { readonly places: ModelTie[] }>;
+}
+
 /** All ties of a thing with what is no part of it. */
 export function usesOf(whole: Whole, index: number): Uses {
 	const own = new Set(withInside(whole, index));
-	const groups = new Map<string, { isUp: boolean; manner: Manner; isUsed: boolean; others: Map<string, { thing: Thing; part: string | null; places: ModelTie[] }> }>();
+	const groups = new Map<string, Group>();
 	function add(tie: ModelTie, isUsed: boolean): void {
 		const mine = isUsed ? tie.thing : tie.by;
 		const theirs = isUsed ? tie.by : tie.thing;
 		if (own.has(theirs)) return;
 		const thing = whole.things[theirs];
-		if (thing === undefined) return;
+		// With each name of something that it has, a resource is named as well.
+		if (thing === undefined || (!isUsed && thing.kind === 'resource')) return;
 		const isUp = leadsUp(whole, tie) === isUsed;
 		const key = `${isUp} ${tie.manner} ${isUsed}`;
 		const group = groups.get(key) ?? { isUp, manner: tie.manner, isUsed, others: new Map() };
@@ -46,7 +61,9 @@ export function usesOf(whole: Whole, index: number): Uses {
 		for (const tie of whole.usedBy[each] ?? []) add(tie, true);
 		for (const tie of whole.uses[each] ?? []) add(tie, false);
 	}
-	const all = [...groups.values()].map(({ others, ...group }) => ({ ...group, others: [...others.values()] }));
+	const all = [...groups.values()]
+		.map(({ others, ...group }) => ({ ...group, others: [...others.values()] }))
+		.sort((one, other) => MANNERS.indexOf(one.manner) - MANNERS.indexOf(other.manner));
 	return { up: all.filter(({ isUp }) => isUp), down: all.filter(({ isUp }) => !isUp) };
 }
 

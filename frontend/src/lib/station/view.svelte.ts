@@ -16,6 +16,8 @@ export class StationView {
 	#graph = $state.raw<ModelGraph | null>(null);
 	refusal = $state.raw<Refusal | null>(null);
 	#asked = 0;
+	/** Whether the focus goes to what is said of the thing that was chosen. */
+	leads = false;
 	readonly #looked: () => Looked;
 	readonly #findings: () => readonly Finding[];
 	readonly #go: (address: string) => void;
@@ -59,7 +61,9 @@ export class StationView {
 		this.#go(addressOf({ ...this.looked, ...change }));
 	}
 
-	choose(id: string | null): void {
+	/** `leads` says that who chooses is led to what is said of it. */
+	choose(id: string | null, leads = false): void {
+		this.leads = leads;
 		if (id !== this.looked.thing) this.look({ thing: id });
 	}
 
