@@ -109,6 +109,7 @@ export type FileView = Schemas['FileView'];
 export type DraftChange = Schemas['ChangeView'];
 export type ModelCheck = Schemas['CheckView'];
 export type Finding = Schemas['FindingDocument'];
+export type Usages = Schemas['UsagesView'];
 export type ModelGraph = Schemas['GraphView'];
 export type ModelThing = Schemas['ThingView'];
 export type ModelTie = Schemas['TieView'];

@@ -188,6 +188,9 @@ export interface ExpressionOptions extends Common {
 	readonly complete: (text: string, offset: number) => Promise<Completion | null>;
 	readonly hover: (text: string, offset: number) => Promise<Hover | null>;
 	readonly format: (text: string) => Promise<string | null>;
+	/** Leads to where a name is declared, and to where what it names is used. */
+	readonly define: (hover: Hover) => void;
+	readonly usages: (hover: Hover) => void;
 	/** The lines that are shown of what is named somewhere. */
 	readonly about: (hover: Hover) => readonly string[];
 	/** What is wrong with it now. */
@@ -216,6 +219,12 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 		const form = text.trim() === '' || view.state.readOnly ? null : await options.format(text);
 		const change = form === null || view.state.doc.toString() !== text ? null : changeTo(text, form);
 		if (change !== null) view.dispatch({ changes: change, userEvent: 'format' });
+	}
+
+	/** Does something with the name at the cursor. */
+	async function lead(where: (hover: Hover) => void): Promise<void> {
+		const found = await options.hover(view.state.doc.toString(), view.state.selection.main.head);
+		if (found !== null && !gone) where(found);
 	}
 
 	async function complete(context: CompletionContext): Promise<CompletionResult | null> {
@@ -258,6 +267,8 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 		EXPRESSIONS,
 		Prec.highest(keymap.of(completionKeymap)),
 		Prec.high(keymap.of([
+			{ key: 'F12', run: () => (void lead(options.define), true) },
+			{ key: 'Shift-F12', run: () => (void lead(options.usages), true) },
 			{ key: 'Shift-Alt-f', run: () => (void format(), true) },
 			{ key: 'Enter', run: () => (options.onenter(), true) },
 			{ key: 'Escape', run: closeCompletion }

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { pathAt, placesOf } from './places.ts';
-import { around, idOf, lookupOf, nodeAt, nodesOf, partOf, rowsOf, treeOf } from './tree.ts';
+import { around, idOf, lookupOf, nodeAt, nodesOf, parameterOf, partOf, rowsOf, treeOf } from './tree.ts';
 
 const FILES = {
 	'station.yaml': { digest: '1' },
@@ -48,8 +48,20 @@ describe('the tree', () => {
 			'variable:robot.pose',
 			'ability:robot.move',
 			'effect:robot.move.leaves',
-			'operation:make'
+			'operation:make',
+			'message:robot_msgs/msg/RobotState'
 		]);
+	});
+
+	test('a parameter is told with what it belongs to', () => {
+		const at = (file: string, ...path: string[]): string | null => {
+			const node = nodeAt(LOOKUP, file, path);
+			return node && parameterOf(node, 'to');
+		};
+		expect(at('resources/robot.yaml', 'abilities', 'move', 'start', 'when')).toBe('parameter:robot.move.to');
+		expect(at('resources/robot.yaml', 'abilities', 'move', 'effects', 'leaves', 'when')).toBe('parameter:robot.move.to');
+		expect(at('operations.yaml', 'make', 'goal')).toBe('parameter:operation:make.to');
+		expect(at('station.yaml', 'rest')).toBeNull();
 	});
 
 	test('what is around a node, and the node that a path belongs to', () => {

@@ -182,7 +182,6 @@ export function partOf(node: Node): string | null {
 	switch (node.kind) {
 		case 'station':
 		case 'section':
-		case 'message':
 			return null;
 		case 'variable':
 		case 'ability':
@@ -193,6 +192,15 @@ export function partOf(node: Node): string | null {
 		default:
 			return `${node.kind}:${node.name}`;
 	}
+}
+
+/** Which part a parameter is that is named in an entry of `node`. */
+export function parameterOf(node: Node, name: string): string | null {
+	const [kind, ...rest] = (partOf(node) ?? '').split(':');
+	const owner = rest.join(':');
+	if (kind === 'effect') return `parameter:${owner.slice(0, owner.lastIndexOf('.'))}.${name}`;
+	if (kind === 'ability' || kind === 'variable') return `parameter:${owner}.${name}`;
+	return kind === 'operation' || kind === 'specification' ? `parameter:${kind}:${owner}.${name}` : null;
 }
 
 /** The shape of a node's document: what its form has. */
