@@ -51,6 +51,10 @@ export type Kind = (typeof ORDER)[number];
 /** The kind by which a piece is told from others: of a variable its section. */
 export const kindOf = (thing: Thing): Kind => (thing.section ?? thing.kind) as Kind;
 
+const keyOf = (layer: number, resource: string | null): string => `${layer} ${resource ?? ''}`;
+/** The key of the lane in which a piece is. */
+export const laneOf = ({ layer, resource }: Thing): string => keyOf(layer, resource);
+
 export function fits(thing: Thing, { resource, kind }: Filter): boolean {
 	if (resource !== '' && (thing.resource ?? OF_STATION) !== resource) return false;
 	return kind === '' || kindOf(thing) === kind;
@@ -75,7 +79,7 @@ export function bandsOf(whole: Whole, filter: Filter): Band[] {
 		}
 		const found = [...lanes].map(([resource, pieces]): Lane => {
 			const ordered = pieces.sort((one, other) => ORDER.indexOf(kindOf(one)) - ORDER.indexOf(kindOf(other)));
-			return { key: `${layer} ${resource ?? ''}`, resource, pieces: ordered };
+			return { key: keyOf(layer, resource), resource, pieces: ordered };
 		});
 		found.sort((one, other) => (order.get(one.resource) ?? Infinity) - (order.get(other.resource) ?? Infinity));
 		return { layer, lanes: found, count: found.reduce((sum, { pieces }) => sum + pieces.length, 0) };
@@ -85,7 +89,7 @@ export function bandsOf(whole: Whole, filter: Filter): Band[] {
 /** Of more pieces than this the lanes are closed at first. */
 const MOST_OPEN = 300;
 
-export const isLarge = (bands: readonly Band[]): boolean => bands.reduce((sum, { count }) => sum + count, 0) > MOST_OPEN;
+export const isLarge = ({ things }: Whole): boolean => things.filter(isPiece).length > MOST_OPEN;
 
 /** How many pieces of each kind there are, in their order. */
 export function countsIn(pieces: readonly Thing[]): [Kind, number][] {
