@@ -74,7 +74,7 @@ class Workshop:
             draft = await self._identity.read(drafts.read)
             if not draft.number or draft.base != files:
                 now = self._identity.now()
-                draft, _ = await self._identity.write(lambda connection: drafts.take_up(connection, files, now))
+                draft = await self._identity.write(lambda connection: drafts.take_up(connection, files, now))
             await self._noticed(draft)
         return draft
 
