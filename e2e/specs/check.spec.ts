@@ -70,6 +70,12 @@ test('a longer run plays by keyboard, each step with what it changes', async ({ 
 	await expect(player(page)).toHaveAttribute('data-place', '0');
 	await player(page).getByRole('button', { name: /^2 / }).press('Enter');
 	await expect(player(page)).toHaveAttribute('data-place', '2');
+	await player(page).getByText('An ability in this step').press('Enter');
+	const [ability, course] = [player(page).getByLabel('Ability', { exact: true }), page.getByTestId('run-phase')];
+	await expect(course).toHaveAttribute('data-phase', /^(executing|finished|enabled|idle)$/, { timeout: 20_000 });
+	await ability.selectOption('robot.move_to_position(above_engine)');
+	await expect(page.getByTestId('automaton')).toContainText('robot.target_pose == robot.pose');
+	await expect(page.getByTestId('supervised')).toHaveCount(0);
 	await examine(page, 'check');
 
 	await page.setViewportSize({ width: 1440, height: 900 });

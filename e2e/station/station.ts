@@ -5,7 +5,7 @@
  */
 import { spawnSync } from 'node:child_process';
 import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { createServer } from 'node:net';
+import { createServer, type Server } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
@@ -64,23 +64,47 @@ export interface Options {
 	readonly beside?: readonly [command: string, args: readonly string[]];
 }
 
-let stations = 0;
+/** The port of a domain's mark, less its number. */
+const MARKS = 7000;
+/** Above it the ports of a domain are those that the system hands out to anybody. */
+const DOMAINS = 100;
+/** How many domains were looked at: one that was left is not taken at once, while others may still know who was there. */
+let looked = process.pid;
 
-/** Which of the workers this is that run at the same time. */
-const WORKER = Number(process.env['TEST_PARALLEL_INDEX'] ?? 0);
+/** A DDS domain of this machine that a station has for itself. */
+class Domain {
+	readonly #mark: Server;
 
-/**
- * A DDS domain that keeps a station apart from all others of this run, and most likely from those of other runs on this
- * machine. Above 100 its ports are those that the system hands out to anybody.
- */
-function nextDomain(): number {
-	stations += 1;
-	const [workers, each] = [2, 50];
-	return 1 + workers * ((process.pid + stations) % each) + (WORKER % workers);
+	private constructor(
+		readonly number: number,
+		mark: Server
+	) {
+		this.#mark = mark;
+	}
+
+	/** One that no other station under test has, in this run or another: a port that it listens on says so. */
+	static async free(): Promise<Domain> {
+		for (let tries = 0; tries < DOMAINS; tries += 1) {
+			looked += 1;
+			const number = 1 + (looked % DOMAINS);
+			const mark = createServer();
+			const listens = new Promise<boolean>((told) => {
+				mark.once('error', () => told(false));
+				mark.listen(MARKS + number, '127.0.0.1', () => told(true));
+			});
+			if (await listens) return new Domain(number, mark);
+		}
+		throw new Error('all DDS domains have a station');
+	}
+
+	async leave(): Promise<void> {
+		await new Promise((left) => this.#mark.close(left));
+	}
 }
 
 export class Station {
 	readonly #env: NodeJS.ProcessEnv;
+	readonly #domain: Domain;
 	readonly #logs: string;
 	readonly #started: StationProcess[] = [];
 	/** Where the database of a station is that is no demonstration. */
@@ -93,10 +117,12 @@ export class Station {
 
 	private constructor(
 		readonly port: number,
+		domain: Domain,
 		options: Options
 	) {
+		this.#domain = domain;
 		const database = options.byItself ? {} : { SEQUENCE_PLANNER_DATABASE: `sqlite:///${this.#folder}/station.sqlite` };
-		this.#env = { ...process.env, ROS_DOMAIN_ID: String(nextDomain()), ...database };
+		this.#env = { ...process.env, ROS_DOMAIN_ID: String(domain.number), ...database };
 		this.#logs = options.logs;
 		this.#demonstration = options.byItself;
 		this.model = options.copied ? this.#copy(options.copied) : (options.model ?? MODEL);
@@ -108,7 +134,7 @@ export class Station {
 
 	/** Starts a station and waits until it answers. */
 	static async start(options: Options): Promise<Station> {
-		const station = new Station(await freePort(), options);
+		const station = new Station(await freePort(), await Domain.free(), options);
 		try {
 			await station.#answers();
 			if (!options.byItself) await station.#let(options.people);
@@ -220,6 +246,7 @@ export class Station {
 	async stop(): Promise<void> {
 		const ends = await Promise.allSettled(this.#started.map((running) => running.stop()));
 		const failed = ends.find((end) => end.status === 'rejected');
+		await this.#domain.leave();
 		rmSync(this.#folder, { recursive: true });
 		if (failed) throw failed.reason;
 	}
