@@ -1,17 +1,9 @@
 import type { Locator, Page } from '@playwright/test';
 import { examine, findings } from '../station/barriers.ts';
-import { copiedModel, Drafting } from '../station/drafting.ts';
-import { ERIK, VERA } from '../station/station.ts';
-import { expect, test as base } from '../station/test.ts';
+import { VERA } from '../station/station.ts';
+import { expect, test } from '../station/test.ts';
 
-const test = base.extend({
-	station: async ({ bench }, use) => {
-		const logs = new URL('../artefacts/logs/station', import.meta.url).pathname;
-		await use(
-			await bench.kept('station', { byItself: false, devices: false, people: [ERIK, VERA], logs, model: copiedModel() })
-		);
-	}
-});
+test.use({ shared: 'drafted', byItself: false, people: 'everybody', copied: 'bolt_tightening' });
 
 const map = (page: Page): Locator => page.getByRole('group', { name: 'Map of the station' });
 const piece = (page: Page, id: string): Locator => page.locator(`[data-stop="${id}"]`);
@@ -59,11 +51,10 @@ test('from the goal of an operation down to the topic that carries it out, by mo
 });
 
 test('usages of anything are found, from the station and from an expression; loose ends and findings are marked', async ({
-	station,
+	drafting,
 	browse,
 	complaints
 }) => {
-	const drafting = await Drafting.of(station);
 	await drafting.change('Something that nothing needs', [
 		'resources/robot.yaml',
 		'measured:\n',
