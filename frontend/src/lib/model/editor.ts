@@ -162,7 +162,8 @@ function edited(host: HTMLElement, options: Common, more: Extension): { view: Ed
 				EditorView.updateListener.of((update) => {
 					if (update.docChanged && !shows) options.onwrite(update.state.doc.toString());
 				}),
-				EditorView.domEventHandlers({ blur: () => options.onleave(), beforeinput: typedOver })
+				// One that is taken out of the page while it has the focus loses it in the midst of an update of the page.
+				EditorView.domEventHandlers({ blur: () => queueMicrotask(() => options.onleave()), beforeinput: typedOver })
 			]
 		})
 	});
