@@ -15,6 +15,7 @@ from contextlib import closing
 from pathlib import Path
 
 from ruamel.yaml import YAML
+from stations.large import ABILITIES, RESOURCES, files
 
 from sequence_planner.actor import SYSTEM
 from sequence_planner.storage.database import Database
@@ -26,46 +27,7 @@ from sequence_planner.workshop.questions import LanguageQuestionKind, PlaceInTex
 from sequence_planner.workshop.references import dependants, parse_part, renamed
 from sequence_planner.workshop.showing import Reader
 
-RESOURCES, ABILITIES = 200, 5
 LOOKS = 20
-
-
-def resource(number: int) -> str:
-    """A file of YAML."""
-    before = f"machine_{number - 1}.held" if number else "true"
-    abilities = "".join(
-        f"""
-  step_{step}:
-    title: Step {step}
-    # What must be so before.
-    enabled: {before} and place == {("p0", "p1", "p2")[step % 3]}
-    start:
-      do: [target := {("p1", "p2", "p0")[step % 3]}]
-    executing: place != target
-    finish: {{when: place == target, do: [held := true]}}
-    effects:
-      arrives_{step}: {{kind: executing, when: place != target, do: [place := target]}}
-"""
-        for step in range(ABILITIES)
-    )
-    return f"""title: Machine {number}
-measured:
-  place: {{type: place, initial: p0}}
-output:
-  target: {{type: place, initial: p0}}
-estimated:
-  held: {{type: bool}}
-abilities:{abilities}"""
-
-
-def files() -> dict[str, str]:
-    """The model."""
-    station = "name: large\ntitle: Large\nenumerations:\n  place: [p0, p1, p2]\n"
-    operations = "".join(
-        f"work_{n}:\n  precondition: true\n  goal: machine_{n}.held\n" for n in range(0, RESOURCES, 20)
-    )
-    made = {"station.yaml": station, "operations.yaml": operations}
-    return {**made, **{f"resources/machine_{number}.yaml": resource(number) for number in range(RESOURCES)}}
 
 
 def seconds(work: Callable[[], object]) -> float:
