@@ -16,6 +16,7 @@ from control.bench import until
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckState, CheckView
 from sequence_planner.workshop.checking import checked
+from sequence_planner.workshop.draft_process import DraftProcess
 from sequence_planner.workshop.processes import WorkEndedError, working
 from workshop.models import BOLTS, bolts
 
@@ -84,7 +85,8 @@ class Desk:
 
     def __init__(self) -> None:
         self.told: list[CheckView] = []
-        self.desk = CheckDesk(BOLTS, self.told.append)
+        self.process = DraftProcess()
+        self.desk = CheckDesk(BOLTS, self.process, self.told.append)
 
     async def until(self, what: Callable[[CheckView], bool]) -> CheckView:
         await until(lambda: bool(self.told) and what(self.told[-1]), PATIENCE)
@@ -100,6 +102,7 @@ def run(scenario: Callable[[Desk], Awaitable[None]], tmp_path: Path, monkeypatch
             await scenario(desk)
         finally:
             await desk.desk.close()
+            await desk.process.close()
 
     asyncio.run(live())
     assert list(tmp_path.glob("sequence-planner-*")) == []
