@@ -94,14 +94,15 @@ def words(model: dict[str, str], folder: Path) -> None:
 
     def changed(was: str, text: str) -> Callable[[], object]:
         def work() -> object:
-            other = f"{model[MACHINE].replace(was, text)}# {next(numbers)}\n"
+            number = str(next(numbers))
+            other = f"{model[MACHINE].replace(was, text.replace('{n}', number))}# {number}\n"
             draft.take({MACHINE: other})
             return errors(draft)
 
         return work
 
     told("errors after a guard was changed", changed("p0\n    start", "p9\n    start"), LOOKS)
-    told("errors after a variable was added", changed("estimated:", "estimated:\n  extra: {type: bool}"), LOOKS)
+    told("errors after a variable was added", changed("estimated:", "estimated:\n  extra_{n}: {type: bool}"), LOOKS)
     draft.take(model)
     place = ["abilities", "step_1", "start", "when"]
     asked = PlaceInText(file=MACHINE, path=place, text="place == p1 and mach", offset=20)

@@ -5,12 +5,14 @@ Python stages are none of them: these come only from files on the server.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
+from operator import itemgetter
 from pathlib import Path
 
 from sequence_planner.model.loading import DEFINITIONS, FILES
@@ -23,6 +25,7 @@ Files = Mapping[str, str]
 LONGEST_FILE = 1_000_000  # characters
 MOST_FILES = 2_000
 STAGES = "stages"
+_FOLDERS = ("resources", "messages")  # where files are looked for
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
@@ -63,7 +66,7 @@ class FolderReader:
         """The files; those that are no UTF-8 text are left out. Raises `OSError`."""
         known, self._known = self._known, {}
         files: dict[str, str] = {}
-        for name, entry in sorted(_found(self._folder, "")):
+        for name, entry in sorted(_found(self._folder), key=itemgetter(0)):
             if len(files) == MOST_FILES:
                 break
             now, stamp = time.time_ns(), _stamp(entry.stat())
@@ -86,12 +89,12 @@ def _stamp(status: os.stat_result) -> _Stamp:
     return max(status.st_mtime_ns, status.st_ctime_ns), status.st_size, status.st_dev, status.st_ino
 
 
-def _found(folder: Path | str, below: str) -> Iterator[tuple[str, os.DirEntry[str]]]:
+def _found(folder: Path | str, below: str = "") -> Iterator[tuple[str, os.DirEntry[str]]]:
     """The files of a model below `folder`, each with its name, that of `folder` being `below`."""
-    with os.scandir(folder) as entries:
+    with contextlib.suppress(FileNotFoundError, NotADirectoryError, PermissionError), os.scandir(folder) as entries:
         for entry in entries:
             name = f"{below}{entry.name}"
-            if entry.is_dir(follow_symlinks=False):
+            if (below or name in _FOLDERS) and entry.is_dir(follow_symlinks=False):
                 yield from _found(entry.path, f"{name}/")
             elif _PATH.fullmatch(name) and entry.is_file():
                 yield name, entry
