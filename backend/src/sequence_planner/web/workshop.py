@@ -67,6 +67,13 @@ class Workshop:
         await self._desk.close()
         await self._process.close()
 
+    async def read_ahead(self) -> None:
+        """Read what the files hold, so that whoever asks for them first need not wait for that."""
+        files = await run_in_threadpool(self._files.read)
+        draft = await self._identity.read(drafts.read)
+        for each in (draft, Draft(draft.number, files, files)):
+            await run_in_threadpool(self._reader.views, each, each.files)
+
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since."""
         async with self._opening:
