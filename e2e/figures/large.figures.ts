@@ -196,7 +196,7 @@ function report(began: number): void {
 		'',
 		`200 resources with 1 000 abilities (\`backend/benchmarks/stations/large.py\`), at commit ${commit} on ${cpus().length} cores, beside all`,
 		`processes of the station; the load of the machine was ${loads} after. Made by \`make figures\`, or alone by`,
-		'`cd e2e && npx playwright test --config figures/figures.config.ts large`. Times are by the clock of the page, to the frame after the one that',
+		'`cd e2e && npx playwright test --config figures/figures.config.ts large.figures`. Times are by the clock of the page, to the frame after the one that',
 		'shows it; a key by Event Timing, in steps of 8 ms, 16 at least.',
 		'',
 		'| what | median | at most | looks |',

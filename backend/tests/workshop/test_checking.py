@@ -147,3 +147,21 @@ def test_work_that_fails_is_not_waited_for() -> None:
                 await anext(found)
 
     asyncio.run(live())
+
+
+def test_a_process_that_is_not_waited_for_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+    async def live() -> None:
+        for seconds in (0.0, 0.01, 0.3):
+            process = DraftProcess()
+            asked = asyncio.create_task(process.errors(bolts()))
+            await asyncio.sleep(seconds)
+            asked.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await asked
+            await process.close()
+            assert [each for each in multiprocessing.active_children() if each.name == "answering"] == []
+
+    asyncio.run(live())
+    assert list(tmp_path.glob("sequence-planner-*")) == []
