@@ -91,7 +91,7 @@ class Answering:
                 async with asyncio.timeout(patience):
                     asked = question()
                     if self._kept is None:
-                        await self._start()
+                        self._kept = await self._start()
                     connection = self._kept[1]
                     await asyncio.to_thread(connection.send, asked)
                     return await _told(connection)
@@ -110,10 +110,10 @@ class Answering:
         async with self._turn:
             await self._end()
 
-    async def _start(self) -> None:
+    async def _start(self) -> tuple[ForkServerProcess, Connection, tempfile.TemporaryDirectory[str]]:
         starting = asyncio.create_task(asyncio.to_thread(self._started))
         try:
-            self._kept = await asyncio.shield(starting)
+            return await asyncio.shield(starting)
         except asyncio.CancelledError:
             self._kept = await starting  # so that it is ended
             raise
