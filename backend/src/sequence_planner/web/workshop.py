@@ -31,7 +31,7 @@ from sequence_planner.workshop.showing import Reader, change_view, marks
 from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, RevisionView, UsagesView, WorkshopView
 
 MOST_SHOWN = 50  # changes
-ANSWERED_WITHIN = 10.0  # seconds, for questions about a text
+ANSWERED_WITHIN = 20.0  # seconds, for questions about a text
 
 
 def _revision_view(revision: Revision, running: str, edited: str) -> RevisionView:
