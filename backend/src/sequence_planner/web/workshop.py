@@ -21,16 +21,17 @@ from sequence_planner.workshop import draft as drafts
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckView, waiting
 from sequence_planner.workshop.draft import Change, Differences, Draft, Proposal
+from sequence_planner.workshop.draft_process import DraftProcess
 from sequence_planner.workshop.edits import Edit, PartChangedError, WriteText
-from sequence_planner.workshop.files import Files, read_files
-from sequence_planner.workshop.processes import Answering, worked
+from sequence_planner.workshop.files import Files, FolderReader
+from sequence_planner.workshop.processes import worked
 from sequence_planner.workshop.questions import LanguageAnswer, LanguageQuestionKind, TextAt
 from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
 from sequence_planner.workshop.showing import Reader, change_view, marks
 from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, RevisionView, UsagesView, WorkshopView
 
 MOST_SHOWN = 50  # changes
-ANSWERED_WITHIN = 5.0  # seconds, for questions about a text
+ANSWERED_WITHIN = 20.0  # seconds, for questions about a text
 
 
 def _revision_view(revision: Revision, running: str, edited: str) -> RevisionView:
@@ -51,13 +52,13 @@ class Workshop:
     def __init__(self, identity: IdentityOffice, model: Path, revisions: Path, limits: StreamLimits) -> None:
         self.latest = Latest(self._present, limits)
         self.folder = model
+        self._files = FolderReader(model)
         self._identity = identity
         self._revisions = Revisions(revisions)
         self._keeping = asyncio.Lock()
         self._reader = Reader()
-        self._desk = CheckDesk(model, self._found)
-        self._language = Answering("language_worker", "answering")
-        self._told: dict[str, str] = {}  # the files that the process of the language knows
+        self._process = DraftProcess()
+        self._desk = CheckDesk(model, self._process, self._found)
         self._check: CheckView | None = None
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
@@ -66,12 +67,19 @@ class Workshop:
     async def close(self) -> None:
         """End what is being checked and answered."""
         await self._desk.close()
-        await self._language.close()
+        await self._process.close()
+
+    async def read_ahead(self) -> None:
+        """Read what the files hold, so that whoever asks for them first need not wait for that."""
+        files = await run_in_threadpool(self._files.read)
+        draft = await self._identity.read(drafts.read)
+        for each in (draft, Draft(draft.number, files, files)):
+            await run_in_threadpool(self._reader.views, each, each.files)
 
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since."""
         async with self._opening:
-            files = await run_in_threadpool(read_files, self.folder)
+            files = await run_in_threadpool(self._files.read)
             draft = await self._identity.read(drafts.read)
             if not draft.number or draft.base != files:
                 now = self._identity.now()
@@ -113,7 +121,7 @@ class Workshop:
         """
 
         async def propose(draft: Draft) -> Proposal:
-            found = await worked("renamed_files", draft.files, part, name)
+            found = await self._process.ask(draft.files, "renamed_files", part, name)
             if isinstance(found, str):
                 raise EditError(found)
             assert isinstance(found, dict)
@@ -125,7 +133,7 @@ class Workshop:
 
     async def usages(self, part: str) -> UsagesView:
         """Where a part is named. Raises `EditError` and `WorkEndedError`."""
-        found = await worked("used", (await self.open()).files, part)
+        found = await self._process.ask((await self.open()).files, "used", part)
         if isinstance(found, str):
             raise EditError(found)
         assert isinstance(found, UsagesView)
@@ -200,18 +208,7 @@ class Workshop:
     async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> LanguageAnswer:
         """What is answered to a question about a text. Raises `WorkEndedError`."""
         draft = await self.open()
-
-        def question() -> object:
-            if not self._language.begun:
-                self._told = {}
-            changed: dict[str, str | None] = {
-                path: text for path, text in draft.files.items() if self._told.get(path) != text
-            }
-            changed |= dict.fromkeys(self._told.keys() - draft.files.keys())
-            self._told = dict(draft.files)
-            return changed, kind, asked
-
-        answer = await self._language.ask(question, ANSWERED_WITHIN)
+        answer = await self._process.ask(draft.files, "answer", kind, asked, patience=ANSWERED_WITHIN)
         assert isinstance(answer, LanguageAnswer)
         return answer
 
