@@ -3177,11 +3177,11 @@ export interface components {
         };
         /**
          * Examples
-         * @description How the examples of a pipeline end: all of them, or the one of that index.
+         * @description How the examples of a pipeline end: all of them, or those of that name.
          */
         Examples: {
-            /** Example */
-            example?: number | null;
+            /** Name */
+            name?: string | null;
             /** Pipeline */
             pipeline: string;
         };
@@ -4598,7 +4598,10 @@ export interface components {
          *     what was before, or the draft makes something else of it.
          */
         RecordedView: {
-            example: components["schemas"]["DraftExampleView"];
+            /** Example */
+            example: {
+                [key: string]: components["schemas"]["JsonValue"];
+            };
             /** Left Out */
             left_out: components["schemas"]["LeftOutView"][];
             /** Number */
@@ -5055,8 +5058,8 @@ export interface components {
         };
         /**
          * StageOfferView
-         * @description A kind of stage at an edge. Where it `fits`, `edits` put it there as `stage`, to be filled in further, and declare
-         *     what it needs; else `reason` says why no such stage can stand there.
+         * @description A kind of stage at an edge. Where it `fits`, `edits` put it there as `stage`, to be filled in further, and
+         *     declare what it needs; else `reason` says why no such stage can stand there.
          */
         StageOfferView: {
             /** Edits */

@@ -13,13 +13,14 @@ from sequence_planner.control.asks import (
     AskCorrection,
     AskDefinition,
     AskGoal,
+    AskRecord,
     AskReset,
     AskWhyNot,
 )
 from sequence_planner.control.corrections import Corrections
 from sequence_planner.control.definitions import Definitions
 from sequence_planner.control.offers import Offers
-from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView, RecordView
 from sequence_planner.control.view_part import View
 from sequence_planner.control.why_not import WhyNot
 
@@ -30,6 +31,7 @@ class Asking:
 
     pipelines: Callable[[], PipelinesView]
     flows: Callable[[], FlowsView]
+    record: Callable[[str], RecordView]
     corrections: Corrections
     offers: Offers
     why_not: WhyNot
@@ -42,6 +44,8 @@ class Asking:
                 return self.pipelines()
             case AboutFlows():
                 return self.flows()
+            case AskRecord(pipeline=pipeline):
+                return self.record(pipeline)
             case AskCorrection(values=values):
                 return await self.corrections.preview(values)
             case AskAdvice():

@@ -9,10 +9,11 @@ from collections.abc import Mapping
 from pydantic import JsonValue
 
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.pipeline_view import EdgeFlowView, FlowsView, PipelineFlowView
+from sequence_planner.control.pipeline_view import EdgeFlowView, FlowsView, PipelineFlowView, RecordView
 from sequence_planner.pipelines.observation import EdgeView, PipelineView
 
 SHORTEST, LONGEST = 1.0, 10.0  # seconds over which a rate is taken
+MOST_VALUES = 5000  # of a record that is told in full
 MOST_ITEMS, LONGEST_TEXT, DEEPEST = 16, 200, 6  # of a value that is shown
 
 Counts = Mapping[str, tuple[int, ...]]  # by pipeline: all that came, and the records of each edge
@@ -62,6 +63,39 @@ def _edge(edge: EdgeView, rate: float | None, moment: Moment) -> EdgeFlowView:
         troubles=[each[:LONGEST_TEXT] for each in edge.troubles[:MOST_ITEMS]],
         at=moment.epoch_of(edge.at),
     )
+
+
+def record_view(view: PipelineView, moment: Moment) -> RecordView | None:
+    """The last record in full; None where there has been none. Raises ValueError for one that is too large."""
+    first, last = view.edges[0], view.edges[-1]
+    if first.last is None or first.at is None:
+        return None
+    has_come = last.last is not None and last.at is not None and last.at >= first.at
+    left = [MOST_VALUES]
+    return RecordView(
+        first={name: _in_full(value, left) for name, value in first.last.items()},
+        last={name: _in_full(value, left) for name, value in (last.last or {}).items()} if has_come else None,
+        at=moment.epoch_of(first.at),
+    )
+
+
+def _in_full(value: object, left: list[int]) -> JsonValue:
+    """A value as JSON has it; `left` is how many more there may be."""
+    left[0] -= 1
+    if left[0] < 0:
+        raise ValueError(f"it has more than {MOST_VALUES} values")
+    match value:
+        case float():
+            return value if math.isfinite(value) else None
+        case None | bool() | int():
+            return value
+        case Mapping():
+            return {str(name): _in_full(inner, left) for name, inner in value.items()}
+        case list() | tuple():
+            if len(value) > left[0]:
+                raise ValueError(f"it has more than {MOST_VALUES} values")
+            return [_in_full(inner, left) for inner in value]
+    return str(value)
 
 
 def shown(value: object, depth: int = 0) -> JsonValue:
