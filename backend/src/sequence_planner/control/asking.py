@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass
 
 from sequence_planner.control.asks import (
@@ -30,7 +30,7 @@ class Asking:
     """Answers asks. The event loop is never held up: what takes long is awaited, and done in another process."""
 
     pipelines: Callable[[], PipelinesView]
-    flows: Callable[[], FlowsView]
+    flows: Callable[[Container[str] | None], FlowsView]
     record: Callable[[str], RecordView]
     corrections: Corrections
     offers: Offers
@@ -42,8 +42,8 @@ class Asking:
         match ask:
             case AboutPipelines():
                 return self.pipelines()
-            case AboutFlows():
-                return self.flows()
+            case AboutFlows(among=among):
+                return self.flows(among)
             case AskRecord(pipeline=pipeline):
                 return self.record(pipeline)
             case AskCorrection(values=values):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 
 import structlog
 
@@ -112,13 +112,13 @@ class Devices:
         owed = [f"the command on {topic} to be sent" for topic in self.commander.owed]
         return (*self.network.rivals.values(), *owed)
 
-    def flows(self) -> FlowsView:
-        """What has passed the pipelines."""
-        return self._observing.view(self._observed(), Moment.now())
+    def flows(self, among: Container[str] | None = None) -> FlowsView:
+        """What has passed the pipelines, or those `among` these."""
+        return self._observing.view(self._observed(among), Moment.now())
 
     def record(self, pipeline: str) -> RecordView:
         """The last record of a pipeline. Raises `CommandRefused` where there is none that can be told."""
-        found = self._observed().get(pipeline)
+        found = self._observed({pipeline}).get(pipeline)
         if found is None:
             raise CommandRefused("no-pipeline", "There is no such pipeline", f"What runs has no `{pipeline}`.", 404)
         try:
@@ -131,9 +131,9 @@ class Devices:
             raise CommandRefused("no-record", "There is no record", detail, 409)
         return record
 
-    def _observed(self) -> dict[str, PipelineView]:
-        outgoing = self.commander.observed() | self.clients.observed()
-        return self.feeds.observed() | outgoing
+    def _observed(self, among: Container[str] | None) -> dict[str, PipelineView]:
+        outgoing = self.commander.observed(among) | self.clients.observed(among)
+        return self.feeds.observed(among) | outgoing
 
     def close(self) -> None:
         """Hear and say nothing more."""

@@ -32,8 +32,8 @@ OURS = frozenset({*STAGES, "measured", "output", "estimated"})
 @dataclass(frozen=True)
 class Sketch:
     """A draft as far as it makes sense. `documents` are its files as they are written, those of `unread` as they were
-    when they could be read. `written` is the station without the variables that follow from messages. `cut` has of lists
-    of stages the index of the first that is no stage, `lost` has topics and others that cannot be used as a whole.
+    when they could be read. `written` is the station without the variables that follow from messages. `cut` has of
+    lists of stages the index of the first that is no stage, `lost` has topics and others that cannot be used at all.
     """
 
     documents: Mapping[str, Document]

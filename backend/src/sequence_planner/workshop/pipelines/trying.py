@@ -34,9 +34,11 @@ class Trying:
         self._view = view
         concerned = _concerned(graph, view)
         written = graph.sketch.written
+        of = {view.resource, *(each.resource for each in graph.pipelines.values() if each.name in concerned)}
         resources = {
-            name: _only(name, document, concerned) if name != view.resource else document
+            name: document if name == view.resource else _only(name, document, concerned)
             for name, document in written.resources.items()
+            if name in of
         }
         self._station = replace(written, resources=resources)
         self._concerned = concerned

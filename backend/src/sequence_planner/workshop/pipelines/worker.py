@@ -56,7 +56,8 @@ class Version:
     @cached_property
     def graph(self) -> Graph:
         """Its pipelines."""
-        return Graph(self.reader.sketch(self.files))
+        with collection_put_off():
+            return Graph(self.reader.sketch(self.files))
 
 
 class Pipelines:
@@ -66,7 +67,6 @@ class Pipelines:
         self._draft = Version(folder / "draft")
         self._running = Version(folder / "running")
 
-    @collection_put_off()
     def answer(self, asked: Asked) -> PipelineAnswer:
         """What is answered. Raises `EditError` for what is not there."""
         self._draft.take(asked.changed, asked.stages)
