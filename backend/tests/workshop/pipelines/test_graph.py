@@ -192,7 +192,9 @@ def test_one_topic_in_two_resources_is_shown_twice() -> None:
     assert "a topic belongs to one resource" in pipelines[f"robot {STATE}"].findings[0].message
 
 
-JUNK = st.sampled_from([None, 7, "x", [], {}, {"map": {}}, {"filter": "no_such_field"}, {"tick": {"every": -1}}, [[]]])
+JUNK: st.SearchStrategy[object] = st.sampled_from(
+    [None, 7, "x", [], {}, {"map": {}}, {"filter": "no_such_field"}, {"tick": {"every": -1}}, [[]]]
+)
 
 
 @st.composite

@@ -132,7 +132,7 @@ def _concerned(graph: Graph, view: DraftPipelineView) -> frozenset[str]:
             above.update(source.pipeline for source in graph.pipelines[id_].sources if source.pipeline is not None)
     found = behind | above
     if view.role == "flow":
-        found |= {id_ for id_, each in graph.pipelines.items() if each.role != "outgoing"}
+        found |= set(graph.pipelines)
     return frozenset(graph.pipelines[id_].name for id_ in found if id_ in graph.pipelines)
 
 
