@@ -12,18 +12,28 @@ from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.actor import Actor
 from sequence_planner.control.definition_view import AutomatonView
+from sequence_planner.control.pipeline_view import RecordView
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.latest import Latest
 from sequence_planner.web.looking_messages import WorkshopSnapshot
 from sequence_planner.web.settings import StreamLimits
 from sequence_planner.workshop import draft as drafts
+from sequence_planner.workshop.asking import Changed, DraftAnswering
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckView, waiting
 from sequence_planner.workshop.draft import Change, Differences, Draft, Proposal
 from sequence_planner.workshop.draft_process import DraftProcess
-from sequence_planner.workshop.edits import Edit, PartChangedError, WriteText
+from sequence_planner.workshop.edits import AddEntry, Edit, PartChangedError, WriteText
 from sequence_planner.workshop.files import Files, FolderReader
+from sequence_planner.workshop.pipelines.questions import (
+    Asked,
+    Examples,
+    PipelineAnswer,
+    PipelineQuestion,
+    Recording,
+)
+from sequence_planner.workshop.pipelines.view import RecordedView, RecordingView, RunsView
 from sequence_planner.workshop.processes import worked
 from sequence_planner.workshop.questions import LanguageAnswer, LanguageQuestionKind, TextAt
 from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
@@ -32,6 +42,7 @@ from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, 
 
 MOST_SHOWN = 50  # changes
 ANSWERED_WITHIN = 20.0  # seconds, for questions about a text
+RUN_WITHIN = 30.0  # seconds, for questions about pipelines, which run
 
 
 def _revision_view(revision: Revision, running: str, edited: str) -> RevisionView:
@@ -59,6 +70,7 @@ class Workshop:
         self._reader = Reader()
         self._process = DraftProcess()
         self._desk = CheckDesk(model, self._process, self._found)
+        self._pipelines = DraftAnswering("pipelines.worker", "answering", 2)  # the draft, and what runs
         self._check: CheckView | None = None
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
@@ -68,6 +80,7 @@ class Workshop:
         """End what is being checked and answered."""
         await self._desk.close()
         await self._process.close()
+        await self._pipelines.close()
 
     async def read_ahead(self) -> None:
         """Read what the files hold, so that whoever asks for them first need not wait for that."""
@@ -211,6 +224,30 @@ class Workshop:
         answer = await self._process.ask(draft.files, "answer", kind, asked, patience=ANSWERED_WITHIN)
         assert isinstance(answer, LanguageAnswer)
         return answer
+
+    async def ask_pipelines(self, question: PipelineQuestion) -> PipelineAnswer:
+        """What is answered to a question about the pipelines. Raises `EditError` and `WorkEndedError`."""
+        draft = await self.open()
+
+        def asked(changed: Changed, running: Changed) -> Asked:
+            return Asked(draft.number, changed, running, self.folder, question)
+
+        answer = await self._pipelines.ask(asked, draft.files, draft.base, patience=RUN_WITHIN)
+        if isinstance(answer, str):
+            raise EditError(answer)
+        assert isinstance(answer, PipelineAnswer)
+        return answer
+
+    async def record(self, pipeline: str, name: str, heard: RecordView, by: Actor) -> RecordedView:
+        """Add an example to the draft. Raises `EditError` and `WorkEndedError`."""
+        question = Recording(pipeline=pipeline, name=name, first=heard.first, last=heard.last)
+        made = await self.ask_pipelines(question)
+        assert isinstance(made, RecordingView)
+        edit = AddEntry(file=made.file, path=[*made.path, 0], value=made.example)
+        changed = await self.change([edit], by, f"An example of {pipeline}: {name}")
+        runs = await self.ask_pipelines(Examples(pipeline=pipeline, name=name))
+        assert isinstance(runs, RunsView)
+        return RecordedView(number=changed.number, run=runs.runs[-1], example=made.example, left_out=made.left_out)
 
     async def _again(self, draft: Draft, by: Actor, *, undo: bool) -> Proposal:
         def last(connection: Connection) -> tuple[Change, Differences]:

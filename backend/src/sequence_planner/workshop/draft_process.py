@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from sequence_planner.analysis.document import FindingDocument
+from sequence_planner.workshop.asking import Changed, DraftAnswering
 from sequence_planner.workshop.files import Files
-from sequence_planner.workshop.processes import PATIENCE, Answering
+from sequence_planner.workshop.processes import PATIENCE
 
 
 class DraftProcess:
     """Answers questions about a draft, of which it is told only what is new. Used from one event loop."""
 
     def __init__(self) -> None:
-        self._process = Answering("language_worker", "answering")
-        self._told: dict[str, str] = {}  # the files that the process knows
+        self._process = DraftAnswering("language_worker", "answering", 1)
 
     async def close(self) -> None:
         """End the process."""
@@ -24,17 +24,10 @@ class DraftProcess:
         Raises `WorkEndedError`.
         """
 
-        def question() -> object:
-            if not self._process.begun:
-                self._told = {}
-            changed: dict[str, str | None] = {
-                path: text for path, text in files.items() if self._told.get(path) != text
-            }
-            changed |= dict.fromkeys(self._told.keys() - files.keys())
-            self._told = dict(files)
+        def question(changed: Changed) -> object:
             return changed, name, asked
 
-        return await self._process.ask(question, patience)
+        return await self._process.ask(question, files, patience=patience)
 
     async def errors(self, files: Files) -> list[FindingDocument]:
         """What makes these files unusable, as far as it shows before pipelines are built. Raises `WorkEndedError`."""
