@@ -25,7 +25,7 @@ export class Bench {
 	readonly tree = $derived.by(() => treeOf(this.draft.files, this.draft.contents));
 	readonly lookup = $derived(lookupOf(this.tree));
 	readonly found = $derived.by(() =>
-		foundIn(this.draft.check?.findings ?? [], this.lookup, (file) => this.draft.text(file))
+		foundIn(this.draft.check?.findings ?? [], this.lookup, this.draft.files)
 	);
 	readonly counts = $derived(countsOf(this.found, this.lookup));
 

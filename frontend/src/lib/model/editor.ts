@@ -210,6 +210,8 @@ export interface ExpressionEditor extends Editor {
 	format(): Promise<void>;
 }
 
+/** Milliseconds without a key after which a text is looked at: somebody who types on is not asked about half a word. */
+const REST = 120;
 /** Milliseconds after which a text is looked at again where the server did not say what is wrong with it. */
 const ASK_AGAIN = 3000;
 
@@ -275,7 +277,7 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 			{ key: 'Escape', run: closeCompletion }
 		])),
 		autocompletion({ override: [complete], icons: false, defaultKeymap: false }),
-		linter(lint, { delay: 250, needsRefresh: ({ transactions }) => transactions.some(({ effects }) => effects.some((each) => each.is(again))) }),
+		linter(lint, { delay: REST, needsRefresh: ({ transactions }) => transactions.some(({ effects }) => effects.some((each) => each.is(again))) }),
 		EditorView.clipboardInputFilter.of((text) => text.replaceAll(/\s*\n\s*/g, ' ')),
 		hoverTooltip(async (_, at) => {
 			const found = await options.hover(view.state.doc.toString(), at);

@@ -95,3 +95,20 @@ describe('the tree', () => {
 		expect(performance.now() - began).toBeLessThan(1000);
 	});
 });
+
+test('after an edit of one file all others are what they were', () => {
+	const [, resources] = treeOf(FILES, CONTENTS);
+	const edited = { ...CONTENTS, 'resources/arm.yaml': { measured: { pose: {} } } };
+	const files = { ...FILES, 'resources/arm.yaml': { digest: '5' } };
+	const tree = treeOf(files, edited);
+	expect(tree[1]?.children.find(({ name }) => name === 'robot')).toBe(resources?.children[0]);
+	// What is looked up is what a look through the whole tree finds.
+	const lookup = lookupOf(tree);
+	expect(new Set(lookup.byId.values())).toEqual(new Set(nodesOf(tree)));
+	for (const node of nodesOf(tree)) {
+		expect(lookup.byId.get(node.id)).toBe(node);
+		for (const child of node.children) expect(lookup.parents.get(child.id)).toBe(node);
+	}
+	expect(tree.map(({ id }) => lookup.parents.get(id))).toEqual(tree.map(() => undefined));
+	expect(lookup.byId.has('resources/arm.yaml#measured#speed')).toBe(false);
+});
