@@ -94,7 +94,7 @@ def station(folder: Path, *, with_model: bool = False) -> Iterator[tuple[Server,
 def documented(server: Server) -> dict[str, Any]:
     """The document as the server gives it; its cookies have the names that they have on the loopback."""
     with server.client(Role.VIEWER) as client:
-        found: dict[str, Any] = client.get("/api/v1/openapi.json").raise_for_status().json()
+        found: dict[str, Any] = client.get("/api/v1/openapi.json", timeout=60.0).raise_for_status().json()
     found["components"]["securitySchemes"]["session"]["name"] = session_cookie(server.settings)
     return found
 
