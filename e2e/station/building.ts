@@ -60,9 +60,12 @@ export class Builder {
 		await this.addAll(effects);
 	}
 
-	/** Chooses a part in the tree. */
-	async choose(...steps: string[]): Promise<void> {
+	/** Looks for a part in the tree by its name, and chooses it. */
+	async choose(name: string, ...steps: string[]): Promise<void> {
+		const search = this.page.getByLabel('Search: name or title');
+		await this.hand.write(search, name);
 		await this.hand.press(this.page.locator(`[role="treeitem"][data-id="${steps.join('#')}"]`));
+		await this.hand.write(search, '');
 	}
 
 	async fill(fields: readonly Field[], within = ''): Promise<void> {
