@@ -6,6 +6,9 @@ import type { Added, Field } from './single-bolt.ts';
 /** Milliseconds in which a change is written to the draft, beside its check. */
 const WRITTEN = 20_000;
 
+/** The fields of the dialog in which something is chosen; in the others it is written. */
+const CHOICES = new Set(['Direction', 'What it says']);
+
 export class Builder {
 	constructor(
 		readonly page: Page,
@@ -49,7 +52,7 @@ export class Builder {
 		await this.hand.write(this.dialog.getByLabel('Name'), name);
 		for (const [label, value] of Object.entries(asked)) {
 			const field = this.dialog.getByLabel(label);
-			if (label === 'Direction') await this.hand.choose(field, value);
+			if (CHOICES.has(label)) await this.hand.choose(field, value);
 			else await this.hand.write(field, value);
 		}
 		await this.hand.press(this.dialog.getByRole('button', { name: 'Add', exact: true }));

@@ -4,6 +4,8 @@ import { expect, type Locator, type Page } from '@playwright/test';
 export interface Hand {
 	/** Presses a button, follows a link, ticks a box. */
 	press(what: Locator): Promise<void>;
+	/** Presses what is not possible now, to be told why. */
+	attempt(what: Locator): Promise<void>;
 	/** Puts a text in the place of what a field holds. */
 	write(field: Locator, text: string): Promise<void>;
 	/** Chooses by the words of the choice. */
@@ -17,6 +19,10 @@ export class Mouse implements Hand {
 
 	press(what: Locator): Promise<void> {
 		return what.click();
+	}
+
+	attempt(what: Locator): Promise<void> {
+		return what.click({ force: true }); // else it is waited for until it is possible
 	}
 
 	write(field: Locator, text: string): Promise<void> {
@@ -43,6 +49,10 @@ export class Keyboard implements Hand {
 		await this.goTo(what);
 		const isBox = (await what.getAttribute('type')) === 'checkbox';
 		await this.page.keyboard.press(isBox ? 'Space' : 'Enter');
+	}
+
+	attempt(what: Locator): Promise<void> {
+		return this.press(what);
 	}
 
 	async write(field: Locator, text: string): Promise<void> {

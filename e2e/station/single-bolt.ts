@@ -206,6 +206,7 @@ const WANTED: readonly Added[] = [
 	{
 		what: 'Specification: Specifications',
 		name: 'no_standing_tool_on_placed_bolt',
+		asked: { 'What it says': 'Never one thing while another holds' },
 		fields: [
 			text('Title', 'The tool must turn before it meets a placed bolt'),
 			condition('Never', 'robot.target_pose == at_bolt or robot.pose == at_bolt'),
