@@ -1,8 +1,11 @@
 /** What follows when a model is built: it is checked, saved, deployed, tried, and runs until the bolt is tightened. */
+import { spawnSync } from 'node:child_process';
+import { dirname, join } from 'node:path';
 import { expect, test, type Locator, type Page } from '@playwright/test';
 import { findings } from './barriers.ts';
 import type { Builder } from './building.ts';
 import { done, picture, variable } from './seen.ts';
+import { EXECUTABLE, ROOT } from './station.ts';
 
 const REVISION = 'First model';
 
@@ -62,7 +65,8 @@ async function deploy(builder: Builder): Promise<void> {
 	await hand.press(button('Deploy'));
 	await expect(page.getByTestId('deployment')).toHaveAttribute('data-phase', 'runs', { timeout: 60_000 });
 	await expect(page.locator(`[data-revision="${REVISION}"]`)).toHaveAttribute('data-running', 'true');
-	await picture(page, 'first-deployed');
+	await expect(page.getByTestId('draft')).toContainText('It is what runs.');
+	await looked(page, 'deployed');
 }
 
 /** Tries the robot alone: it goes from home to above the bolt and back, while the station is paused. */
@@ -99,10 +103,18 @@ async function work(builder: Builder, watch: Page): Promise<void> {
 	await looked(page, 'tightened');
 }
 
+/** What is in the folder of the station means the same as the model of this repository. */
+function same(model: string): void {
+	const args = [join(import.meta.dirname, 'same_meaning.py'), model, join(ROOT, 'models/single_bolt')];
+	const ended = spawnSync(join(dirname(EXECUTABLE), 'python'), args, { encoding: 'utf8' });
+	expect(ended.stdout + ended.stderr).toBe('');
+	expect(ended.status).toBe(0);
+}
+
 export async function finish(builder: Builder, watch: Page, model: string): Promise<void> {
 	await test.step('check', () => check(builder));
 	await test.step('deploy', () => deploy(builder));
 	await test.step('try', () => tryAlone(builder));
 	await test.step('work', () => work(builder, watch));
-	console.log(model);
+	await test.step('the same', () => same(model));
 }
