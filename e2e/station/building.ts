@@ -19,6 +19,11 @@ export class Builder {
 		return this.page.getByRole('region', { name: 'Chosen part' });
 	}
 
+	/** The file beside the form. */
+	get file(): Locator {
+		return this.page.getByRole('region', { name: 'File', exact: true }).locator('.cm-content');
+	}
+
 	get dialog(): Locator {
 		return this.page.getByRole('dialog');
 	}
@@ -64,10 +69,11 @@ export class Builder {
 	}
 
 	/** Looks for a part in the tree by its name, and chooses it. */
-	async choose(name: string, ...steps: string[]): Promise<void> {
+	async choose(name: string, file: string, ...path: string[]): Promise<void> {
+		const id = [file, ...path.map(encodeURIComponent)].join('#');
 		const search = this.page.getByLabel('Search: name or title');
 		await this.hand.write(search, name);
-		await this.hand.press(this.page.locator(`[role="treeitem"][data-id="${steps.join('#')}"]`));
+		await this.hand.press(this.page.locator(`[role="treeitem"][data-id="${id}"]`));
 		await this.hand.write(search, '');
 	}
 

@@ -1,7 +1,7 @@
 /** What follows when a model is built: it is checked, saved, deployed, tried, and runs until the bolt is tightened. */
 import { spawnSync } from 'node:child_process';
 import { dirname, join } from 'node:path';
-import { expect, test, type Locator, type Page } from '@playwright/test';
+import { expect, type Locator, type Page } from '@playwright/test';
 import { findings } from './barriers.ts';
 import type { Builder } from './building.ts';
 import { done, picture, variable } from './seen.ts';
@@ -28,7 +28,7 @@ export async function looked(page: Page, name: string): Promise<void> {
 const need = (page: Page, name: string, met: boolean): Promise<void> =>
 	expect(page.locator(`[data-need="${name}"]`)).toHaveAttribute('data-met', String(met), { timeout: 30_000 });
 
-async function check(builder: Builder): Promise<void> {
+export async function check(builder: Builder): Promise<void> {
 	const { page } = builder;
 	await goTo(builder, 'Check');
 	await expect(page.getByTestId('check')).toHaveAttribute('data-verdict', 'good', { timeout: 60_000 });
@@ -38,7 +38,7 @@ async function check(builder: Builder): Promise<void> {
 	await looked(page, 'check');
 }
 
-async function deploy(builder: Builder): Promise<void> {
+export async function deploy(builder: Builder): Promise<void> {
 	const { page, hand } = builder;
 	await goTo(builder, 'Deploy');
 	const dialog = page.getByRole('dialog', { name: /^Deploy/ });
@@ -70,7 +70,7 @@ async function deploy(builder: Builder): Promise<void> {
 }
 
 /** Tries the robot alone: it goes from home to above the bolt and back, while the station is paused. */
-async function tryAlone(builder: Builder): Promise<void> {
+export async function tryAlone(builder: Builder): Promise<void> {
 	const { page, hand } = builder;
 	await hand.press(page.getByRole('link', { name: 'To Operate' }));
 	await picture(page, 'first-operate');
@@ -89,7 +89,7 @@ async function tryAlone(builder: Builder): Promise<void> {
 }
 
 /** Lets the station work until the bolt is tightened. */
-async function work(builder: Builder, watch: Page): Promise<void> {
+export async function work(builder: Builder, watch: Page): Promise<void> {
 	const { page, hand } = builder;
 	await hand.press(page.getByTestId('strip').getByRole('button', { name: 'Continue' }));
 	await hand.press(page.getByRole('link', { name: 'Operate', exact: true }));
@@ -104,17 +104,9 @@ async function work(builder: Builder, watch: Page): Promise<void> {
 }
 
 /** What is in the folder of the station means the same as the model of this repository. */
-function same(model: string): void {
+export function same(model: string): void {
 	const args = [join(import.meta.dirname, 'same_meaning.py'), model, join(ROOT, 'models/single_bolt')];
 	const ended = spawnSync(join(dirname(EXECUTABLE), 'python'), args, { encoding: 'utf8' });
 	expect(ended.stdout + ended.stderr).toBe('');
 	expect(ended.status).toBe(0);
-}
-
-export async function finish(builder: Builder, watch: Page, model: string): Promise<void> {
-	await test.step('check', () => check(builder));
-	await test.step('deploy', () => deploy(builder));
-	await test.step('try', () => tryAlone(builder));
-	await test.step('work', () => work(builder, watch));
-	await test.step('the same', () => same(model));
 }

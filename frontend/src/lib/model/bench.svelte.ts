@@ -2,7 +2,7 @@
 import { createContext } from 'svelte';
 import type { Draft } from './draft.svelte.ts';
 import { countsOf, foundIn } from './found.ts';
-import { lookupOf, treeOf, type Node } from './tree.ts';
+import { lookupOf, STATION, treeOf, type Node } from './tree.ts';
 
 /** Where the file editor is asked to go. */
 export interface Sight {
@@ -40,6 +40,16 @@ export class Bench {
 
 	get node(): Node | null {
 		return this.lookup.byId.get(this.chosen) ?? null;
+	}
+
+	/** What the chosen one was in, where it is there no more: renamed or deleted, by an undo or by somebody else. */
+	get around(): Node | null {
+		for (let id = this.chosen; id.includes('#'); ) {
+			id = id.slice(0, id.lastIndexOf('#'));
+			const found = this.lookup.byId.get(id);
+			if (found) return found;
+		}
+		return this.lookup.byId.get(STATION) ?? null;
 	}
 
 	/** Whether this person may change the model. */
