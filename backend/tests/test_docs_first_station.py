@@ -1,4 +1,4 @@
-"""The tutorial in the browser says what the model of this repository has: its names, conditions, pipelines and guard."""
+"""The tutorial in the browser says what the model of this repository has: its conditions, pipelines and guard."""
 
 from __future__ import annotations
 

@@ -31,10 +31,10 @@ const test = base.extend<{ model: string }>({
 
 /** As docs/first-station.md leads through it; `between` is what else is done once the robot is there. */
 async function build(builder: Builder, between: () => Promise<void>): Promise<void> {
-	const { page } = builder;
-	const { form } = builder;
+	const { form, page } = builder;
+	await expect(form.getByRole('heading').first()).toContainText('Station');
+	await looked(page, 'empty');
 	await test.step('the station, what is said, and the words for it', async () => {
-		await expect(form.getByRole('heading').first()).toContainText('Station');
 		await builder.fill(STATION);
 		await builder.addAll(PARTS.WORDS);
 	});
@@ -70,7 +70,6 @@ for (const [title, hand] of HANDS)
 		test.setTimeout(title.endsWith('@long') ? 900_000 : 300_000);
 		const page = await browse(ERIK, '/model');
 		const builder = new Builder(page, hand(page));
-		await looked(page, 'empty');
 		await build(builder, () => mistakes(builder));
 		await run(builder, await browse(EVA, '/watch', WRIST), model);
 		expect(complaints).toEqual([]);
