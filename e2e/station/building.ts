@@ -53,8 +53,8 @@ export class Builder {
 	async add(part: Added): Promise<void> {
 		const { what, name, asked = {}, fields = [], text, effects = [] } = part;
 		await this.hand.press(this.button('Add…'));
-		await this.hand.choose(this.dialog.getByLabel('What'), what);
-		await this.hand.write(this.dialog.getByLabel('Name'), name);
+		await this.hand.choose(this.dialog.getByLabel('What', { exact: true }), what);
+		await this.hand.write(this.dialog.getByLabel('Name', { exact: true }), name);
 		for (const [label, value] of Object.entries(asked)) {
 			const field = this.dialog.getByLabel(label);
 			if (CHOICES.has(label)) await this.hand.choose(field, value);

@@ -110,7 +110,11 @@ async function fields(builder: Builder): Promise<void> {
 	await hand.write(executing, '');
 	await page.keyboard.type('targ');
 	await expect(page.locator('.cm-tooltip-autocomplete')).toContainText('target_pose');
-	await page.keyboard.press('Enter');
+	// What has only just been offered is not taken by a key that was meant for something else.
+	await expect(async () => {
+		await page.keyboard.press('Enter');
+		await expect(executing).toHaveText('target_pose', { timeout: 500 });
+	}).toPass();
 	await page.keyboard.type(' == position and pose != position');
 	await hand.leave();
 	await expect(executing).toHaveText(before);
