@@ -175,6 +175,31 @@ def test_the_check_follows_the_draft(eva: httpx.Client) -> None:
     assert [(each["file"], each["severity"]) for each in found["findings"]] == [("operations.yaml", "error")]
 
 
+def test_an_ability_is_seen_to_go_through_the_run_that_shows_a_finding(eva: httpx.Client) -> None:
+    never = "never_placed:\n  forbidden: bolts[bolt_pair_1] == placed\n"
+    text = read(eva, "/files")["files"]["specifications.yaml"]["text"]
+    number = made(eva, {"kind": "text", "file": "specifications.yaml", "was": text, "text": text + never})["number"]
+    findings = checked(eva)["findings"]
+    at = next(place for place, each in enumerate(findings) if each["trace"] and each["trace"]["steps"])
+    steps = findings[at]["trace"]["steps"]
+    ability = next(name for step in steps if step["kind"] == "start" for name in step["names"])
+    path = f"{MODEL}/check/findings/{at}/run"
+    run = eva.get(path, params={"number": number, "ability": ability}).json()
+    assert len(run) == len(steps) + 1
+    assert {each["name"] for each in run} == {ability}
+    assert run[0]["executing"]["holds"] is False
+    started = next(place for place, step in enumerate(steps) if ability in step["names"])
+    assert run[started]["enabled"]["holds"] is True
+    assert all(each["done"] for each in run[started + 1]["start_actions"])
+    problem(eva.get(path, params={"number": number - 1, "ability": ability}), 404, "no-run")
+    problem(eva.get(path, params={"number": number, "ability": "robot.fly"}), 404, "no-run")
+    problem(
+        eva.get(f"{MODEL}/check/findings/{len(findings)}/run", params={"number": number, "ability": ability}),
+        404,
+        "no-run",
+    )
+
+
 def _workshop(stream: ClientConnection, number: int) -> dict[str, Any]:
     """The view once the check of that change is done."""
     while True:

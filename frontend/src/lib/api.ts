@@ -741,6 +741,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model/check/findings/{finding}/run": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Run
+         * @description How an ability goes through the run that shows a finding: its automaton in the initial state and after each step.
+         *
+         *     The finding is named by its place in the check of the draft after change `number`.
+         */
+        get: operations["run_api_v1_model_check_findings__finding__run_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/model/comparison": {
         parameters: {
             query?: never;
@@ -1933,12 +1955,10 @@ export interface components {
         };
         /**
          * AbilityDefinitionView
-         * @description A ground ability as it is defined; `arguments` are the values of its parameters.
+         * @description An ability of the live station in the state of `revision`.
          *
-         *     All that holds does so in the state of `revision`. `allowed` says whether the supervisor would allow a start in it,
-         *     null where that cannot be told. `finish` is null for an ability that is done at its start. `supervised` is null
-         *     where nothing is added, or not known yet. `obstacle` says why it cannot be tried now; `real_devices` what speaks
-         *     against its devices being emulated, which has to be confirmed.
+         *     `obstacle` says why it cannot be tried now; `real_devices` what speaks against its devices being emulated, which has
+         *     to be confirmed.
          */
         AbilityDefinitionView: {
             /** Acknowledgement */
@@ -2238,6 +2258,52 @@ export interface components {
             next: number | null;
             /** Records */
             records: components["schemas"]["Record"][];
+        };
+        /**
+         * AutomatonView
+         * @description A ground ability as it is written, and what of that holds in a state; `arguments` are those of its parameters.
+         *
+         *     `allowed` says whether the supervisor would allow a start in that state, null where that cannot be told. `finish` is
+         *     null for an ability that is done at its start. `supervised` is null where nothing is added, or not known yet.
+         */
+        AutomatonView: {
+            /** Acknowledgement */
+            acknowledgement: string | null;
+            /** Allowed */
+            allowed: boolean | null;
+            /** Arguments */
+            arguments: string[];
+            /** Cancel Actions */
+            cancel_actions: components["schemas"]["AbilityActionView"][];
+            /** Duration */
+            duration: [
+                number,
+                number
+            ] | null;
+            enabled: components["schemas"]["PredicateView"];
+            executing: components["schemas"]["PredicateView"];
+            finish: components["schemas"]["PredicateView"] | null;
+            /** Finish Actions */
+            finish_actions: components["schemas"]["AbilityActionView"][];
+            finished: components["schemas"]["PredicateView"];
+            /** Name */
+            name: string;
+            place: components["schemas"]["WrittenPlaceView"] | null;
+            /** Reactions */
+            reactions: components["schemas"]["ReactionView"][];
+            /** Resource */
+            resource: string;
+            /** Restart */
+            restart: boolean;
+            start: components["schemas"]["PredicateView"];
+            /** Start Actions */
+            start_actions: components["schemas"]["AbilityActionView"][];
+            supervised: components["schemas"]["SupervisedView"] | null;
+            /** Task */
+            task: string | null;
+            timeouts: components["schemas"]["TimeoutsView"];
+            /** Title */
+            title: string;
         };
         /**
          * BehaviourDifference
@@ -7128,6 +7194,46 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    run_api_v1_model_check_findings__finding__run_get: {
+        parameters: {
+            query: {
+                ability: string;
+                number: number;
+            };
+            header?: never;
+            path: {
+                finding: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AutomatonView"][];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {

@@ -21,6 +21,7 @@ export type WhyNot = Schemas['WhyNotView'];
 export type Condition = Schemas['ConditionView'];
 export type Involved = Schemas['InvolvedView'];
 export type Changer = Schemas['ChangerView'];
+export type AbilityAutomaton = Schemas['AutomatonView'];
 export type AbilityDefinition = Schemas['AbilityDefinitionView'];
 export type Predicate = Schemas['PredicateView'];
 export type Conjunct = Schemas['ConjunctView'];

@@ -11,6 +11,7 @@ from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.actor import Actor
+from sequence_planner.control.definition_view import AutomatonView
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.latest import Latest
@@ -74,7 +75,7 @@ class Workshop:
             draft = await self._identity.read(drafts.read)
             if not draft.number or draft.base != files:
                 now = self._identity.now()
-                draft, _ = await self._identity.write(lambda connection: drafts.take_up(connection, files, now))
+                draft = await self._identity.write(lambda connection: drafts.take_up(connection, files, now))
             await self._noticed(draft)
         return draft
 
@@ -128,6 +129,23 @@ class Workshop:
         if isinstance(found, str):
             raise EditError(found)
         assert isinstance(found, UsagesView)
+        return found
+
+    async def played(self, finding: int, ability: str, number: int) -> list[AutomatonView]:
+        """How an ability goes through the run that shows a finding of the check of change `number`.
+
+        Raises `EditError` where there is no such run or ability, and `WorkEndedError`.
+        """
+        check, draft = await self.checked(), await self.open()
+        if number != check.number or number != draft.number:
+            raise EditError("the draft has changed since: look at its findings again")
+        trace = check.findings[finding].trace if finding < len(check.findings) else None
+        if trace is None:
+            raise EditError("there is no run that shows such a finding")
+        found = await worked("drawn", draft.files, self.folder, ability, trace)
+        if isinstance(found, str):
+            raise EditError(found)
+        assert isinstance(found, list)
         return found
 
     async def undo(self, by: Actor) -> FilesView:

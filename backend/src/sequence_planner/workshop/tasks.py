@@ -7,7 +7,8 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.analysis import analyses
-from sequence_planner.analysis.document import error_document
+from sequence_planner.analysis.document import TraceDocument, error_document
+from sequence_planner.control.definition_view import AutomatonView
 from sequence_planner.expressions.types import Value
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import ModelError
@@ -23,6 +24,7 @@ from sequence_planner.workshop.comparison import (
 )
 from sequence_planner.workshop.comparison_view import ComparisonView, TransferView
 from sequence_planner.workshop.files import Files, write_files
+from sequence_planner.workshop.playing import played
 from sequence_planner.workshop.references import Usage, dependants, parse_part, renamed, usages
 from sequence_planner.workshop.transfer import transfer
 from sequence_planner.workshop.view import UsagesView, UsageView
@@ -122,6 +124,19 @@ def simulated(
         )
         return
     yield what_if(meant.station, meant.supervisor, present, seconds, deadline)
+
+
+def drawn(
+    files: Files, stages: Path | None, ability: str, trace: TraceDocument, folder: Path
+) -> Iterator[list[AutomatonView] | str]:
+    """How an ability goes through a run, or why nobody can say; `folder` is empty."""
+    try:
+        automaton = _station(files, stages, folder / "new").automaton
+    except ModelError as error:
+        yield f"the model cannot be used: {error.findings[0]}"
+        return
+    found = automaton.abilities.get(ability)
+    yield f"the model has no ability `{ability}`" if found is None else played(automaton, found, trace)
 
 
 def _meant(what: str, files: Files, stages: Path | None, folder: Path) -> Meant:
