@@ -7,7 +7,7 @@ import { check, deploy, looked, same, tryAlone, work } from '../station/first-ru
 import { Keyboard, Mouse, type Hand } from '../station/hand.ts';
 import { mistakes } from '../station/mistakes.ts';
 import { PARTS, REST, STATION } from '../station/single-bolt.ts';
-import { ERIK, EVA, Station } from '../station/station.ts';
+import { ADA, ERIK, EVA, Station } from '../station/station.ts';
 import { expect, test as base, WRIST } from '../station/test.ts';
 
 /** A station that has nothing but its name. */
@@ -23,7 +23,7 @@ const test = base.extend<{ model: string }>({
 	},
 	station: async ({ model }, use, info) => {
 		const logs = join(import.meta.dirname, '../artefacts/logs', `first-station-${info.testId}`);
-		const station = await Station.start({ byItself: false, devices: true, people: [EVA, ERIK], logs, model });
+		const station = await Station.start({ byItself: false, devices: true, people: [ADA, EVA, ERIK], logs, model });
 		await use(station);
 		await station.stop();
 	}
