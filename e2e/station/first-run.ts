@@ -2,7 +2,7 @@
 import { spawnSync } from 'node:child_process';
 import { dirname, join } from 'node:path';
 import { expect, type Locator, type Page } from '@playwright/test';
-import { findings } from './barriers.ts';
+import { findings, overflow } from './barriers.ts';
 import type { Builder } from './building.ts';
 import { done, picture, variable } from './seen.ts';
 import { EXECUTABLE, ROOT } from './station.ts';
@@ -16,13 +16,18 @@ async function goTo({ page, hand }: Builder, title: string): Promise<void> {
 	await expect(page.getByRole('heading', { name: title, level: 1 })).toBeVisible();
 }
 
-/** No barrier for anybody on the page as it is now, light and dark; a picture is kept. */
+/** No barrier for anybody on the page as it is now, light and dark, and room for it on a tablet; pictures are kept. */
 export async function looked(page: Page, name: string): Promise<void> {
 	await picture(page, `first-${name}`);
 	expect.soft(await findings(page), name).toEqual([]);
 	await page.emulateMedia({ colorScheme: 'dark' });
 	expect.soft(await findings(page, ['color-contrast']), `${name}, dark`).toEqual([]);
 	await page.emulateMedia({ colorScheme: 'light' });
+	const desk = page.viewportSize();
+	await page.setViewportSize({ width: 768, height: 1024 });
+	expect.soft(await overflow(page), `${name}: pixels to the right of a tablet`).toBe(0);
+	await picture(page, `first-${name}-768`);
+	if (desk) await page.setViewportSize(desk);
 }
 
 const need = (page: Page, name: string, met: boolean): Promise<void> =>
