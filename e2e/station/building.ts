@@ -73,7 +73,7 @@ export class Builder {
 		const id = [file, ...path.map(encodeURIComponent)].join('#');
 		const search = this.page.getByLabel('Search: name or title');
 		await this.hand.write(search, name);
-		await this.hand.press(this.page.locator(`[role="treeitem"][data-id="${id}"]`));
+		await this.hand.pick(this.page.locator(`[role="treeitem"][data-id="${id}"]`));
 		await this.hand.write(search, '');
 	}
 

@@ -10,6 +10,8 @@ export interface Hand {
 	write(field: Locator, text: string): Promise<void>;
 	/** Chooses by the words of the choice. */
 	choose(field: Locator, words: string): Promise<void>;
+	/** Chooses a row of a tree. */
+	pick(row: Locator): Promise<void>;
 	/** Goes on from the field that was written in. */
 	leave(): Promise<void>;
 }
@@ -31,6 +33,10 @@ export class Mouse implements Hand {
 
 	async choose(field: Locator, words: string): Promise<void> {
 		await field.selectOption({ label: words });
+	}
+
+	pick(row: Locator): Promise<void> {
+		return row.click();
 	}
 
 	leave(): Promise<void> {
@@ -59,7 +65,13 @@ export class Keyboard implements Hand {
 		await this.goTo(field);
 		await this.page.keyboard.press('Control+a');
 		if (text === '') await this.page.keyboard.press('Delete');
-		else await this.page.keyboard.type(text);
+		for (const [index, line] of text.split('\n').entries()) {
+			if (index > 0) {
+				await this.page.keyboard.press('Enter');
+				await this.page.keyboard.press('Shift+Home'); // the editor indents as the line above; here the line says how far
+			}
+			await this.page.keyboard.type(line);
+		}
 	}
 
 	async choose(field: Locator, words: string): Promise<void> {
@@ -69,6 +81,20 @@ export class Keyboard implements Hand {
 		await this.page.keyboard.press('Home');
 		for (let n = 0; n < STOPS && (await chosen()) !== words; n++) await this.page.keyboard.press('ArrowDown');
 		expect(await chosen()).toBe(words);
+	}
+
+	async pick(row: Locator): Promise<void> {
+		await expect(row).toBeVisible();
+		await this.goTo(this.page.locator('[role="treeitem"][tabindex="0"]'));
+		await this.page.keyboard.press('Home');
+		for (let n = 0; n < STOPS; n++) {
+			// The focus follows a key with the next frames.
+			await this.page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+			if (await row.evaluate((element) => element === document.activeElement)) break;
+			await this.page.keyboard.press('ArrowDown');
+		}
+		await expect(row).toBeFocused();
+		await this.page.keyboard.press('Enter');
 	}
 
 	leave(): Promise<void> {
