@@ -285,6 +285,22 @@ def test_a_part_is_renamed_wherever_it_is_named(eva: httpx.Client) -> None:
     assert {each["state"] for each in read(eva)["files"].values()} == {"same"}
 
 
+def test_the_model_as_a_whole_follows_the_draft(eva: httpx.Client) -> None:
+    def tied(part: str) -> set[tuple[str, str]]:
+        """What the part uses, and how."""
+        found = read(eva, "/graph")
+        assert found["number"] == read(eva)["number"]
+        things = [each["id"] for each in found["things"]]
+        return {(things[tie["thing"]], tie["manner"]) for tie in found["ties"] if things[tie["by"]] == part}
+
+    assert ("variable:bolts", "goal") in tied("operation:new_engine")
+    assert ("variable:robot.tool_is_attached", "feeds") in tied("topic:/ur10/planning_scene/state")
+    new = {"kind": "set", "file": "operations.yaml", "path": ["new_engine", "goal"], "value": "robot.pose == home"}
+    goal = read(eva, "/files", path="operations.yaml")["files"]["operations.yaml"]["content"]["new_engine"]["goal"]
+    made(eva, {**new, "was": goal})
+    assert {each for each in tied("operation:new_engine") if each[1] == "goal"} == {("variable:robot.pose", "goal")}
+
+
 @pytest.mark.parametrize(
     ("part", "name"),
     [

@@ -826,6 +826,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model/graph": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Graph
+         * @description The model as a whole: all that has a name, on the layers of the station, and what is tied to what.
+         */
+        get: operations["graph_api_v1_model_graph_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/model/language/check": {
         parameters: {
             query?: never;
@@ -900,6 +920,126 @@ export interface paths {
          * @description What the name at a place in a text is.
          */
         post: operations["hover_api_v1_model_language_hover_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Pipelines
+         * @description The typed graph of the draft as far as it is sound, and what is wrong with it, where it is wrong.
+         */
+        get: operations["pipelines_api_v1_model_pipelines_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/examples": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Examples
+         * @description How the examples of a pipeline end, with the record at every edge.
+         */
+        post: operations["examples_api_v1_model_pipelines_examples_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/fits": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Fits
+         * @description What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow.
+         */
+        post: operations["fits_api_v1_model_pipelines_fits_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Preview
+         * @description What edits would bring about; nothing is changed.
+         */
+        post: operations["preview_api_v1_model_pipelines_preview_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/recordings": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Record
+         * @description Make an example of what the station has heard or said last; it is added to the draft.
+         */
+        post: operations["record_api_v1_model_pipelines_recordings_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/trials": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Trial
+         * @description What comes of a message, or of several in time that is told, with the record at every edge.
+         */
+        post: operations["trial_api_v1_model_pipelines_trials_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1273,7 +1413,8 @@ export interface paths {
         };
         /**
          * Edges
-         * @description What has passed each edge: counts, rates, drops and the last record. Rates come with the second look.
+         * @description What has passed each edge of the pipelines that are named, or of all: counts, rates, drops and the last record.
+         *     Rates come with the second look.
          */
         get: operations["edges_api_v1_pipelines_edges_get"];
         put?: never;
@@ -1395,7 +1536,7 @@ export interface paths {
         put?: never;
         /**
          * Attach
-         * @description Enter a topic that is on the network into the station's model; what runs does not change before a restart.
+         * @description Enter a topic that is on the network into the draft of the model; what runs does not change before a deployment.
          *
          *     It is recorded before anything is changed, and again when its outcome is known.
          */
@@ -2208,9 +2349,10 @@ export interface components {
         };
         /**
          * AttachmentAnswer
-         * @description What was changed, as `diff -u` shows it, or would be; and what `check` finds then.
+         * @description What was changed in the draft, as `diff -u` shows it, or would be; and what `check` finds then.
          *
          *     `made` is false for a dry run, and when one of the findings is an error: the model could not be used afterwards.
+         *     `number` is that of the change of the draft, null where none was made.
          */
         AttachmentAnswer: {
             /** Difference */
@@ -2224,6 +2366,8 @@ export interface components {
             findings: components["schemas"]["FindingDocument"][];
             /** Made */
             made: boolean;
+            /** Number */
+            number: number | null;
             /** Resource */
             resource: string;
             /** Topic */
@@ -2753,6 +2897,189 @@ export interface components {
             safe: boolean | number | string;
         };
         /**
+         * DraftEdgeView
+         * @description An edge: the types of a record's fields, null where nobody can say; `id` stays when others come and go.
+         */
+        DraftEdgeView: {
+            /** Fields */
+            fields: {
+                [key: string]: string;
+            } | null;
+            /** Id */
+            id: string;
+            live: components["schemas"]["LiveEdgeView"] | null;
+        };
+        /**
+         * DraftEndView
+         * @description What a field becomes at the end: a variable of the station, or a field of the outgoing message.
+         */
+        DraftEndView: {
+            /** Becomes */
+            becomes: string;
+            /** Field */
+            field: string;
+            /** Type */
+            type: string;
+        };
+        /**
+         * DraftExampleView
+         * @description An example as it is written.
+         */
+        DraftExampleView: {
+            /** Name */
+            name: string;
+            place: components["schemas"]["EntryView"];
+            written: components["schemas"]["JsonValue"];
+        };
+        /**
+         * DraftPipelineView
+         * @description The pipeline of one topic, flow, or part of a service or action.
+         *
+         *     `id` is that of what runs under this name, and for a second one of the same name its resource stands before it.
+         *     `place` is its entry, or that of the service or action; `stages_path` is where its stages stand, or would stand, and
+         *     null for one that has none. `first` has the variables with which an outgoing record begins.
+         */
+        DraftPipelineView: {
+            /** Deadline */
+            deadline: number | null;
+            /** Edges */
+            edges: components["schemas"]["DraftEdgeView"][];
+            /** Ends */
+            ends: components["schemas"]["DraftEndView"][];
+            /** Every */
+            every: number | null;
+            /** Examples */
+            examples: components["schemas"]["DraftExampleView"][];
+            /** Examples Path */
+            examples_path: (string | number)[] | null;
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** First */
+            first: components["schemas"]["ReadVariableView"][];
+            /** Id */
+            id: string;
+            /** Ignored */
+            ignored: string[];
+            /** Joining */
+            joining: ("branch" | "interleave" | "merge") | null;
+            /** Message */
+            message: string | null;
+            /** Name */
+            name: string;
+            part: components["schemas"]["Part"];
+            place: components["schemas"]["EntryView"];
+            quality: components["schemas"]["DraftQualityView"] | null;
+            /** Readers */
+            readers: string[];
+            /** Resource */
+            resource: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "incoming" | "outgoing" | "flow";
+            /** Sources */
+            sources: components["schemas"]["SourceView"][];
+            /** Stages */
+            stages: components["schemas"]["DraftStageView"][];
+            /** Stages Path */
+            stages_path: (string | number)[] | null;
+            standing: components["schemas"]["sequence_planner__workshop__pipelines__view__Standing"];
+        };
+        /**
+         * DraftPipelinesView
+         * @description All pipelines of the draft after its change `number`, by id, each flow behind its sources.
+         *
+         *     `findings` are those that belong to none of them. `unread` are files shown as they were when they could be read.
+         */
+        DraftPipelinesView: {
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Number */
+            number: number;
+            /** Pipelines */
+            pipelines: {
+                [key: string]: components["schemas"]["DraftPipelineView"];
+            };
+            /** Resources */
+            resources: {
+                [key: string]: string;
+            };
+            /** Types */
+            types: {
+                [key: string]: components["schemas"]["TypeView"];
+            };
+            /** Unread */
+            unread: string[];
+            /** Variables */
+            variables: components["schemas"]["DraftVariableView"][];
+        };
+        /**
+         * DraftQualityView
+         * @description The quality of service as it is meant; times are in seconds.
+         */
+        DraftQualityView: {
+            /** Deadline */
+            deadline: number | null;
+            /** Depth */
+            depth: number;
+            /** Liveliness */
+            liveliness: number | null;
+            /** Name */
+            name: string;
+            /** Reliable */
+            reliable: boolean;
+            /** Transient Local */
+            transient_local: boolean;
+        };
+        /**
+         * DraftStageView
+         * @description A stage; `written` is its entry, as `was` of an edit has it.
+         *
+         *     One that nobody wrote, such as the `map` of constants of the message, has neither `written` nor `place`. `reads` and
+         *     `gives` are empty where it is not sound.
+         */
+        DraftStageView: {
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Gives */
+            gives: {
+                [key: string]: string;
+            };
+            /** Id */
+            id: string;
+            /** Kind */
+            kind: string;
+            place: components["schemas"]["EntryView"] | null;
+            /** Reads */
+            reads: string[];
+            standing: components["schemas"]["sequence_planner__workshop__pipelines__view__Standing"];
+            /** Summary */
+            summary: string;
+            written: components["schemas"]["JsonValue"];
+        };
+        /**
+         * DraftVariableView
+         * @description A variable of a resource; `fed` is the id of the pipeline that writes it. `place` is null for one that follows
+         *     from a message alone.
+         */
+        DraftVariableView: {
+            /** Fed */
+            fed: string | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "measured" | "output" | "estimated";
+            /** Name */
+            name: string;
+            place: components["schemas"]["EntryView"] | null;
+            /** Resource */
+            resource: string;
+            /** Type */
+            type: string;
+        };
+        /**
          * DraftView
          * @description The draft after its change `number`: its files by path, and its last changes, newest first.
          *
@@ -2888,6 +3215,20 @@ export interface components {
             subject: string;
         };
         /**
+         * EntryView
+         * @description An entry of a file, as edits name it, and where it stands; lines and columns count from 1.
+         */
+        EntryView: {
+            /** Column */
+            column: number;
+            /** File */
+            file: string;
+            /** Line */
+            line: number;
+            /** Path */
+            path: (string | number)[];
+        };
+        /**
          * ErrandBody
          * @description The offer, and all that it contains as the person has seen it: the starts in order, and the corrections.
          */
@@ -2924,6 +3265,16 @@ export interface components {
             title: string;
             /** Why */
             why: string;
+        };
+        /**
+         * Examples
+         * @description How the examples of a pipeline end: all of them, or those of that name.
+         */
+        Examples: {
+            /** Name */
+            name?: string | null;
+            /** Pipeline */
+            pipeline: string;
         };
         /**
          * FieldError
@@ -3008,6 +3359,32 @@ export interface components {
             password: string;
             /** Token */
             token: string;
+        };
+        /**
+         * FitsView
+         * @description What could be put at an edge of a pipeline: stages, what its fields could become, and further sources.
+         */
+        FitsView: {
+            /** Number */
+            number: number;
+            /** Sources */
+            sources: components["schemas"]["SourceOfferView"][];
+            /** Stages */
+            stages: components["schemas"]["StageOfferView"][];
+            /** Targets */
+            targets: components["schemas"]["TargetView"][];
+        };
+        /**
+         * Fitting
+         * @description What could be put at an edge, which counts from 0. With a `field` of it, what that could become is told too.
+         */
+        Fitting: {
+            /** Edge */
+            edge: number;
+            /** Field */
+            field?: string | null;
+            /** Pipeline */
+            pipeline: string;
         };
         /**
          * FlowsSnapshot
@@ -3096,6 +3473,20 @@ export interface components {
             types: string[];
         };
         /**
+         * GraphView
+         * @description All things of the draft after its change `number`, and all ties between them; `unread` could not be read.
+         */
+        GraphView: {
+            /** Number */
+            number: number;
+            /** Things */
+            things: components["schemas"]["ThingView"][];
+            /** Ties */
+            ties: components["schemas"]["TieView"][];
+            /** Unread */
+            unread: components["schemas"]["FindingDocument"][];
+        };
+        /**
          * GuardDocument
          * @description What the supervisor adds to the guards of `starts`; `guard` is null when only the states themselves say it.
          *
@@ -3148,7 +3539,8 @@ export interface components {
          * @description What the name between `start` and `end` is.
          *
          *     `names` are the full names it has, of which the page knows the values; a reference through a parameter has one for
-         *     each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`.
+         *     each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`, and `part` is the id
+         *     by which it is looked for in the model, but for a parameter.
          */
         HoverView: {
             declared: components["schemas"]["DeclarationView"] | null;
@@ -3163,6 +3555,8 @@ export interface components {
             name: string;
             /** Names */
             names: string[];
+            /** Part */
+            part: string | null;
             /** Pattern */
             pattern: string;
             /** Resource */
@@ -3284,6 +3678,16 @@ export interface components {
             why: string;
         };
         /**
+         * LeftOutView
+         * @description What the station had and the draft makes otherwise of the same record alone.
+         */
+        LeftOutView: {
+            draft: components["schemas"]["JsonValue"];
+            /** Name */
+            name: string;
+            station: components["schemas"]["JsonValue"];
+        };
+        /**
          * LineView
          * @description What happened between two times: the records behind number `begin`, up to `end`.
          *
@@ -3323,6 +3727,26 @@ export interface components {
             /** Sequence */
             sequence: number;
         };
+        /**
+         * LiveEdgeView
+         * @description The edge of what runs that this one is: the pipeline and the index of the edge, as `/pipelines/stream` has them.
+         *
+         *     `same` says that everything before it runs as the draft has it; else what runs is made in another way.
+         */
+        LiveEdgeView: {
+            /** Edge */
+            edge: number;
+            /** Pipeline */
+            pipeline: string;
+            /** Same */
+            same: boolean;
+        };
+        /**
+         * Manner
+         * @description What who uses a thing does with it. Those of a pipeline are said from its side: it feeds a variable.
+         * @enum {string}
+         */
+        Manner: "runs" | "after" | "brings" | "goal" | "precondition" | "formula" | "forbids" | "excludes" | "orders" | "zone" | "rest" | "guard" | "progress" | "acknowledgement" | "commands" | "writes" | "effect" | "expects" | "reads" | "feeds" | "sends" | "source" | "carries" | "example" | "ranges" | "names";
         /**
          * MarkView
          * @description A record as a time line shows it. Of its content there is what is drawn.
@@ -3719,6 +4143,12 @@ export interface components {
             code: string;
         };
         /**
+         * Part
+         * @description What of a resource a pipeline belongs to.
+         * @enum {string}
+         */
+        Part: "topic" | "flow" | "request" | "response" | "goal" | "feedback" | "result" | "status";
+        /**
          * PartDifference
          * @description A part of the model that is new, gone, or another one; `kind` is what it is, such as `ability`.
          */
@@ -4053,6 +4483,14 @@ export interface components {
             text: string;
         };
         /**
+         * Preview
+         * @description What edits would bring about.
+         */
+        Preview: {
+            /** Edits */
+            edits: (components["schemas"]["SetEntry"] | components["schemas"]["AddEntry"] | components["schemas"]["RemoveEntry"] | components["schemas"]["MoveEntry"] | components["schemas"]["WriteText"])[];
+        };
+        /**
          * PreviewStepView
          * @description One start. `tick` counts from the tick in which the plan begins.
          */
@@ -4069,6 +4507,29 @@ export interface components {
             tick: number;
             /** Title */
             title: string;
+        };
+        /**
+         * PreviewView
+         * @description What the edits would bring about: pipelines that are others then, those that are gone, and what is found that was
+         *     not there before. `refused` says why the edits cannot be made at all.
+         */
+        PreviewView: {
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Gone */
+            gone: string[];
+            /** Number */
+            number: number;
+            /** Pipelines */
+            pipelines: {
+                [key: string]: components["schemas"]["DraftPipelineView"];
+            };
+            /** Refused */
+            refused: string | null;
+            /** Types */
+            types: {
+                [key: string]: components["schemas"]["TypeView"];
+            };
         };
         /**
          * Priority
@@ -4200,6 +4661,18 @@ export interface components {
             value: boolean | number | string | null;
         };
         /**
+         * ReadVariableView
+         * @description A variable with which an outgoing record begins; `sent` says that the message depends on it.
+         */
+        ReadVariableView: {
+            /** Field */
+            field: string;
+            /** Sent */
+            sent: boolean;
+            /** Variable */
+            variable: string;
+        };
+        /**
          * ReasonBody
          * @description To ask for it is all that there is to say, but perhaps why.
          */
@@ -4222,6 +4695,32 @@ export interface components {
             number: number;
             /** Time */
             time: number;
+        };
+        /**
+         * RecordBody
+         * @description What the station has heard or said last of a pipeline becomes an example of this name in the draft.
+         */
+        RecordBody: {
+            /** Name */
+            name: string;
+            /** Pipeline */
+            pipeline: string;
+        };
+        /**
+         * RecordedView
+         * @description An example that was made of what the station has heard or said last. `left_out` is not expected in it: it came of
+         *     what was before, or the draft makes something else of it.
+         */
+        RecordedView: {
+            /** Example */
+            example: {
+                [key: string]: components["schemas"]["JsonValue"];
+            };
+            /** Left Out */
+            left_out: components["schemas"]["LeftOutView"][];
+            /** Number */
+            number: number;
+            run: components["schemas"]["RunView"];
         };
         /**
          * RemoveEntry
@@ -4386,6 +4885,22 @@ export interface components {
             title: string;
         };
         /**
+         * RunEdgeView
+         * @description The last record that has passed an edge in a run, and how many have.
+         */
+        RunEdgeView: {
+            /** Id */
+            id: string;
+            /** Last */
+            last: {
+                [key: string]: components["schemas"]["JsonValue"];
+            } | null;
+            /** Records */
+            records: number;
+            /** Troubles */
+            troubles: string[];
+        };
+        /**
          * RunRecordView
          * @description Something that has happened. What `content` has depends on the `kind`; `docs/journal.md` says what.
          */
@@ -4402,6 +4917,53 @@ export interface components {
             number: number;
             /** Time */
             time: number;
+        };
+        /**
+         * RunStepView
+         * @description A moment of a run, in seconds from its beginning: what was given, what had come of it then, and each edge.
+         */
+        RunStepView: {
+            /** At */
+            at: number;
+            /** Edges */
+            edges: components["schemas"]["RunEdgeView"][];
+            given: components["schemas"]["JsonValue"];
+            /** Trouble */
+            trouble: string | null;
+            /** Values */
+            values: components["schemas"]["ValueView"][];
+        };
+        /**
+         * RunView
+         * @description A run of a pipeline on its own. `passed` is null where nothing was expected; `refused` says why what was given
+         *     cannot be taken.
+         */
+        RunView: {
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Name */
+            name: string | null;
+            /** Passed */
+            passed: boolean | null;
+            place: components["schemas"]["EntryView"] | null;
+            /** Refused */
+            refused: string | null;
+            /** Steps */
+            steps: components["schemas"]["RunStepView"][];
+        };
+        /**
+         * RunsView
+         * @description Runs of a pipeline of the draft; `obstacle` says why it cannot be run.
+         */
+        RunsView: {
+            /** Number */
+            number: number;
+            /** Obstacle */
+            obstacle: string | null;
+            /** Pipeline */
+            pipeline: string;
+            /** Runs */
+            runs: components["schemas"]["RunView"][];
         };
         /**
          * Scope
@@ -4568,6 +5130,37 @@ export interface components {
             revision: number;
         };
         /**
+         * SourceOfferView
+         * @description A topic or flow that a flow could have as a further source; `edits` make it so.
+         */
+        SourceOfferView: {
+            /** Edits */
+            edits: (components["schemas"]["AddEntry"] | components["schemas"]["RemoveEntry"] | components["schemas"]["MoveEntry"] | components["schemas"]["SetEntry"])[];
+            /** Fits */
+            fits: boolean;
+            /** Pipeline */
+            pipeline: string;
+            /** Reason */
+            reason: string | null;
+        };
+        /**
+         * SourceView
+         * @description A source of a flow as it is `written`, and the id of its pipeline, null where there is none such.
+         *
+         *     `path` is that of its entry; `alias` is that of a merge.
+         */
+        SourceView: {
+            /** Alias */
+            alias: string | null;
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Pipeline */
+            pipeline: string | null;
+            place: components["schemas"]["EntryView"];
+            /** Written */
+            written: string;
+        };
+        /**
          * SpecificationView
          * @description A ground specification; several can have one title.
          */
@@ -4576,6 +5169,22 @@ export interface components {
             name: string;
             /** Title */
             title: string;
+        };
+        /**
+         * StageOfferView
+         * @description A kind of stage at an edge. Where it `fits`, `edits` put it there as `stage`, to be filled in further, and
+         *     declare what it needs; else `reason` says why no such stage can stand there.
+         */
+        StageOfferView: {
+            /** Edits */
+            edits: (components["schemas"]["AddEntry"] | components["schemas"]["RemoveEntry"] | components["schemas"]["MoveEntry"] | components["schemas"]["SetEntry"])[];
+            /** Fits */
+            fits: boolean;
+            /** Kind */
+            kind: string;
+            /** Reason */
+            reason: string | null;
+            stage: components["schemas"]["JsonValue"];
         };
         /**
          * StageView
@@ -4971,6 +5580,24 @@ export interface components {
             name: string;
         };
         /**
+         * TargetView
+         * @description What a field at an edge could become: a variable, or a field of the outgoing message; `edits` make it so.
+         */
+        TargetView: {
+            /** Edits */
+            edits: (components["schemas"]["AddEntry"] | components["schemas"]["RemoveEntry"] | components["schemas"]["MoveEntry"] | components["schemas"]["SetEntry"])[];
+            /** Field */
+            field: string;
+            /** Fits */
+            fits: boolean;
+            /** Name */
+            name: string;
+            /** Reason */
+            reason: string | null;
+            /** Type */
+            type: string;
+        };
+        /**
          * TaskProblemView
          * @description What keeps somebody from doing a task; `why` may be empty.
          */
@@ -5055,6 +5682,62 @@ export interface components {
             message: string;
             /** Start */
             start: number;
+        };
+        /**
+         * ThingView
+         * @description Something with a name: `id` is that of a part, such as `variable:robot.pose`, or `station` for the station.
+         *
+         *     `layer` is that of the paper: 0 ROS 2, 1 abilities and estimates, 2 operations and specifications, 3 the order of
+         *     work. `within` is the index of the thing that it is a part of, as a value is of an enumeration. File, line and
+         *     column are where it is declared, or else first used; the file is null where it is given.
+         */
+        ThingView: {
+            /** Column */
+            column: number;
+            /** File */
+            file: string | null;
+            /** Id */
+            id: string;
+            /** Kind */
+            kind: string;
+            /** Layer */
+            layer: number;
+            /** Line */
+            line: number;
+            /** Name */
+            name: string;
+            /** Resource */
+            resource: string | null;
+            /** Section */
+            section: string | null;
+            standing: components["schemas"]["sequence_planner__workshop__references__whole__Standing"];
+            /** Title */
+            title: string | null;
+            /** Within */
+            within: number | null;
+        };
+        /**
+         * TieView
+         * @description A use of the thing with index `thing` by that with index `by`, at the entry `at` within that.
+         *
+         *     `written` is false where no text names it: then a field of a message has its name, and line and column are of `by`.
+         */
+        TieView: {
+            /** At */
+            at: string;
+            /** By */
+            by: number;
+            /** Column */
+            column: number;
+            /** File */
+            file: string;
+            /** Line */
+            line: number;
+            manner: components["schemas"]["Manner"];
+            /** Thing */
+            thing: number;
+            /** Written */
+            written: boolean;
         };
         /**
          * TimeoutsView
@@ -5149,6 +5832,16 @@ export interface components {
             ways: string[][];
         };
         /**
+         * Trial
+         * @description What comes of these records.
+         */
+        Trial: {
+            /** Pipeline */
+            pipeline: string;
+            /** Steps */
+            steps: components["schemas"]["TrialStep"][];
+        };
+        /**
          * TrialBody
          * @description `real_devices` confirms that devices may move which are not emulated ones.
          */
@@ -5162,6 +5855,21 @@ export interface components {
             real_devices: boolean;
             /** Reason */
             reason?: string | null;
+        };
+        /**
+         * TrialStep
+         * @description A moment of a trial: what comes, as an example has it; without it only time passes.
+         */
+        TrialStep: {
+            /**
+             * At
+             * @default 0
+             */
+            at: number;
+            /** Given */
+            given?: {
+                [key: string]: components["schemas"]["JsonValue"];
+            } | null;
         };
         /**
          * TrialView
@@ -5200,6 +5908,34 @@ export interface components {
             due: number | null;
             /** Name */
             name: string;
+        };
+        /**
+         * TypeKind
+         * @description What values a type has.
+         * @enum {string}
+         */
+        TypeKind: "bool" | "enumeration" | "integer" | "real" | "text" | "list" | "message";
+        /**
+         * TypeView
+         * @description A type of fields. `values` are those of an enumeration, `least` and `most` bound an integer, `element` and
+         *     `length` are those of a list (null: of any length), `fields` those of a nested message; each names its type.
+         */
+        TypeView: {
+            /** Element */
+            element: string | null;
+            /** Fields */
+            fields: {
+                [key: string]: string;
+            } | null;
+            kind: components["schemas"]["TypeKind"];
+            /** Least */
+            least: number | null;
+            /** Length */
+            length: number | null;
+            /** Most */
+            most: number | null;
+            /** Values */
+            values: string[] | null;
         };
         /**
          * TypedEdgeView
@@ -5266,8 +6002,9 @@ export interface components {
          * UsagesView
          * @description Where a part is named, and which of these places outside of it could not be without it.
          *
-         *     `unread` are texts that make no sense and hold the name, and files that cannot be read; `bound` says why the name
-         *     is not the model's alone.
+         *     `unwritten` are entries that use it though nothing in them names it, such as a topic whose message has a field of
+         *     that name; they stand at their own names. `unread` are texts that make no sense and hold the name, and files that
+         *     cannot be read; `bound` says why the name is not the model's alone.
          */
         UsagesView: {
             /** Bound */
@@ -5276,8 +6013,22 @@ export interface components {
             dependants: components["schemas"]["UsageView"][];
             /** Unread */
             unread: components["schemas"]["FindingDocument"][];
+            /** Unwritten */
+            unwritten: components["schemas"]["UsageView"][];
             /** Usages */
             usages: components["schemas"]["UsageView"][];
+        };
+        /**
+         * ValueView
+         * @description What came of a run under a name, null for unknown, and what was expected; `right` is null where nothing was.
+         */
+        ValueView: {
+            came: components["schemas"]["JsonValue"];
+            expected: components["schemas"]["JsonValue"];
+            /** Name */
+            name: string;
+            /** Right */
+            right: boolean | null;
         };
         /**
          * ValuesBody
@@ -5581,6 +6332,18 @@ export interface components {
             /** Then */
             then: boolean | number | string;
         };
+        /**
+         * Standing
+         * @description Whether something of a pipeline is sound.
+         * @enum {string}
+         */
+        sequence_planner__workshop__pipelines__view__Standing: "good" | "wrong" | "unknown";
+        /**
+         * Standing
+         * @description Where a thing comes from.
+         * @enum {string}
+         */
+        sequence_planner__workshop__references__whole__Standing: "declared" | "implied" | "missing";
         /**
          * ChangeView
          * @description A change of the draft; `of` is the number of the one that it undoes or does again. Time is in seconds since the
@@ -7363,6 +8126,39 @@ export interface operations {
             };
         };
     };
+    graph_api_v1_model_graph_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["GraphView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     check_api_v1_model_language_check_post: {
         parameters: {
             query?: never;
@@ -7509,6 +8305,250 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HoverAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    pipelines_api_v1_model_pipelines_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DraftPipelinesView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    examples_api_v1_model_pipelines_examples_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Examples"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunsView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    fits_api_v1_model_pipelines_fits_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Fitting"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FitsView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    preview_api_v1_model_pipelines_preview_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Preview"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PreviewView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    record_api_v1_model_pipelines_recordings_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RecordBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecordedView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    trial_api_v1_model_pipelines_trials_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Trial"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunsView"];
                 };
             };
             400: components["responses"]["Problem400"];
@@ -8313,7 +9353,9 @@ export interface operations {
     };
     edges_api_v1_pipelines_edges_get: {
         parameters: {
-            query?: never;
+            query?: {
+                pipeline?: string[] | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -8331,6 +9373,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query, WebSocket
+from fastapi import APIRouter, Depends, Path, Query, Response, WebSocket
 from fastapi.requests import HTTPConnection
 from pydantic import Field
 
@@ -22,6 +22,7 @@ from sequence_planner.web.stream import serve
 from sequence_planner.web.workshop import Workshop
 from sequence_planner.workshop.check_view import CheckView
 from sequence_planner.workshop.edits import Edit, FilePath, PartChangedError
+from sequence_planner.workshop.graph_view import GraphView
 from sequence_planner.workshop.processes import WorkEndedError
 from sequence_planner.workshop.view import DraftView, FilesView, UsagesView
 
@@ -129,6 +130,15 @@ async def usages(shop: TheWorkshop, part: PartId) -> UsagesView:
         return await shop.usages(part)
     except EditError as error:
         raise refusal(error) from error
+    except WorkEndedError as error:
+        raise failed(error) from error
+
+
+@router.get("/graph", dependencies=[VIEWER], response_model=GraphView)
+async def graph(shop: TheWorkshop) -> Response:
+    """The model as a whole: all that has a name, on the layers of the station, and what is tied to what."""
+    try:
+        return Response(await shop.tied(), media_type="application/json")
     except WorkEndedError as error:
         raise failed(error) from error
 

@@ -12,25 +12,37 @@ from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.actor import Actor
 from sequence_planner.control.definition_view import AutomatonView
+from sequence_planner.control.pipeline_view import RecordView
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.latest import Latest
 from sequence_planner.web.looking_messages import WorkshopSnapshot
 from sequence_planner.web.settings import StreamLimits
 from sequence_planner.workshop import draft as drafts
+from sequence_planner.workshop.asking import Changed, DraftAnswering
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckView, waiting
 from sequence_planner.workshop.draft import Change, Differences, Draft, Proposal
-from sequence_planner.workshop.edits import Edit, PartChangedError, WriteText
-from sequence_planner.workshop.files import Files, read_files
-from sequence_planner.workshop.processes import Answering, worked
+from sequence_planner.workshop.draft_process import DraftProcess
+from sequence_planner.workshop.edits import AddEntry, Edit, PartChangedError, WriteText
+from sequence_planner.workshop.files import Files, FolderReader
+from sequence_planner.workshop.pipelines.questions import (
+    Asked,
+    Examples,
+    PipelineAnswer,
+    PipelineQuestion,
+    Recording,
+)
+from sequence_planner.workshop.pipelines.view import RecordedView, RecordingView, RunsView
+from sequence_planner.workshop.processes import worked
 from sequence_planner.workshop.questions import LanguageAnswer, LanguageQuestionKind, TextAt
 from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
 from sequence_planner.workshop.showing import Reader, change_view, marks
 from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, RevisionView, UsagesView, WorkshopView
 
 MOST_SHOWN = 50  # changes
-ANSWERED_WITHIN = 5.0  # seconds, for questions about a text
+ANSWERED_WITHIN = 20.0  # seconds, for questions about a text
+RUN_WITHIN = 30.0  # seconds, for questions about pipelines, which run
 
 
 def _revision_view(revision: Revision, running: str, edited: str) -> RevisionView:
@@ -51,27 +63,38 @@ class Workshop:
     def __init__(self, identity: IdentityOffice, model: Path, revisions: Path, limits: StreamLimits) -> None:
         self.latest = Latest(self._present, limits)
         self.folder = model
+        self._files = FolderReader(model)
         self._identity = identity
         self._revisions = Revisions(revisions)
         self._keeping = asyncio.Lock()
         self._reader = Reader()
-        self._desk = CheckDesk(model, self._found)
-        self._language = Answering("language_worker", "answering")
-        self._told: dict[str, str] = {}  # the files that the process of the language knows
+        self._process = DraftProcess()
+        self._desk = CheckDesk(model, self._process, self._found)
+        self._pipelines = DraftAnswering("pipelines.worker", "answering", 2)  # the draft, and what runs
         self._check: CheckView | None = None
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
         self._opening = asyncio.Lock()
+        self._tied: tuple[int, str] | None = None  # the number of a draft, and its graph
+        self._tying = asyncio.Lock()
 
     async def close(self) -> None:
         """End what is being checked and answered."""
         await self._desk.close()
-        await self._language.close()
+        await self._process.close()
+        await self._pipelines.close()
+
+    async def read_ahead(self) -> None:
+        """Read what the files hold, so that whoever asks for them first need not wait for that."""
+        files = await run_in_threadpool(self._files.read)
+        draft = await self._identity.read(drafts.read)
+        for each in (draft, Draft(draft.number, files, files)):
+            await run_in_threadpool(self._reader.views, each, each.files)
 
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since."""
         async with self._opening:
-            files = await run_in_threadpool(read_files, self.folder)
+            files = await run_in_threadpool(self._files.read)
             draft = await self._identity.read(drafts.read)
             if not draft.number or draft.base != files:
                 now = self._identity.now()
@@ -113,7 +136,7 @@ class Workshop:
         """
 
         async def propose(draft: Draft) -> Proposal:
-            found = await worked("renamed_files", draft.files, part, name)
+            found = await self._process.ask(draft.files, "renamed_files", part, name)
             if isinstance(found, str):
                 raise EditError(found)
             assert isinstance(found, dict)
@@ -125,11 +148,21 @@ class Workshop:
 
     async def usages(self, part: str) -> UsagesView:
         """Where a part is named. Raises `EditError` and `WorkEndedError`."""
-        found = await worked("used", (await self.open()).files, part)
+        found = await self._process.ask((await self.open()).files, "used", part)
         if isinstance(found, str):
             raise EditError(found)
         assert isinstance(found, UsagesView)
         return found
+
+    async def tied(self) -> str:
+        """What is tied to what, as JSON of a `GraphView`: found once for each draft. Raises `WorkEndedError`."""
+        async with self._tying:
+            draft = await self.open()
+            if self._tied is None or self._tied[0] != draft.number:
+                found = await self._process.ask(draft.files, "tied", draft.number)
+                assert isinstance(found, str)
+                self._tied = draft.number, found
+            return self._tied[1]
 
     async def played(self, finding: int, ability: str, number: int) -> list[AutomatonView]:
         """How an ability goes through the run that shows a finding of the check of change `number`.
@@ -200,20 +233,33 @@ class Workshop:
     async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> LanguageAnswer:
         """What is answered to a question about a text. Raises `WorkEndedError`."""
         draft = await self.open()
-
-        def question() -> object:
-            if not self._language.begun:
-                self._told = {}
-            changed: dict[str, str | None] = {
-                path: text for path, text in draft.files.items() if self._told.get(path) != text
-            }
-            changed |= dict.fromkeys(self._told.keys() - draft.files.keys())
-            self._told = dict(draft.files)
-            return changed, kind, asked
-
-        answer = await self._language.ask(question, ANSWERED_WITHIN)
+        answer = await self._process.ask(draft.files, "answer", kind, asked, patience=ANSWERED_WITHIN)
         assert isinstance(answer, LanguageAnswer)
         return answer
+
+    async def ask_pipelines(self, question: PipelineQuestion) -> PipelineAnswer:
+        """What is answered to a question about the pipelines. Raises `EditError` and `WorkEndedError`."""
+        draft = await self.open()
+
+        def asked(changed: Changed, running: Changed) -> Asked:
+            return Asked(draft.number, changed, running, self.folder, question)
+
+        answer = await self._pipelines.ask(asked, draft.files, draft.base, patience=RUN_WITHIN)
+        if isinstance(answer, str):
+            raise EditError(answer)
+        assert isinstance(answer, PipelineAnswer)
+        return answer
+
+    async def record(self, pipeline: str, name: str, heard: RecordView, by: Actor) -> RecordedView:
+        """Add an example to the draft. Raises `EditError` and `WorkEndedError`."""
+        question = Recording(pipeline=pipeline, name=name, first=heard.first, last=heard.last)
+        made = await self.ask_pipelines(question)
+        assert isinstance(made, RecordingView)
+        edit = AddEntry(file=made.file, path=[*made.path, 0], value=made.example)
+        changed = await self.change([edit], by, f"An example of {pipeline}: {name}")
+        runs = await self.ask_pipelines(Examples(pipeline=pipeline, name=name))
+        assert isinstance(runs, RunsView)
+        return RecordedView(number=changed.number, run=runs.runs[-1], example=made.example, left_out=made.left_out)
 
     async def _again(self, draft: Draft, by: Actor, *, undo: bool) -> Proposal:
         def last(connection: Connection) -> tuple[Change, Differences]:

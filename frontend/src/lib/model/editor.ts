@@ -163,10 +163,12 @@ function edited(host: HTMLElement, options: Common, more: Extension): { view: Ed
 					if (update.docChanged && !shows) options.onwrite(update.state.doc.toString());
 				}),
 				EditorView.domEventHandlers({
-					blur: (_, view) => {
-						closeCompletion(view);
-						options.onleave();
-					},
+					// One that is taken out of the page while it has the focus loses it in the midst of an update of the page.
+					blur: (_, view) =>
+						queueMicrotask(() => {
+							if (view.dom.isConnected) closeCompletion(view);
+							options.onleave();
+						}),
 					beforeinput: typedOver
 				})
 			]
@@ -194,6 +196,9 @@ export interface ExpressionOptions extends Common {
 	readonly complete: (text: string, offset: number) => Promise<Completion | null>;
 	readonly hover: (text: string, offset: number) => Promise<Hover | null>;
 	readonly format: (text: string) => Promise<string | null>;
+	/** Leads to where a name is declared, and to where what it names is used. */
+	readonly define: (hover: Hover) => void;
+	readonly usages: (hover: Hover) => void;
 	/** The lines that are shown of what is named somewhere. */
 	readonly about: (hover: Hover) => readonly string[];
 	/** What is wrong with it now. */
@@ -212,6 +217,8 @@ export interface ExpressionEditor extends Editor {
 	format(): Promise<void>;
 }
 
+/** Milliseconds without a key after which a text is looked at: somebody who types on is not asked about half a word. */
+const REST = 120;
 /** Milliseconds after which a text is looked at again where the server did not say what is wrong with it. */
 const ASK_AGAIN = 3000;
 
@@ -222,6 +229,12 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 		const form = text.trim() === '' || view.state.readOnly ? null : await options.format(text);
 		const change = form === null || view.state.doc.toString() !== text ? null : changeTo(text, form);
 		if (change !== null) view.dispatch({ changes: change, userEvent: 'format' });
+	}
+
+	/** Does something with the name at the cursor. */
+	async function lead(where: (hover: Hover) => void): Promise<void> {
+		const found = await options.hover(view.state.doc.toString(), view.state.selection.main.head);
+		if (found !== null && !gone) where(found);
 	}
 
 	async function complete(context: CompletionContext): Promise<CompletionResult | null> {
@@ -268,12 +281,14 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 		EXPRESSIONS,
 		Prec.highest(keymap.of(completionKeymap)),
 		Prec.high(keymap.of([
+			{ key: 'F12', run: () => (void lead(options.define), true) },
+			{ key: 'Shift-F12', run: () => (void lead(options.usages), true) },
 			{ key: 'Shift-Alt-f', run: () => (void format(), true) },
 			{ key: 'Enter', run: () => (options.onenter(), true) },
 			{ key: 'Escape', run: closeCompletion }
 		])),
 		autocompletion({ override: [complete], icons: false, defaultKeymap: false }),
-		linter(lint, { delay: 250, needsRefresh: ({ transactions }) => transactions.some(({ effects }) => effects.some((each) => each.is(again))) }),
+		linter(lint, { delay: REST, needsRefresh: ({ transactions }) => transactions.some(({ effects }) => effects.some((each) => each.is(again))) }),
 		EditorView.clipboardInputFilter.of((text) => text.replaceAll(/\s*\n\s*/g, ' ')),
 		hoverTooltip(async (_, at) => {
 			const found = await options.hover(view.state.doc.toString(), at);

@@ -11,6 +11,7 @@ import { operate } from './en/operate.ts';
 import { restart } from './en/restart.ts';
 import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
+import { station } from './en/station.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, restart, ros, state, whatIf };
+export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, restart, ros, state, station, whatIf };

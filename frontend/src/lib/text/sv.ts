@@ -11,7 +11,8 @@ import { operate } from './sv/operate.ts';
 import { restart } from './sv/restart.ts';
 import { ros } from './sv/ros.ts';
 import { state } from './sv/state.ts';
+import { station } from './sv/station.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, restart, ros, state, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, restart, ros, state, station, whatIf };

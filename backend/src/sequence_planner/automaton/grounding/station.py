@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sequence_planner.automaton.dependencies import ordered_flags
-from sequence_planner.automaton.grounding.abilities import ground_abilities
+from sequence_planner.automaton.grounding.abilities import GroundBefore, ground_abilities
 from sequence_planner.automaton.grounding.declarations import FLAGS, Declarations
 from sequence_planner.automaton.grounding.findings import Findings
 from sequence_planner.automaton.grounding.meaning import Meaning
@@ -11,15 +11,18 @@ from sequence_planner.automaton.grounding.operations import ground_operations, g
 from sequence_planner.automaton.grounding.specifications import ground_specifications
 from sequence_planner.automaton.structure import Ability, Automaton, Flag
 from sequence_planner.model.loading import Station
-from sequence_planner.model.source import ModelError, SourceText
+from sequence_planner.model.source import Finding, ModelError, SourceText
 
 
-def ground(station: Station) -> Automaton:
-    """The automaton that `station` means. Raises `ModelError` with all findings."""
+def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
+    """The automaton that `station` means; what was ground `before` and means the same is not ground again.
+
+    Raises `ModelError` with all findings.
+    """
     findings = Findings()
     declarations = Declarations(station, findings)
     meaning = Meaning(declarations, findings)
-    abilities, effects, reactions = ground_abilities(meaning)
+    abilities, effects, reactions = ground_abilities(meaning, before)
     operations = ground_operations(meaning, station.operations)
     specifications = ground_specifications(meaning, station.specifications, station.resources)
     work_masters = ground_work_masters(meaning, station.work_masters, operations)
@@ -55,3 +58,22 @@ def _flags(abilities: dict[str, Ability], declarations: Declarations, findings: 
         message = f"flags depend on each other in a circle: {' → '.join(circle)}"
         findings.add(declarations.places[ability.name], message)
     return ordered
+
+
+def ground_variables(station: Station) -> tuple[Automaton, list[Finding]]:
+    """An automaton that has the variables of `station` alone, those that are declared as they should be; and what is
+    wrong with the names that are declared.
+    """
+    findings = Findings()
+    declarations = Declarations(station, findings)
+    automaton = Automaton(
+        name=str(station.station.name),
+        title=str(station.title),
+        description="",
+        resources={name: str(doc.title or name) for name, doc in station.resources.items()},
+        variables=declarations.variables,
+        abilities={},
+        flags=(),
+        places=declarations.places,
+    )
+    return automaton, findings.all

@@ -8,6 +8,7 @@ export const pages = {
 	model: 'Model',
 	ros: 'ROS',
 	whatIf: 'What if',
+	station: 'Station',
 	check: 'Check',
 	deploy: 'Deploy',
 	ability: 'Ability',

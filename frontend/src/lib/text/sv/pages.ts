@@ -9,6 +9,7 @@ export const pages: Text['pages'] = {
 	model: 'Modell',
 	ros: 'ROS',
 	whatIf: 'Tänk om',
+	station: 'Stationen',
 	check: 'Granskning',
 	deploy: 'Driftsättning',
 	ability: 'Förmåga',
