@@ -61,6 +61,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/model": ("viewer", "read"),
     "GET /api/v1/model/files": ("viewer", "read"),
     "GET /api/v1/model/check": ("viewer", "read"),
+    "GET /api/v1/model/check/findings/{finding}/run": ("viewer", "read"),
     "WS /api/v1/model/stream": ("viewer", "read"),
     "POST /api/v1/model/changes": ("engineer", None),
     "POST /api/v1/model/language/check": ("viewer", "read"),

@@ -19,7 +19,8 @@ from sequence_planner.web.settings import LOOPBACK_NAMES, Endpoint, SettingsErro
 
 READING = ("GET", "HEAD", "OPTIONS")
 LARGEST_BODY = 64 * 1024  # bytes
-LARGER_BODIES = {"/api/v1/model/changes": 4 * 1024 * 1024}  # files of a model, as they were and as they shall be
+EDITS = 4 * 1024 * 1024  # bytes: files of a model, as they were and as they shall be
+LARGER_BODIES = {"/api/v1/model/changes": EDITS, "/api/v1/model/pipelines/preview": EDITS}
 BODY_SECONDS = 20.0  # in which a body must have come
 
 
