@@ -11,9 +11,9 @@ import { join, resolve } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
 import { StationProcess } from './process.ts';
 
-const ROOT = resolve(import.meta.dirname, '../..');
+export const ROOT = resolve(import.meta.dirname, '../..');
 const MODEL = 'models/bolt_tightening';
-const EXECUTABLE = process.env['SEQUENCE_PLANNER'] ?? join(ROOT, 'backend/.venv/bin/sequence-planner');
+export const EXECUTABLE = process.env['SEQUENCE_PLANNER'] ?? join(ROOT, 'backend/.venv/bin/sequence-planner');
 /** Milliseconds until the server must answer. */
 const START = 60_000;
 

@@ -54,6 +54,18 @@ def test_what_was_written_for_programs(tmp_path: Path) -> None:
     assert all(Path(file).is_file() for file in document["files"])
 
 
+def test_an_empty_station_is_there_to_be_built(tmp_path: Path) -> None:
+    folder = tmp_path / "single bolt"
+    code, out, _ = command("new", folder, "--empty")
+    assert code == 0
+    assert f"sequence-planner run {folder} --emulator\n" in out
+    assert (folder / "station.yaml").read_text(encoding="utf-8") == "name: single_bolt\n"
+    assert [path.name for path in folder.iterdir() if not path.name.startswith(".")] == ["station.yaml"]
+    code, document = as_json("check", folder)
+    assert (code, document["findings"]) == (0, [])
+    assert command("new", folder, "--empty")[0] == 2
+
+
 def test_nothing_is_overwritten(gate: Path) -> None:
     assert command("new", gate) == (2, "", f"{gate} is not empty: name a folder that is new or empty\n")
     assert command("new", gate / "station.yaml")[0] == 2

@@ -208,7 +208,7 @@ def _workshop(stream: ClientConnection, number: int) -> dict[str, Any]:
             return workshop
 
 
-def test_whoever_looks_is_told(server: Server, eva: httpx.Client) -> None:
+def test_whoever_looks_is_told(server: Server, eva: httpx.Client, model: Path) -> None:
     headers = server.cookie(server.session(server.person(Role.VIEWER))[0])
     with listen(server, f"ws://127.0.0.1:{server.settings.port}{MODEL}/stream", headers=headers) as stream:
         first = json.loads(stream.recv(PATIENCE))["workshop"]
@@ -218,6 +218,14 @@ def test_whoever_looks_is_told(server: Server, eva: httpx.Client) -> None:
         assert seen["last"]["title"] == "another title"
         assert seen["files"]["station.yaml"]["state"] == "changed"
         assert seen["check"]["summary"]["title"] == "Bolts"
+        # A deployment puts the draft in the place of the station's files: it is no other draft, and is as they are now.
+        text = read(eva, "/files", path="station.yaml")["files"]["station.yaml"]["text"]
+        (model / "station.yaml").write_text(text, encoding="utf-8")
+        read(eva, "/revisions")
+        deployed = json.loads(stream.recv(PATIENCE))["workshop"]
+        assert deployed["number"] == number
+        assert deployed["files"]["station.yaml"]["state"] == "same"
+        assert deployed["check"]["state"] == "done"
 
 
 def test_what_happens_to_the_files_of_the_station_is_taken_up(eva: httpx.Client, model: Path) -> None:

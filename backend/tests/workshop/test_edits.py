@@ -51,7 +51,7 @@ def test_edits_are_carried_out_one_after_the_other() -> None:
         RemoveEntry(file=FILE, path=["title"], was="Robot"),
     )
     content = value_at(text, ())
-    assert list(content) == ["measured", "abilities", "output"]
+    assert list(content) == ["output", "measured", "abilities"]
     assert list(content["output"].items()) == [("speed", {"type": "0..3"}), ("target", {"type": "place"})]
     assert "# Where it goes." in text
 
@@ -67,6 +67,31 @@ def test_what_is_not_there_yet_is_made_on_the_way() -> None:
     hollow = {"operations.yaml": "drill:\n"}
     after = applied(hollow, [AddEntry(file="operations.yaml", path=["drill", "goal"], value="done")])
     assert value_at(after["operations.yaml"], ()) == {"drill": {"goal": "done"}}
+
+
+def test_what_is_added_stands_where_documents_have_it() -> None:
+    ability = ["abilities", "move"]
+    text = edited(
+        AddEntry(file=FILE, path=[*ability, "finish", "when"], value="done"),
+        AddEntry(file=FILE, path=[*ability, "timeouts", "finish"], value=3),
+        AddEntry(file=FILE, path=[*ability, "timeouts", "react"], value=1),
+        AddEntry(file=FILE, path=[*ability, "title"], value="Move"),
+        AddEntry(file=FILE, path=["topics", "/b"], value={"type": "a/msg/B", "direction": "in"}),
+        AddEntry(file=FILE, path=["topics", "/a"], value={"type": "a/msg/A", "direction": "in"}),
+        AddEntry(file=FILE, path=["output", "on"], value={"type": "bool"}),
+    )
+    # What stood otherwise stays so; names that an engineer gives follow each other as they were given.
+    assert list(value_at(text, ())) == ["title", "topics", "output", "abilities", "measured"]
+    assert list(value_at(text, tuple(ability))) == ["title", "timeouts", "enabled", "start", "finish"]
+    assert list(value_at(text, (*ability, "timeouts"))) == ["react", "finish"]
+    assert list(value_at(text, ("topics",))) == ["/b", "/a"]
+    assert "  # Where it goes.\n  move:\n    title: Move\n" in text
+    assert "enabled: ready  # not before" in text
+    specification = applied(FILES, [
+        AddEntry(file="specifications.yaml", path=["apart"], value={"while": "ready"}),
+        AddEntry(file="specifications.yaml", path=["apart", "never"], value="done"),
+    ])  # fmt: skip
+    assert list(value_at(specification["specifications.yaml"], ("apart",))) == ["never", "while"]
 
 
 @pytest.mark.parametrize(

@@ -2215,7 +2215,8 @@ export interface components {
         ActorKind: "person" | "demonstration" | "watch" | "key" | "system";
         /**
          * AddEntry
-         * @description Add an entry at the end, or beside a sibling. Mappings on the way that are not there yet are made.
+         * @description Add an entry beside a sibling, or else where documents have it: before what belongs behind it, or at the end.
+         *     Mappings on the way that are not there yet are made.
          */
         AddEntry: {
             /** After */

@@ -19,6 +19,7 @@ _NAME = "my_station"
 
 def new(
     folder: Annotated[Path, typer.Argument(metavar="FOLDER", help="Where to write it: a new folder, or an empty one.")],
+    empty: Annotated[bool, typer.Option("--empty", help="Nothing but its name: to be built in the browser.")] = False,
     json: AsJson = False,
 ) -> None:
     """Write a small station that can be checked and run at once, with comments that say what is what.
@@ -28,11 +29,15 @@ def new(
     try:
         if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
             refuse(f"{folder} is not empty: name a folder that is new or empty")
-        with as_file(files("sequence_planner.cli") / "templates" / "station") as template:
-            copytree(template, folder, dirs_exist_ok=True)
-        station = folder / "station.yaml"
-        text = station.read_text(encoding="utf-8")
-        station.write_text(text.replace(f"name: {_NAME}", f"name: {_named_after(folder)}"), encoding="utf-8")
+        if empty:
+            folder.mkdir(parents=True, exist_ok=True)
+            (folder / "station.yaml").write_text(f"name: {_named_after(folder)}\n", encoding="utf-8")
+        else:
+            with as_file(files("sequence_planner.cli") / "templates" / "station") as template:
+                copytree(template, folder, dirs_exist_ok=True)
+            station = folder / "station.yaml"
+            text = station.read_text(encoding="utf-8")
+            station.write_text(text.replace(f"name: {_NAME}", f"name: {_named_after(folder)}"), encoding="utf-8")
         write_schemas(folder / ".schemas")
     except OSError as error:
         refuse(f"{folder} cannot be written: {error.strerror}")
@@ -42,6 +47,9 @@ def new(
         return
     for path in written:
         typer.echo(str(path))
+    if empty:  # a demonstration would forget the draft
+        typer.echo(f"\nNow: sequence-planner run {folder} --emulator")
+        return
     typer.echo(f"\nNow: sequence-planner check {folder}\n     sequence-planner run {folder} --emulator --demonstration")
 
 

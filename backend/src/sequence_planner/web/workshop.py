@@ -300,8 +300,10 @@ class Workshop:
         return PartChangedError(error.file, error.path, f"{error}, by {last.by_name}")
 
     async def _noticed(self, draft: Draft) -> None:
-        """Show the draft, and check it, where it is another one."""
-        if self._shown is not None and self._shown.number == draft.number:
+        """Show the draft, and check it, where it is another one; after a deployment only how its files stand is."""
+        if (shown := self._shown) is not None and shown.number == draft.number:
+            if (files := marks(draft)) != shown.files:
+                self._show(shown.model_copy(update={"files": files}))
             return
         changes = await self._identity.read(lambda connection: drafts.changes(connection, 1))
         last = change_view(changes[0]) if changes else None
@@ -311,7 +313,10 @@ class Workshop:
     def _found(self, check: CheckView) -> None:
         self._check = check
         if self._shown is not None:
-            self._shown = self._shown.model_copy(update={"check": check})
+            self._show(self._shown.model_copy(update={"check": check}))
+
+    def _show(self, shown: WorkshopView) -> None:
+        self._shown = shown
         self._encoded = None
         self.latest.tell()
 

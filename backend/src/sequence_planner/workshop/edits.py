@@ -12,6 +12,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
 from sequence_planner.model import editing
+from sequence_planner.model.order import declared_order
 from sequence_planner.model.paths import EditError, shown_path
 from sequence_planner.model.reading import EntryPath
 from sequence_planner.workshop.files import MOST_FILES, Files, check_path, check_text
@@ -49,7 +50,9 @@ class SetEntry(EditBase):
 
 
 class AddEntry(EditBase):
-    """Add an entry at the end, or beside a sibling. Mappings on the way that are not there yet are made."""
+    """Add an entry beside a sibling, or else where documents have it: before what belongs behind it, or at the end.
+    Mappings on the way that are not there yet are made.
+    """
 
     kind: Literal["add"] = "add"
     path: Annotated[Steps, Field(min_length=1)]
@@ -142,14 +145,26 @@ def _added(text: str, edit: AddEntry, path: EntryPath) -> str:
     if isinstance(content, list) and isinstance(path[depth], str):
         raise EditError(f"`{shown_path(path[:depth])}` is a list: its entries have no names")
     if depth == len(path) - 1 or isinstance(content, list):
-        return editing.insert(text, path, edit.value, before=edit.before, after=edit.after)
+        before = edit.before
+        if before is None and edit.after is None:
+            before = _next(edit.file, path, content)
+        return editing.insert(text, path, edit.value, before=before, after=edit.after)
     value: JsonValue = edit.value
     for step in reversed(path[depth + 1 :]):
         value = [value] if isinstance(step, int) else {step: value}
     here = path[: depth + 1]
     if isinstance(content, dict) and path[depth] in content:  # a name with nothing behind it
         return editing.replace(text, here, value)
-    return editing.insert(text, here, value)
+    return editing.insert(text, here, value, before=_next(edit.file, here, content))
+
+
+def _next(file: str, path: EntryPath, siblings: object) -> str | None:
+    """The first sibling that belongs behind the entry at `path`; None where it is the last, or has no such place."""
+    order = declared_order(file, path[:-1])
+    if not isinstance(siblings, dict) or path[-1] not in order:
+        return None
+    later = order[order.index(str(path[-1])) + 1 :]
+    return next((str(key) for key in siblings if key in later), None)
 
 
 def _first(text: str, path: EntryPath, value: JsonValue) -> str:

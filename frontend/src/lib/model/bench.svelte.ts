@@ -3,7 +3,7 @@ import { createContext, tick } from 'svelte';
 import type { Draft } from './draft.svelte.ts';
 import { countsOf, foundIn } from './found.ts';
 import { pathAt, placesOf } from './places.ts';
-import { lookupOf, nodeAt, treeOf, type Node } from './tree.ts';
+import { lookupOf, nodeAt, STATION, treeOf, type Node } from './tree.ts';
 
 /** Where the file editor is asked to go. */
 export interface Sight {
@@ -43,6 +43,16 @@ export class Bench {
 
 	get node(): Node | null {
 		return this.lookup.byId.get(this.chosen) ?? null;
+	}
+
+	/** What the chosen one was in, where it is there no more: renamed or deleted, by an undo or by somebody else. */
+	get around(): Node | null {
+		for (let id = this.chosen; id.includes('#'); ) {
+			id = id.slice(0, id.lastIndexOf('#'));
+			const found = this.lookup.byId.get(id);
+			if (found) return found;
+		}
+		return this.lookup.byId.get(STATION) ?? null;
 	}
 
 	/** Whether this person may change the model. */

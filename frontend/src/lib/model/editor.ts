@@ -162,8 +162,15 @@ function edited(host: HTMLElement, options: Common, more: Extension): { view: Ed
 				EditorView.updateListener.of((update) => {
 					if (update.docChanged && !shows) options.onwrite(update.state.doc.toString());
 				}),
-				// One that is taken out of the page while it has the focus loses it in the midst of an update of the page.
-				EditorView.domEventHandlers({ blur: () => queueMicrotask(() => options.onleave()), beforeinput: typedOver })
+				EditorView.domEventHandlers({
+					// One that is taken out of the page while it has the focus loses it in the midst of an update of the page.
+					blur: (_, view) =>
+						queueMicrotask(() => {
+							if (view.dom.isConnected) closeCompletion(view);
+							options.onleave();
+						}),
+					beforeinput: typedOver
+				})
 			]
 		})
 	});
@@ -233,12 +240,16 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 	async function complete(context: CompletionContext): Promise<CompletionResult | null> {
 		if (!context.explicit && context.matchBefore(/[\w.[=({]\s?$/) === null) return null;
 		const found = await options.complete(context.state.doc.toString(), context.pos);
-		if (found === null || found.options.length === 0 || context.aborted) return null;
+		if (found === null || context.aborted) return null;
+		// What stands there already is no choice: Enter shall not wait for it.
+		const isWritten = (text: string): boolean => found.options.some(({ insert }) => insert === text);
+		const only = found.options.length === 1 && isWritten(context.state.sliceDoc(found.start, found.end));
+		if (found.options.length === 0 || only) return null;
 		return {
 			from: found.start,
 			to: found.end,
 			options: found.options.map(({ label, insert, detail }) => ({ label, apply: insert, detail })),
-			validFor: /^\w*$/
+			validFor: (text) => /^\w*$/.test(text) && !isWritten(text)
 		};
 	}
 

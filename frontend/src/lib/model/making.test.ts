@@ -1,5 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { copied, made, moved, placesAt, removed, taken, written } from './making.ts';
+import { keysOfOthers, SPECIFICATIONS } from './specification.ts';
 import { lookupOf, treeOf, around, idOf } from './tree.ts';
 
 const FILE = 'resources/robot.yaml';
@@ -68,6 +69,11 @@ describe('edits', () => {
 	test('new things are in their place', () => {
 		const [ability] = made({ kind: 'ability', file: FILE, path: ['abilities'], section: 'abilities' }, 'go_home', {});
 		expect(ability).toEqual({ kind: 'add', file: FILE, path: ['abilities', 'go_home'], value: { title: 'Go home', enabled: false } });
+		const place = { kind: 'specification', file: 'specifications.yaml', path: [], section: 'specifications' } as const;
+		expect(made(place, 'apart', SPECIFICATIONS.never)).toMatchObject([
+			{ path: ['apart'], value: { title: 'Apart', never: false, while: false } }
+		]);
+		expect(made(place, 'bad', {})).toMatchObject([{ value: { title: 'Bad', forbidden: false } }]);
 		expect(made({ kind: 'resource', file: '', path: null, section: 'resources' }, 'arm', {})).toEqual([
 			{ kind: 'add', file: 'resources/arm.yaml', path: ['title'], value: 'Arm' }
 		]);
@@ -75,4 +81,11 @@ describe('edits', () => {
 			{ kind: 'text', file: 'messages/a/srv/B.srv', was: null, text: '' }
 		]);
 	});
+});
+
+test('a specification has the fields of its kind, and all of them while that is open', () => {
+	const hidden = (...there: string[]): string[] => keysOfOthers((key) => there.includes(key));
+	expect(hidden('title', 'never')).toEqual(['forbidden', 'exclusive', 'zone', 'order']);
+	expect(hidden('forbidden', 'order')).toEqual(['never', 'while', 'exclusive', 'zone']);
+	expect(hidden('title')).toEqual([]);
 });

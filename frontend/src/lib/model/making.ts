@@ -1,6 +1,7 @@
 /** What is made, copied, moved and taken away: each as the edits that do it. */
 import type { Edit } from '#lib/contract.ts';
 import { isMapping, same, valueAt, type Json, type Path } from './content.ts';
+import { SPECIFICATIONS } from './specification.ts';
 import { IN_RESOURCE, messageFile, STATION, type EntryKind, type InResource, type Node } from './tree.ts';
 
 /** Where something can be made: below which path of which file, and what. */
@@ -60,7 +61,7 @@ export function beginning(kind: EntryKind, name: string, given: Readonly<Record<
 		case 'operation':
 			return { ...title, precondition: false, goal: true };
 		case 'specification':
-			return { ...title, forbidden: false };
+			return { ...title, ...(Object.keys(given).length > 0 ? given : SPECIFICATIONS.forbidden) };
 		case 'work_master':
 			return { ...title, operations: {} };
 		case 'resource':

@@ -1,7 +1,7 @@
 import { readdirSync, readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { describe, expect, test } from 'vitest';
-import { linesOf, pathAt, placeOf, placesOf, withLines } from './places.ts';
+import { pathAt, placeOf, placesOf } from './places.ts';
 
 const MODELS = join(import.meta.dirname, '../../../../models');
 const TEXT = `# what it is
@@ -54,15 +54,8 @@ describe('where entries stand', () => {
 	test('an entry has all its lines, and what is not there the nearest around it', () => {
 		const place = placeOf(places, ['abilities', 'move', 'start', 'when']);
 		expect(place?.path).toEqual(['abilities', 'move', 'start']);
-		expect(place && linesOf(TEXT, place)).toBe('    start:\n      do:\n        - x := y\n        - z := w if a');
+		expect(place && TEXT.split('\n').slice(place.from, place.to)).toEqual(['    start:', '      do:', '        - x := y', '        - z := w if a']);
 		expect(placeOf(places, ['nothing'])).toBeNull();
-	});
-
-	test('lines are put in the place of others', () => {
-		const place = placeOf(places, ['topics', '/robot/state']);
-		expect(place && placesOf(withLines(TEXT, place, '  /other: {}\n  /third: {}')).map(({ path }) => path.join(' '))).toEqual(
-			expect.arrayContaining(['topics /other', 'topics /third', 'topics /robot/command type'])
-		);
 	});
 
 	test('in the models of this repository each name that begins a line is found', () => {

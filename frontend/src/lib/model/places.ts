@@ -24,8 +24,16 @@ const BLANK = /^\s*(#.*)?$/;
 const KEY = /^("(?:[^"\\]|\\.)*"|'(?:[^']|'')*'|[^\s"'#[\]{}&*!|>%@`-](?:[^:#]|:(?=\S)|(?<=\S)#)*?|-[^\s:#](?:[^:#]|:(?=\S))*?)\s*:(?=\s|$)\s*(.*)$/;
 const BLOCK = /^(?:[&!]\S+\s+)*[|>][-+0-9]*\s*(?:#.*)?$/;
 
-const bare = (name: string): string => (/^["']/.test(name) ? name.slice(1, -1) : name);
 const indentOf = (line: string): number => line.length - line.trimStart().length;
+
+/** What a line begins with that has a key at its beginning: the key as it is written, and what stands beside it. */
+export function keyOf(line: string): { readonly indent: number; readonly head: string; readonly value: string } | null {
+	const indent = indentOf(line);
+	const found = KEY.exec(line.slice(indent));
+	return found ? { indent, head: line.slice(0, indent) + (found[1] ?? ''), value: (found[2] ?? '').trim() } : null;
+}
+
+const bare = (name: string): string => (/^["']/.test(name) ? name.slice(1, -1) : name);
 
 /** How much deeper in brackets a text ends than it begins; what is quoted does not count. */
 function deeper(text: string): number {
@@ -112,15 +120,4 @@ export function pathAt(places: readonly Placed[], line: number): Path {
 		(best, each) => (each.from <= at && at < each.to && each.path.length > best.length ? each.path : best),
 		[]
 	);
-}
-
-/** The lines from `from` to `to` of a text. */
-export function linesOf(text: string, { from, to }: Pick<Placed, 'from' | 'to'>): string {
-	return text.split('\n').slice(from, to).join('\n');
-}
-
-/** The text with these lines instead. */
-export function withLines(text: string, { from, to }: Pick<Placed, 'from' | 'to'>, lines: string): string {
-	const all = text.split('\n');
-	return [...all.slice(0, from), ...(lines === '' ? [] : lines.split('\n')), ...all.slice(to)].join('\n');
 }

@@ -246,6 +246,14 @@ export const model = {
 		status: 'Measured variable for its status',
 		from: 'Topic or flow that it is made from',
 		needed: 'This is needed.',
+		specification: 'What it says',
+		specifications: {
+			forbidden: 'States that must never be',
+			never: 'Never one thing while another holds',
+			exclusive: 'Abilities of which no two execute at once',
+			zone: 'A space that resources share',
+			order: 'Conditions in their order'
+		},
 		do: 'Add'
 	},
 	duplicate: { title: (name: string): string => `Duplicate ${name}`, name: 'Name of the copy', do: 'Duplicate' },

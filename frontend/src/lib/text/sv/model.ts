@@ -240,6 +240,14 @@ export const model: Text['model'] = {
 		status: 'Mätt variabel för dess status',
 		from: 'Topic eller flöde som det görs av',
 		needed: 'Detta krävs.',
+		specification: 'Vad den säger',
+		specifications: {
+			forbidden: 'Tillstånd som aldrig får råda',
+			never: 'Aldrig något medan något annat råder',
+			exclusive: 'Förmågor av vilka högst en utförs åt gången',
+			zone: 'Ett utrymme som resurser delar',
+			order: 'Villkor i sin ordning'
+		},
 		do: 'Lägg till'
 	},
 	duplicate: { title: (name) => `Duplicera ${name}`, name: 'Kopians namn', do: 'Duplicera' },

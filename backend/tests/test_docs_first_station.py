@@ -1,0 +1,59 @@
+"""The tutorial in the browser says what the model of this repository has: its conditions, pipelines and guard."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.expressions.parser import parse
+from sequence_planner.expressions.resolution import Scope, resolve_predicate
+from sequence_planner.model.reading import read_text
+from sequence_planner.station import prepare_station
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision
+
+REPOSITORY = Path(__file__).parents[2]
+MODEL = REPOSITORY / "models" / "single_bolt"
+TEXT = (REPOSITORY / "docs" / "first-station.md").read_text(encoding="utf-8")
+PROSE = re.sub(r"^```.*?^```$", "", TEXT, flags=re.MULTILINE | re.DOTALL)
+BLOCKS = re.findall(r"^```(\w+) ?(.*)\n((?:.*\n)*?)```$", TEXT, re.MULTILINE)
+
+
+def written() -> str:
+    """All that the files of the model say, in one line."""
+    files = (path.read_text(encoding="utf-8") for path in sorted(MODEL.rglob("*.*")) if path.is_file())
+    return " ".join(" ".join(files).split())
+
+
+def test_what_is_to_be_written_is_in_the_model() -> None:
+    model = written()
+    shown = [
+        *re.findall(r"`([^`]* (?:==|:=|!=) [^`]*)`", PROSE),
+        *re.findall(r"`((?:bool|string|float64)\S* \w+)`", PROSE),
+    ]
+    assert len(shown) >= 20
+    assert [each for each in shown if " ".join(each.split()) not in model] == []
+
+
+def test_the_pipelines_are_those_of_the_model() -> None:
+    pipelines = [content for kind, label, content in BLOCKS if label.startswith("pipeline of ")]
+    assert len(pipelines) == 2
+    assert "*poses" in pipelines[1]
+    text = "".join(f"{place}:\n{pipeline}" for place, pipeline in zip("ab", pipelines, strict=True))
+    robot = read_text((MODEL / "resources" / "robot.yaml").read_text(encoding="utf-8"), "robot.yaml").content
+    assert isinstance(robot, dict)
+    topics = robot["topics"]
+    expected = {"a": topics["/robot/state"]["pipeline"], "b": topics["/robot/command"]["pipeline"]}
+    assert read_text(text, "first-station.md").content == expected
+
+
+def test_the_guard_shown_is_the_one_that_is_added() -> None:
+    ((ability, shown),) = ((label, content) for kind, label, content in BLOCKS if kind == "guard")
+    automaton: Automaton = prepare_station(MODEL).automaton
+    supervision = Supervision(Plant(automaton, tuple(automaton.variables)))
+    reached = supervision.reachable(supervised=True)
+    guard = supervision.plant.where(resolve_predicate(parse(shown.strip()), Scope(automaton.types)))
+    allowed, disallowed = (reached & states for states in supervision.guard(ability))
+    assert (allowed | disallowed).satisfiable()
+    assert allowed == (allowed | disallowed) & guard
