@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from sequence_planner.control.correction_view import CorrectionPreview
 from sequence_planner.control.definition_view import AbilityDefinitionView
 from sequence_planner.control.offer_view import AdviceView, OfferView
-from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView, RecordView
 from sequence_planner.control.restart_commands import GivenValues
 from sequence_planner.control.view_part import View
 from sequence_planner.control.why_not_view import WhyNotView
@@ -50,6 +50,13 @@ class AboutFlows(AskBase[FlowsView]):
     """What has passed the pipelines."""
 
     kind: Literal["about-flows"] = "about-flows"
+
+
+class AskRecord(AskBase[RecordView]):
+    """The last record at the beginning and at the end of a pipeline, in full."""
+
+    kind: Literal["ask-record"] = "ask-record"
+    pipeline: str = Field(max_length=LONGEST_PREDICATE)
 
 
 class AskAdvice(AskBase[AdviceView]):
@@ -100,6 +107,14 @@ class AskCorrection(AskBase[CorrectionPreview]):
 
 
 Ask = Annotated[
-    AboutPipelines | AboutFlows | AskCorrection | AskAdvice | AskGoal | AskReset | AskWhyNot | AskDefinition,
+    AboutPipelines
+    | AboutFlows
+    | AskRecord
+    | AskCorrection
+    | AskAdvice
+    | AskGoal
+    | AskReset
+    | AskWhyNot
+    | AskDefinition,
     Field(discriminator="kind"),
 ]

@@ -90,3 +90,13 @@ class FlowsView(View):
 
     time: float
     pipelines: dict[str, PipelineFlowView]
+
+
+class RecordView(View):
+    """The last record at the beginning of a pipeline and at its end, in full, and when they passed (seconds since the
+    epoch). What JSON has not, such as NaN, is null. `last` is null where nothing has come to the end since.
+    """
+
+    first: dict[str, JsonValue]
+    last: dict[str, JsonValue] | None
+    at: float | None

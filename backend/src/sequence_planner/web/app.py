@@ -26,6 +26,7 @@ from sequence_planner.web import (
     audit,
     control_routes,
     corrections,
+    draft_pipelines,
     errands,
     health,
     history,
@@ -93,6 +94,7 @@ PARTS = (
     history.router,
     model.router,
     language.router,
+    draft_pipelines.router,
     revisions.router,
     openapi_document.router,
 )

@@ -11,6 +11,7 @@ from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.actor import Actor
+from sequence_planner.control.pipeline_view import RecordView
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.latest import Latest
@@ -22,6 +23,8 @@ from sequence_planner.workshop.check_view import CheckView, waiting
 from sequence_planner.workshop.draft import Change, Differences, Draft, Proposal
 from sequence_planner.workshop.edits import Edit, PartChangedError, WriteText
 from sequence_planner.workshop.files import Files, read_files
+from sequence_planner.workshop.pipelines.questions import PipelineAnswer, PipelineQuestion
+from sequence_planner.workshop.pipelines.view import RecordedView
 from sequence_planner.workshop.processes import Answering, worked
 from sequence_planner.workshop.questions import LanguageAnswer, LanguageQuestionKind, TextAt
 from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
@@ -196,6 +199,14 @@ class Workshop:
         answer = await self._language.ask(question, ANSWERED_WITHIN)
         assert isinstance(answer, LanguageAnswer)
         return answer
+
+    async def ask_pipelines(self, question: PipelineQuestion) -> PipelineAnswer:
+        """What is answered to a question about the pipelines. Raises `EditError` and `WorkEndedError`."""
+        raise NotImplementedError
+
+    async def record(self, pipeline: str, name: str, heard: RecordView, by: Actor) -> RecordedView:
+        """Add an example to the draft. Raises `EditError` and `WorkEndedError`."""
+        raise NotImplementedError
 
     async def _again(self, draft: Draft, by: Actor, *, undo: bool) -> Proposal:
         def last(connection: Connection) -> tuple[Change, Differences]:

@@ -1,0 +1,111 @@
+"""The pipelines of the draft: their graph, what could be put where, and runs of them. What is edited is edited as the
+rest of the model is, with `POST /model/changes`.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from fastapi import APIRouter
+from pydantic import Field
+
+from sequence_planner.control.asks import AskRecord
+from sequence_planner.identity.roles import Role, Scope
+from sequence_planner.model.paths import EditError
+from sequence_planner.web.access import allowed
+from sequence_planner.web.body import Body
+from sequence_planner.web.model import TheWorkshop, failed, refusal
+from sequence_planner.web.problems import refused
+from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
+from sequence_planner.web.workshop import Workshop
+from sequence_planner.workshop.pipelines.questions import (
+    Everything,
+    Examples,
+    Fitting,
+    PipelineAnswer,
+    PipelineId,
+    PipelineQuestion,
+    Preview,
+    Trial,
+)
+from sequence_planner.workshop.pipelines.view import (
+    DraftPipelinesView,
+    FitsView,
+    PreviewView,
+    RecordedView,
+    RunsView,
+)
+from sequence_planner.workshop.processes import WorkEndedError
+
+router = APIRouter(prefix="/model/pipelines", tags=["model"], responses=refused(409, 503))
+VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
+
+
+class RecordBody(Body):
+    """What the station has heard or said last of a pipeline becomes an example of this name in the draft."""
+
+    pipeline: PipelineId
+    name: Annotated[str, Field(min_length=1, max_length=200)]
+
+
+@router.get("", dependencies=[VIEWER])
+async def pipelines(shop: TheWorkshop) -> DraftPipelinesView:
+    """The typed graph of the draft as far as it is sound, and what is wrong with it, where it is wrong."""
+    answer = await _asked(shop, Everything())
+    assert isinstance(answer, DraftPipelinesView)
+    return answer
+
+
+@router.post("/fits", dependencies=[VIEWER, JSON_ONLY], responses=refused(422))
+async def fits(body: Fitting, shop: TheWorkshop) -> FitsView:
+    """What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow."""
+    answer = await _asked(shop, body)
+    assert isinstance(answer, FitsView)
+    return answer
+
+
+@router.post("/preview", dependencies=[VIEWER, JSON_ONLY])
+async def preview(body: Preview, shop: TheWorkshop) -> PreviewView:
+    """What edits would bring about; nothing is changed."""
+    answer = await _asked(shop, body)
+    assert isinstance(answer, PreviewView)
+    return answer
+
+
+@router.post("/examples", dependencies=[VIEWER, JSON_ONLY], responses=refused(422))
+async def examples(body: Examples, shop: TheWorkshop) -> RunsView:
+    """How the examples of a pipeline end, with the record at every edge."""
+    answer = await _asked(shop, body)
+    assert isinstance(answer, RunsView)
+    return answer
+
+
+@router.post("/trials", dependencies=[VIEWER, JSON_ONLY], responses=refused(422))
+async def trial(body: Trial, shop: TheWorkshop) -> RunsView:
+    """What comes of a message, or of several in time that is told, with the record at every edge."""
+    answer = await _asked(shop, body)
+    assert isinstance(answer, RunsView)
+    return answer
+
+
+@router.post(
+    "/recordings", dependencies=[allowed(Role.ENGINEER), JSON_ONLY], status_code=201, responses=refused(422, 504)
+)
+async def record(body: RecordBody, shop: TheWorkshop, client: Controller, actor: Actor) -> RecordedView:
+    """Make an example of what the station has heard or said last; it is added to the draft."""
+    heard = await client.ask(AskRecord(pipeline=body.pipeline))
+    try:
+        return await shop.record(body.pipeline, body.name, heard, actor)
+    except EditError as error:
+        raise refusal(error) from error
+    except WorkEndedError as error:
+        raise failed(error) from error
+
+
+async def _asked(shop: Workshop, question: PipelineQuestion) -> PipelineAnswer:
+    try:
+        return await shop.ask_pipelines(question)
+    except EditError as error:
+        raise refusal(error) from error
+    except WorkEndedError as error:
+        raise failed(error) from error
