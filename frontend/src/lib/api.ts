@@ -884,6 +884,126 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model/pipelines": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Pipelines
+         * @description The typed graph of the draft as far as it is sound, and what is wrong with it, where it is wrong.
+         */
+        get: operations["pipelines_api_v1_model_pipelines_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/examples": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Examples
+         * @description How the examples of a pipeline end, with the record at every edge.
+         */
+        post: operations["examples_api_v1_model_pipelines_examples_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/fits": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Fits
+         * @description What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow.
+         */
+        post: operations["fits_api_v1_model_pipelines_fits_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/preview": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Preview
+         * @description What edits would bring about; nothing is changed.
+         */
+        post: operations["preview_api_v1_model_pipelines_preview_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/recordings": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Record
+         * @description Make an example of what the station has heard or said last; it is added to the draft.
+         */
+        post: operations["record_api_v1_model_pipelines_recordings_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/pipelines/trials": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Trial
+         * @description What comes of a message, or of several in time that is told, with the record at every edge.
+         */
+        post: operations["trial_api_v1_model_pipelines_trials_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/model/redo": {
         parameters: {
             query?: never;
@@ -2686,6 +2806,189 @@ export interface components {
             safe: boolean | number | string;
         };
         /**
+         * DraftEdgeView
+         * @description An edge: the types of a record's fields, null where nobody can say; `id` stays when others come and go.
+         */
+        DraftEdgeView: {
+            /** Fields */
+            fields: {
+                [key: string]: string;
+            } | null;
+            /** Id */
+            id: string;
+            live: components["schemas"]["LiveEdgeView"] | null;
+        };
+        /**
+         * DraftEndView
+         * @description What a field becomes at the end: a variable of the station, or a field of the outgoing message.
+         */
+        DraftEndView: {
+            /** Becomes */
+            becomes: string;
+            /** Field */
+            field: string;
+            /** Type */
+            type: string;
+        };
+        /**
+         * DraftExampleView
+         * @description An example as it is written.
+         */
+        DraftExampleView: {
+            /** Name */
+            name: string;
+            place: components["schemas"]["EntryView"];
+            written: components["schemas"]["JsonValue"];
+        };
+        /**
+         * DraftPipelineView
+         * @description The pipeline of one topic, flow, or part of a service or action.
+         *
+         *     `id` is that of what runs under this name, and for a second one of the same name its resource stands before it.
+         *     `place` is its entry, or that of the service or action; `stages_path` is where its stages stand, or would stand, and
+         *     null for one that has none. `first` has the variables with which an outgoing record begins.
+         */
+        DraftPipelineView: {
+            /** Deadline */
+            deadline: number | null;
+            /** Edges */
+            edges: components["schemas"]["DraftEdgeView"][];
+            /** Ends */
+            ends: components["schemas"]["DraftEndView"][];
+            /** Every */
+            every: number | null;
+            /** Examples */
+            examples: components["schemas"]["DraftExampleView"][];
+            /** Examples Path */
+            examples_path: (string | number)[] | null;
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** First */
+            first: components["schemas"]["ReadVariableView"][];
+            /** Id */
+            id: string;
+            /** Ignored */
+            ignored: string[];
+            /** Joining */
+            joining: ("branch" | "interleave" | "merge") | null;
+            /** Message */
+            message: string | null;
+            /** Name */
+            name: string;
+            part: components["schemas"]["Part"];
+            place: components["schemas"]["EntryView"];
+            quality: components["schemas"]["DraftQualityView"] | null;
+            /** Readers */
+            readers: string[];
+            /** Resource */
+            resource: string;
+            /**
+             * Role
+             * @enum {string}
+             */
+            role: "incoming" | "outgoing" | "flow";
+            /** Sources */
+            sources: components["schemas"]["SourceView"][];
+            /** Stages */
+            stages: components["schemas"]["DraftStageView"][];
+            /** Stages Path */
+            stages_path: (string | number)[] | null;
+            standing: components["schemas"]["Standing"];
+        };
+        /**
+         * DraftPipelinesView
+         * @description All pipelines of the draft after its change `number`, by id, each flow behind its sources.
+         *
+         *     `findings` are those that belong to none of them. `unread` are files shown as they were when they could be read.
+         */
+        DraftPipelinesView: {
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Number */
+            number: number;
+            /** Pipelines */
+            pipelines: {
+                [key: string]: components["schemas"]["DraftPipelineView"];
+            };
+            /** Resources */
+            resources: {
+                [key: string]: string;
+            };
+            /** Types */
+            types: {
+                [key: string]: components["schemas"]["TypeView"];
+            };
+            /** Unread */
+            unread: string[];
+            /** Variables */
+            variables: components["schemas"]["DraftVariableView"][];
+        };
+        /**
+         * DraftQualityView
+         * @description The quality of service as it is meant; times are in seconds.
+         */
+        DraftQualityView: {
+            /** Deadline */
+            deadline: number | null;
+            /** Depth */
+            depth: number;
+            /** Liveliness */
+            liveliness: number | null;
+            /** Name */
+            name: string;
+            /** Reliable */
+            reliable: boolean;
+            /** Transient Local */
+            transient_local: boolean;
+        };
+        /**
+         * DraftStageView
+         * @description A stage; `written` is its entry, as `was` of an edit has it.
+         *
+         *     One that nobody wrote, such as the `map` of constants of the message, has neither `written` nor `place`. `reads` and
+         *     `gives` are empty where it is not sound.
+         */
+        DraftStageView: {
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Gives */
+            gives: {
+                [key: string]: string;
+            };
+            /** Id */
+            id: string;
+            /** Kind */
+            kind: string;
+            place: components["schemas"]["EntryView"] | null;
+            /** Reads */
+            reads: string[];
+            standing: components["schemas"]["Standing"];
+            /** Summary */
+            summary: string;
+            written: components["schemas"]["JsonValue"];
+        };
+        /**
+         * DraftVariableView
+         * @description A variable of a resource; `fed` is the id of the pipeline that writes it. `place` is null for one that follows
+         *     from a message alone.
+         */
+        DraftVariableView: {
+            /** Fed */
+            fed: string | null;
+            /**
+             * Kind
+             * @enum {string}
+             */
+            kind: "measured" | "output" | "estimated";
+            /** Name */
+            name: string;
+            place: components["schemas"]["EntryView"] | null;
+            /** Resource */
+            resource: string;
+            /** Type */
+            type: string;
+        };
+        /**
          * DraftView
          * @description The draft after its change `number`: its files by path, and its last changes, newest first.
          *
@@ -2821,6 +3124,20 @@ export interface components {
             subject: string;
         };
         /**
+         * EntryView
+         * @description An entry of a file, as edits name it, and where it stands; lines and columns count from 1.
+         */
+        EntryView: {
+            /** Column */
+            column: number;
+            /** File */
+            file: string;
+            /** Line */
+            line: number;
+            /** Path */
+            path: (string | number)[];
+        };
+        /**
          * ErrandBody
          * @description The offer, and all that it contains as the person has seen it: the starts in order, and the corrections.
          */
@@ -2857,6 +3174,16 @@ export interface components {
             title: string;
             /** Why */
             why: string;
+        };
+        /**
+         * Examples
+         * @description How the examples of a pipeline end: all of them, or the one of that index.
+         */
+        Examples: {
+            /** Example */
+            example?: number | null;
+            /** Pipeline */
+            pipeline: string;
         };
         /**
          * FieldError
@@ -2941,6 +3268,32 @@ export interface components {
             password: string;
             /** Token */
             token: string;
+        };
+        /**
+         * FitsView
+         * @description What could be put at an edge of a pipeline: stages, what its fields could become, and further sources.
+         */
+        FitsView: {
+            /** Number */
+            number: number;
+            /** Sources */
+            sources: components["schemas"]["SourceOfferView"][];
+            /** Stages */
+            stages: components["schemas"]["StageOfferView"][];
+            /** Targets */
+            targets: components["schemas"]["TargetView"][];
+        };
+        /**
+         * Fitting
+         * @description What could be put at an edge, which counts from 0. With a `field` of it, what that could become is told too.
+         */
+        Fitting: {
+            /** Edge */
+            edge: number;
+            /** Field */
+            field?: string | null;
+            /** Pipeline */
+            pipeline: string;
         };
         /**
          * FlowsSnapshot
@@ -3217,6 +3570,16 @@ export interface components {
             why: string;
         };
         /**
+         * LeftOutView
+         * @description What the station had and the draft makes otherwise of the same record alone.
+         */
+        LeftOutView: {
+            draft: components["schemas"]["JsonValue"];
+            /** Name */
+            name: string;
+            station: components["schemas"]["JsonValue"];
+        };
+        /**
          * LineView
          * @description What happened between two times: the records behind number `begin`, up to `end`.
          *
@@ -3255,6 +3618,20 @@ export interface components {
             kind: "link";
             /** Sequence */
             sequence: number;
+        };
+        /**
+         * LiveEdgeView
+         * @description The edge of what runs that this one is: the pipeline and the index of the edge, as `/pipelines/stream` has them.
+         *
+         *     `same` says that everything before it runs as the draft has it; else what runs is made in another way.
+         */
+        LiveEdgeView: {
+            /** Edge */
+            edge: number;
+            /** Pipeline */
+            pipeline: string;
+            /** Same */
+            same: boolean;
         };
         /**
          * MarkView
@@ -3652,6 +4029,12 @@ export interface components {
             code: string;
         };
         /**
+         * Part
+         * @description What of a resource a pipeline belongs to.
+         * @enum {string}
+         */
+        Part: "topic" | "flow" | "request" | "response" | "goal" | "feedback" | "result" | "status";
+        /**
          * PartDifference
          * @description A part of the model that is new, gone, or another one; `kind` is what it is, such as `ability`.
          */
@@ -3986,6 +4369,14 @@ export interface components {
             text: string;
         };
         /**
+         * Preview
+         * @description What edits would bring about.
+         */
+        Preview: {
+            /** Edits */
+            edits: (components["schemas"]["SetEntry"] | components["schemas"]["AddEntry"] | components["schemas"]["RemoveEntry"] | components["schemas"]["MoveEntry"] | components["schemas"]["WriteText"])[];
+        };
+        /**
          * PreviewStepView
          * @description One start. `tick` counts from the tick in which the plan begins.
          */
@@ -4002,6 +4393,29 @@ export interface components {
             tick: number;
             /** Title */
             title: string;
+        };
+        /**
+         * PreviewView
+         * @description What the edits would bring about: pipelines that are others then, those that are gone, and what is found that was
+         *     not there before. `refused` says why the edits cannot be made at all.
+         */
+        PreviewView: {
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Gone */
+            gone: string[];
+            /** Number */
+            number: number;
+            /** Pipelines */
+            pipelines: {
+                [key: string]: components["schemas"]["DraftPipelineView"];
+            };
+            /** Refused */
+            refused: string | null;
+            /** Types */
+            types: {
+                [key: string]: components["schemas"]["TypeView"];
+            };
         };
         /**
          * Priority
@@ -4133,6 +4547,18 @@ export interface components {
             value: boolean | number | string | null;
         };
         /**
+         * ReadVariableView
+         * @description A variable with which an outgoing record begins; `sent` says that the message depends on it.
+         */
+        ReadVariableView: {
+            /** Field */
+            field: string;
+            /** Sent */
+            sent: boolean;
+            /** Variable */
+            variable: string;
+        };
+        /**
          * ReasonBody
          * @description To ask for it is all that there is to say, but perhaps why.
          */
@@ -4155,6 +4581,29 @@ export interface components {
             number: number;
             /** Time */
             time: number;
+        };
+        /**
+         * RecordBody
+         * @description What the station has heard or said last of a pipeline becomes an example of this name in the draft.
+         */
+        RecordBody: {
+            /** Name */
+            name: string;
+            /** Pipeline */
+            pipeline: string;
+        };
+        /**
+         * RecordedView
+         * @description An example that was made of what the station has heard or said last. `left_out` is not expected in it: it came of
+         *     what was before, or the draft makes something else of it.
+         */
+        RecordedView: {
+            example: components["schemas"]["DraftExampleView"];
+            /** Left Out */
+            left_out: components["schemas"]["LeftOutView"][];
+            /** Number */
+            number: number;
+            run: components["schemas"]["RunView"];
         };
         /**
          * RemoveEntry
@@ -4319,6 +4768,22 @@ export interface components {
             title: string;
         };
         /**
+         * RunEdgeView
+         * @description The last record that has passed an edge in a run, and how many have.
+         */
+        RunEdgeView: {
+            /** Id */
+            id: string;
+            /** Last */
+            last: {
+                [key: string]: components["schemas"]["JsonValue"];
+            } | null;
+            /** Records */
+            records: number;
+            /** Troubles */
+            troubles: string[];
+        };
+        /**
          * RunRecordView
          * @description Something that has happened. What `content` has depends on the `kind`; `docs/journal.md` says what.
          */
@@ -4335,6 +4800,53 @@ export interface components {
             number: number;
             /** Time */
             time: number;
+        };
+        /**
+         * RunStepView
+         * @description A moment of a run, in seconds from its beginning: what was given, what had come of it then, and each edge.
+         */
+        RunStepView: {
+            /** At */
+            at: number;
+            /** Edges */
+            edges: components["schemas"]["RunEdgeView"][];
+            given: components["schemas"]["JsonValue"];
+            /** Trouble */
+            trouble: string | null;
+            /** Values */
+            values: components["schemas"]["ValueView"][];
+        };
+        /**
+         * RunView
+         * @description A run of a pipeline on its own. `passed` is null where nothing was expected; `refused` says why what was given
+         *     cannot be taken.
+         */
+        RunView: {
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Name */
+            name: string | null;
+            /** Passed */
+            passed: boolean | null;
+            place: components["schemas"]["EntryView"] | null;
+            /** Refused */
+            refused: string | null;
+            /** Steps */
+            steps: components["schemas"]["RunStepView"][];
+        };
+        /**
+         * RunsView
+         * @description Runs of a pipeline of the draft; `obstacle` says why it cannot be run.
+         */
+        RunsView: {
+            /** Number */
+            number: number;
+            /** Obstacle */
+            obstacle: string | null;
+            /** Pipeline */
+            pipeline: string;
+            /** Runs */
+            runs: components["schemas"]["RunView"][];
         };
         /**
          * Scope
@@ -4501,6 +5013,37 @@ export interface components {
             revision: number;
         };
         /**
+         * SourceOfferView
+         * @description A topic or flow that a flow could have as a further source; `edits` make it so.
+         */
+        SourceOfferView: {
+            /** Edits */
+            edits: (components["schemas"]["AddEntry"] | components["schemas"]["RemoveEntry"] | components["schemas"]["MoveEntry"] | components["schemas"]["SetEntry"])[];
+            /** Fits */
+            fits: boolean;
+            /** Pipeline */
+            pipeline: string;
+            /** Reason */
+            reason: string | null;
+        };
+        /**
+         * SourceView
+         * @description A source of a flow as it is `written`, and the id of its pipeline, null where there is none such.
+         *
+         *     `path` is that of its entry; `alias` is that of a merge.
+         */
+        SourceView: {
+            /** Alias */
+            alias: string | null;
+            /** Findings */
+            findings: components["schemas"]["FindingDocument"][];
+            /** Pipeline */
+            pipeline: string | null;
+            place: components["schemas"]["EntryView"];
+            /** Written */
+            written: string;
+        };
+        /**
          * SpecificationView
          * @description A ground specification; several can have one title.
          */
@@ -4509,6 +5052,22 @@ export interface components {
             name: string;
             /** Title */
             title: string;
+        };
+        /**
+         * StageOfferView
+         * @description A kind of stage at an edge. Where it `fits`, `edits` put it there as `stage`, to be filled in further, and declare
+         *     what it needs; else `reason` says why no such stage can stand there.
+         */
+        StageOfferView: {
+            /** Edits */
+            edits: (components["schemas"]["AddEntry"] | components["schemas"]["RemoveEntry"] | components["schemas"]["MoveEntry"] | components["schemas"]["SetEntry"])[];
+            /** Fits */
+            fits: boolean;
+            /** Kind */
+            kind: string;
+            /** Reason */
+            reason: string | null;
+            stage: components["schemas"]["JsonValue"];
         };
         /**
          * StageView
@@ -4532,6 +5091,12 @@ export interface components {
             /** Summary */
             summary: string;
         };
+        /**
+         * Standing
+         * @description Whether something of a pipeline is sound.
+         * @enum {string}
+         */
+        Standing: "good" | "wrong" | "unknown";
         /**
          * StateAnswer
          * @description Every variable.
@@ -4904,6 +5469,24 @@ export interface components {
             name: string;
         };
         /**
+         * TargetView
+         * @description What a field at an edge could become: a variable, or a field of the outgoing message; `edits` make it so.
+         */
+        TargetView: {
+            /** Edits */
+            edits: (components["schemas"]["AddEntry"] | components["schemas"]["RemoveEntry"] | components["schemas"]["MoveEntry"] | components["schemas"]["SetEntry"])[];
+            /** Field */
+            field: string;
+            /** Fits */
+            fits: boolean;
+            /** Name */
+            name: string;
+            /** Reason */
+            reason: string | null;
+            /** Type */
+            type: string;
+        };
+        /**
          * TaskProblemView
          * @description What keeps somebody from doing a task; `why` may be empty.
          */
@@ -5082,6 +5665,16 @@ export interface components {
             ways: string[][];
         };
         /**
+         * Trial
+         * @description What comes of these records.
+         */
+        Trial: {
+            /** Pipeline */
+            pipeline: string;
+            /** Steps */
+            steps: components["schemas"]["TrialStep"][];
+        };
+        /**
          * TrialBody
          * @description `real_devices` confirms that devices may move which are not emulated ones.
          */
@@ -5095,6 +5688,21 @@ export interface components {
             real_devices: boolean;
             /** Reason */
             reason?: string | null;
+        };
+        /**
+         * TrialStep
+         * @description A moment of a trial: what comes, as an example has it; without it only time passes.
+         */
+        TrialStep: {
+            /**
+             * At
+             * @default 0
+             */
+            at: number;
+            /** Given */
+            given?: {
+                [key: string]: components["schemas"]["JsonValue"];
+            } | null;
         };
         /**
          * TrialView
@@ -5133,6 +5741,34 @@ export interface components {
             due: number | null;
             /** Name */
             name: string;
+        };
+        /**
+         * TypeKind
+         * @description What values a type has.
+         * @enum {string}
+         */
+        TypeKind: "bool" | "enumeration" | "integer" | "real" | "text" | "list" | "message";
+        /**
+         * TypeView
+         * @description A type of fields. `values` are those of an enumeration, `least` and `most` bound an integer, `element` and
+         *     `length` are those of a list (null: of any length), `fields` those of a nested message; each names its type.
+         */
+        TypeView: {
+            /** Element */
+            element: string | null;
+            /** Fields */
+            fields: {
+                [key: string]: string;
+            } | null;
+            kind: components["schemas"]["TypeKind"];
+            /** Least */
+            least: number | null;
+            /** Length */
+            length: number | null;
+            /** Most */
+            most: number | null;
+            /** Values */
+            values: string[] | null;
         };
         /**
          * TypedEdgeView
@@ -5211,6 +5847,18 @@ export interface components {
             unread: components["schemas"]["FindingDocument"][];
             /** Usages */
             usages: components["schemas"]["UsageView"][];
+        };
+        /**
+         * ValueView
+         * @description What came of a run under a name, null for unknown, and what was expected; `right` is null where nothing was.
+         */
+        ValueView: {
+            came: components["schemas"]["JsonValue"];
+            expected: components["schemas"]["JsonValue"];
+            /** Name */
+            name: string;
+            /** Right */
+            right: boolean | null;
         };
         /**
          * ValuesBody
@@ -7402,6 +8050,250 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["HoverAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    pipelines_api_v1_model_pipelines_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DraftPipelinesView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    examples_api_v1_model_pipelines_examples_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Examples"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunsView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    fits_api_v1_model_pipelines_fits_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Fitting"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["FitsView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    preview_api_v1_model_pipelines_preview_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Preview"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["PreviewView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    record_api_v1_model_pipelines_recordings_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RecordBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RecordedView"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    trial_api_v1_model_pipelines_trials_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["Trial"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["RunsView"];
                 };
             };
             400: components["responses"]["Problem400"];
