@@ -158,3 +158,4 @@ export type TypeOfField = Schemas['TypeView'];
 export type Flows = Schemas['FlowsView'];
 export type EdgeFlow = Schemas['EdgeFlowView'];
 export type FlowsMessage = Schemas['FlowsStreamMessage'];
+export type Attachment = Schemas['AttachmentAnswer'];

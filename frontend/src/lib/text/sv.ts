@@ -8,10 +8,11 @@ import { deploy } from './sv/deploy.ts';
 import { history } from './sv/history.ts';
 import { model } from './sv/model.ts';
 import { operate } from './sv/operate.ts';
+import { pipelines } from './sv/pipelines.ts';
 import { restart } from './sv/restart.ts';
 import { ros } from './sv/ros.ts';
 import { state } from './sv/state.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, restart, ros, state, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, pipelines, restart, ros, state, whatIf };
