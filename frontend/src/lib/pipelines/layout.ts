@@ -16,7 +16,7 @@ export interface Sizes {
 }
 
 /** The sizes for text of `rem` pixels. */
-export const sizesFor = (rem: number): Sizes => ({ width: 13 * rem, height: 3.75 * rem, between: 9 * rem, apart: rem });
+export const sizesFor = (rem: number): Sizes => ({ width: 12.5 * rem, height: 4.75 * rem, between: 8 * rem, apart: rem });
 
 const options = ({ between, apart }: Sizes): Record<string, string> => ({
 	'elk.algorithm': 'layered',

@@ -2,6 +2,7 @@
 import { createContext } from 'svelte';
 import type { DraftPipeline, DraftPipelines, Edit, Finding, PipelineRun, RunStep } from '#lib/contract.ts';
 import type { Bench } from '#lib/model/bench.svelte.ts';
+import { textAt } from '#lib/model/content.ts';
 import { idOf } from '#lib/model/tree.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request } from '#lib/rest/request.ts';
@@ -96,6 +97,11 @@ export class Loom {
 	/** Whether the pipeline can be written in now. */
 	locked(pipeline: Pick<DraftPipeline, 'place'>): boolean {
 		return this.bench.locked(pipeline.place.file);
+	}
+
+	/** What a resource is called by people. */
+	titleOf(resource: string): string {
+		return textAt(this.bench.draft.contents[`resources/${resource}.yaml`], ['title']) ?? resource;
 	}
 
 	/** A type as people read it: one of many values is said by their number. */
