@@ -14,6 +14,7 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.journal.audit import read
 from sequence_planner.station import prepare_station
 from sequence_planner.web.settings import Settings
+from sequence_planner.workshop.files import read_files
 from web.running import Loop, Server, free_port
 
 from .pressing import DOMAIN, press, station
@@ -84,6 +85,7 @@ def test_the_same_is_done_over_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPa
     cell, loop = station(tmp_path), Loop()
     page = tmp_path / "page"
     page.mkdir()
+    before = read_files(cell)
     settings = Settings(
         controller_socket=tmp_path / "no.sock",
         page=page,
@@ -99,13 +101,22 @@ def test_the_same_is_done_over_rest(tmp_path: Path, monkeypatch: pytest.MonkeyPa
             answer = client.post("/api/v1/ros/attachments", json=body).json()
             assert (answer["made"], answer["direction"]) == (True, "in")
             assert "+  /press/state:" in answer["difference"]
+            assert "+++ resources/press.yaml" in answer["difference"]
             assert {finding["severity"] for finding in answer["findings"]} == {"warning"}
+            draft = client.get("/api/v1/model").json()
+            assert (draft["number"], draft["undo"]) == (answer["number"], "/press/state belongs to press")
+            assert draft["files"]["resources/press.yaml"]["state"] == "new"
+            graph = client.get("/api/v1/model/pipelines").json()["pipelines"]["/press/state"]
+            assert (graph["standing"], graph["message"]) == ("good", "press_msgs/msg/PressState")
+            assert (graph["quality"]["reliable"], graph["resource"]) == (False, "press")
             again = client.post("/api/v1/ros/attachments", json=body | {"dry_run": True})
             assert (again.status_code, again.json()["type"]) == (409, "/problems/attached")
+            assert client.post("/api/v1/model/undo", json={}).status_code == 200
+            assert "resources/press.yaml" not in client.get("/api/v1/model").json()["files"]
         with server.identity.database.reading() as connection:
             done, asked = read(connection, action="attach-topic")
         assert (asked.entry.outcome, done.entry.outcome, done.entry.about) == ("requested", "done", asked.number)
     finally:
         server.stop()
         loop.close()
-    assert "/press/state" in prepare_station(cell).pipelines.incoming
+    assert read_files(cell) == before  # the station itself is not touched

@@ -1371,7 +1371,8 @@ export interface paths {
         };
         /**
          * Edges
-         * @description What has passed each edge: counts, rates, drops and the last record. Rates come with the second look.
+         * @description What has passed each edge of the pipelines that are named, or of all: counts, rates, drops and the last record.
+         *     Rates come with the second look.
          */
         get: operations["edges_api_v1_pipelines_edges_get"];
         put?: never;
@@ -1493,7 +1494,7 @@ export interface paths {
         put?: never;
         /**
          * Attach
-         * @description Enter a topic that is on the network into the station's model; what runs does not change before a restart.
+         * @description Enter a topic that is on the network into the draft of the model; what runs does not change before a deployment.
          *
          *     It is recorded before anything is changed, and again when its outcome is known.
          */
@@ -2307,9 +2308,10 @@ export interface components {
         };
         /**
          * AttachmentAnswer
-         * @description What was changed, as `diff -u` shows it, or would be; and what `check` finds then.
+         * @description What was changed in the draft, as `diff -u` shows it, or would be; and what `check` finds then.
          *
          *     `made` is false for a dry run, and when one of the findings is an error: the model could not be used afterwards.
+         *     `number` is that of the change of the draft, null where none was made.
          */
         AttachmentAnswer: {
             /** Difference */
@@ -2323,6 +2325,8 @@ export interface components {
             findings: components["schemas"]["FindingDocument"][];
             /** Made */
             made: boolean;
+            /** Number */
+            number: number | null;
             /** Resource */
             resource: string;
             /** Topic */
@@ -3177,11 +3181,11 @@ export interface components {
         };
         /**
          * Examples
-         * @description How the examples of a pipeline end: all of them, or the one of that index.
+         * @description How the examples of a pipeline end: all of them, or those of that name.
          */
         Examples: {
-            /** Example */
-            example?: number | null;
+            /** Name */
+            name?: string | null;
             /** Pipeline */
             pipeline: string;
         };
@@ -4598,7 +4602,10 @@ export interface components {
          *     what was before, or the draft makes something else of it.
          */
         RecordedView: {
-            example: components["schemas"]["DraftExampleView"];
+            /** Example */
+            example: {
+                [key: string]: components["schemas"]["JsonValue"];
+            };
             /** Left Out */
             left_out: components["schemas"]["LeftOutView"][];
             /** Number */
@@ -5055,8 +5062,8 @@ export interface components {
         };
         /**
          * StageOfferView
-         * @description A kind of stage at an edge. Where it `fits`, `edits` put it there as `stage`, to be filled in further, and declare
-         *     what it needs; else `reason` says why no such stage can stand there.
+         * @description A kind of stage at an edge. Where it `fits`, `edits` put it there as `stage`, to be filled in further, and
+         *     declare what it needs; else `reason` says why no such stage can stand there.
          */
         StageOfferView: {
             /** Edits */
@@ -9098,7 +9105,9 @@ export interface operations {
     };
     edges_api_v1_pipelines_edges_get: {
         parameters: {
-            query?: never;
+            query?: {
+                pipeline?: string[] | null;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -9116,6 +9125,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */

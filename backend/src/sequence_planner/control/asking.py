@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Container
 from dataclasses import dataclass
 
 from sequence_planner.control.asks import (
@@ -13,13 +13,14 @@ from sequence_planner.control.asks import (
     AskCorrection,
     AskDefinition,
     AskGoal,
+    AskRecord,
     AskReset,
     AskWhyNot,
 )
 from sequence_planner.control.corrections import Corrections
 from sequence_planner.control.definitions import Definitions
 from sequence_planner.control.offers import Offers
-from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
+from sequence_planner.control.pipeline_view import FlowsView, PipelinesView, RecordView
 from sequence_planner.control.view_part import View
 from sequence_planner.control.why_not import WhyNot
 
@@ -29,7 +30,8 @@ class Asking:
     """Answers asks. The event loop is never held up: what takes long is awaited, and done in another process."""
 
     pipelines: Callable[[], PipelinesView]
-    flows: Callable[[], FlowsView]
+    flows: Callable[[Container[str] | None], FlowsView]
+    record: Callable[[str], RecordView]
     corrections: Corrections
     offers: Offers
     why_not: WhyNot
@@ -40,8 +42,10 @@ class Asking:
         match ask:
             case AboutPipelines():
                 return self.pipelines()
-            case AboutFlows():
-                return self.flows()
+            case AboutFlows(among=among):
+                return self.flows(among)
+            case AskRecord(pipeline=pipeline):
+                return self.record(pipeline)
             case AskCorrection(values=values):
                 return await self.corrections.preview(values)
             case AskAdvice():

@@ -47,9 +47,10 @@ class AboutPipelines(AskBase[PipelinesView]):
 
 
 class AboutFlows(AskBase[FlowsView]):
-    """What has passed the pipelines."""
+    """What has passed the pipelines: all of them, or those `among` these."""
 
     kind: Literal["about-flows"] = "about-flows"
+    among: frozenset[str] | None = None
 
 
 class AskRecord(AskBase[RecordView]):

@@ -5,7 +5,7 @@ Nothing is asked for before production is started.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.control.feeds import Feeds
@@ -47,9 +47,10 @@ class Clients:
         """A person takes back what was set."""
         self.requests[request].clear_override(name, now)
 
-    def observed(self) -> dict[str, PipelineView]:
-        """What has passed each edge of each request's pipeline."""
-        return {name: running.observed() for name, running in self.requests.items()}
+    def observed(self, among: Container[str] | None = None) -> dict[str, PipelineView]:
+        """What has passed each edge of each request's pipeline, or of those `among` these."""
+        chosen = ((name, each) for name, each in self.requests.items() if among is None or name in among)
+        return {name: running.observed() for name, running in chosen}
 
     def close(self) -> None:
         """Ask for nothing more. May be repeated."""

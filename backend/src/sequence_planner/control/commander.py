@@ -6,7 +6,7 @@ tried again until it is out, and as long as one is owed nothing further should b
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -109,9 +109,10 @@ class Commander:
         command = self.topics[topic]
         self._send(command, command.running.clear_override(name, now), now)
 
-    def observed(self) -> dict[str, PipelineView]:
-        """What has passed each edge of each pipeline."""
-        return {name: command.running.observed() for name, command in self.topics.items()}
+    def observed(self, among: Container[str] | None = None) -> dict[str, PipelineView]:
+        """What has passed each edge of each pipeline, or of those `among` these."""
+        chosen = ((name, each) for name, each in self.topics.items() if among is None or name in among)
+        return {name: command.running.observed() for name, command in chosen}
 
     def close(self) -> None:
         """End what stages have started beside. May be repeated."""

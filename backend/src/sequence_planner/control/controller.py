@@ -121,6 +121,7 @@ class Controller:
         self._asking = Asking(
             pipelines=partial(pipelines_view, station.pipelines),
             flows=self.devices.flows,
+            record=self.devices.record,
             corrections=self._corrections,
             offers=offers,
             why_not=WhyNot(self.execution, around, self._adviser),

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 
 import structlog
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.control.clients import Clients
 from sequence_planner.control.commander import Commander
+from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.inbox import Inbox
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
-from sequence_planner.control.observing import Observing
+from sequence_planner.control.observing import Observing, record_view
 from sequence_planner.control.overrides import Overrides
-from sequence_planner.control.pipeline_view import FlowsView
+from sequence_planner.control.pipeline_view import FlowsView, RecordView
 from sequence_planner.emulation.node import NODE as EMULATED_DEVICES
+from sequence_planner.pipelines.observation import PipelineView
 from sequence_planner.ros.service_graph import TellsServices
 from sequence_planner.ros.transport import QualityEvent, Sample, Transport
 from sequence_planner.station import ReadyStation
@@ -110,10 +112,28 @@ class Devices:
         owed = [f"the command on {topic} to be sent" for topic in self.commander.owed]
         return (*self.network.rivals.values(), *owed)
 
-    def flows(self) -> FlowsView:
-        """What has passed the pipelines."""
-        outgoing = self.commander.observed() | self.clients.observed()
-        return self._observing.view(self.feeds.observed() | outgoing, Moment.now())
+    def flows(self, among: Container[str] | None = None) -> FlowsView:
+        """What has passed the pipelines, or those `among` these."""
+        return self._observing.view(self._observed(among), Moment.now())
+
+    def record(self, pipeline: str) -> RecordView:
+        """The last record of a pipeline. Raises `CommandRefused` where there is none that can be told."""
+        found = self._observed({pipeline}).get(pipeline)
+        if found is None:
+            raise CommandRefused("no-pipeline", "There is no such pipeline", f"What runs has no `{pipeline}`.", 404)
+        try:
+            record = record_view(found, Moment.now())
+        except ValueError as error:
+            detail = f"The last record of `{pipeline}` is too large to be told: {error}."
+            raise CommandRefused("record-too-large", "The record is too large", detail, 422) from None
+        if record is None:
+            detail = f"Nothing has passed `{pipeline}` since the controller began. Try again when something has."
+            raise CommandRefused("no-record", "There is no record", detail, 409)
+        return record
+
+    def _observed(self, among: Container[str] | None) -> dict[str, PipelineView]:
+        outgoing = self.commander.observed(among) | self.clients.observed(among)
+        return self.feeds.observed(among) | outgoing
 
     def close(self) -> None:
         """Hear and say nothing more."""

@@ -5,7 +5,7 @@ What services and actions answer is taken as a topic's messages are, under the n
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from sequence_planner.control.bad_input import Reports
@@ -117,9 +117,9 @@ class Feeds:
             for name, trouble in self.running.wake(now).items():
                 self.reports.note(name, trouble, now)
 
-    def observed(self) -> dict[str, PipelineView]:
-        """What has passed each edge of each pipeline."""
-        return self.running.observed()
+    def observed(self, among: Container[str] | None = None) -> dict[str, PipelineView]:
+        """What has passed each edge of each pipeline, or of those `among` these."""
+        return self.running.observed(among)
 
     @property
     def due(self) -> float | None:

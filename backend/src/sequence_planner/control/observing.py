@@ -9,45 +9,49 @@ from collections.abc import Mapping
 from pydantic import JsonValue
 
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.pipeline_view import EdgeFlowView, FlowsView, PipelineFlowView
+from sequence_planner.control.pipeline_view import EdgeFlowView, FlowsView, PipelineFlowView, RecordView
 from sequence_planner.pipelines.observation import EdgeView, PipelineView
 
 SHORTEST, LONGEST = 1.0, 10.0  # seconds over which a rate is taken
+MOST_VALUES = 5000  # of a record that is told in full
 MOST_ITEMS, LONGEST_TEXT, DEEPEST = 16, 200, 6  # of a value that is shown
 
-Counts = Mapping[str, tuple[int, ...]]  # by pipeline: all that came, and the records of each edge
+Counts = tuple[int, ...]  # of a pipeline: all that came, and the records of each edge
 
 
 class Observing:
     """Makes views of what was observed; remembers the counts of the last seconds in which somebody looked."""
 
     def __init__(self) -> None:
-        self._past: deque[tuple[float, Counts]] = deque()
+        self._past: dict[str, deque[tuple[float, Counts]]] = {}  # by pipeline
 
     def view(self, observed: Mapping[str, PipelineView], moment: Moment) -> FlowsView:
         """The view of what has been observed at `moment`."""
-        then, before = self._base(moment.monotonic)
-        seconds = moment.monotonic - then
-        counts = {name: _counts(view) for name, view in observed.items()}
-        self._past.append((moment.monotonic, counts))
+        now = moment.monotonic
+        self._past = {name: past for name, past in self._past.items() if past and now - past[-1][0] <= LONGEST}
         pipelines = {}
         for name, view in observed.items():
-            passed = [new - old for new, old in zip(counts[name], before.get(name, counts[name]), strict=True)]
+            counts, past = _counts(view), self._past.setdefault(name, deque())
+            then, before = _base(past, now) or (now, counts)
+            seconds = now - then
+            past.append((now, counts))
+            passed = [new - old for new, old in zip(counts, before, strict=True)]
             total, *rates = [number / seconds if seconds > 0 else None for number in passed]
             edges = [_edge(edge, rate, moment) for edge, rate in zip(view.edges, rates, strict=True)]
             pipelines[name] = PipelineFlowView(edges=edges, repeated=view.repeated, rate=total)
         return FlowsView(time=moment.epoch, pipelines=pipelines)
 
-    def _base(self, now: float) -> tuple[float, Counts]:
-        """The counts from which rates are taken: the newest that are old enough, else the oldest."""
-        while self._past and now - self._past[0][0] > LONGEST:
-            self._past.popleft()
-        while len(self._past) > 1 and now - self._past[1][0] >= SHORTEST:
-            self._past.popleft()
-        return self._past[0] if self._past else (now, {})
+
+def _base(past: deque[tuple[float, Counts]], now: float) -> tuple[float, Counts] | None:
+    """The counts from which rates are taken: the newest that are old enough, else the oldest."""
+    while past and now - past[0][0] > LONGEST:
+        past.popleft()
+    while len(past) > 1 and now - past[1][0] >= SHORTEST:
+        past.popleft()
+    return past[0] if past else None
 
 
-def _counts(view: PipelineView) -> tuple[int, ...]:
+def _counts(view: PipelineView) -> Counts:
     records = tuple(edge.records for edge in view.edges)
     return (records[0] + view.repeated, *records)
 
@@ -62,6 +66,39 @@ def _edge(edge: EdgeView, rate: float | None, moment: Moment) -> EdgeFlowView:
         troubles=[each[:LONGEST_TEXT] for each in edge.troubles[:MOST_ITEMS]],
         at=moment.epoch_of(edge.at),
     )
+
+
+def record_view(view: PipelineView, moment: Moment) -> RecordView | None:
+    """The last record in full; None where there has been none. Raises ValueError for one that is too large."""
+    first, last = view.edges[0], view.edges[-1]
+    if first.last is None or first.at is None:
+        return None
+    has_come = last.last is not None and last.at is not None and last.at >= first.at
+    left = [MOST_VALUES]
+    return RecordView(
+        first={name: _in_full(value, left) for name, value in first.last.items()},
+        last={name: _in_full(value, left) for name, value in (last.last or {}).items()} if has_come else None,
+        at=moment.epoch_of(first.at),
+    )
+
+
+def _in_full(value: object, left: list[int]) -> JsonValue:
+    """A value as JSON has it; `left` is how many more there may be."""
+    left[0] -= 1
+    if left[0] < 0:
+        raise ValueError(f"it has more than {MOST_VALUES} values")
+    match value:
+        case float():
+            return value if math.isfinite(value) else None
+        case None | bool() | int():
+            return value
+        case Mapping():
+            return {str(name): _in_full(inner, left) for name, inner in value.items()}
+        case list() | tuple():
+            if len(value) > left[0]:
+                raise ValueError(f"it has more than {MOST_VALUES} values")
+            return [_in_full(inner, left) for inner in value]
+    return str(value)
 
 
 def shown(value: object, depth: int = 0) -> JsonValue:

@@ -72,7 +72,7 @@ def _outgoing(outgoing: OutgoingPipeline) -> PipelineGraphView:
 def _stage(stage: Stage) -> StageView:
     return StageView(
         kind=stage.kind,
-        summary=_summary(stage.reads, stage.gives),
+        summary=summary_of(stage.reads, stage.gives),
         reads=sorted(stage.reads),
         gives={name: str(type_) for name, type_ in stage.gives.items()},
         file=stage.place.file,
@@ -81,7 +81,7 @@ def _stage(stage: Stage) -> StageView:
     )
 
 
-def _summary(reads: Iterable[str], gives: Iterable[str]) -> str:
+def summary_of(reads: Iterable[str], gives: Iterable[str]) -> str:
     """`joints → pose`, or one side alone where there is no other, or it is the same."""
     sides = [_named(sorted(reads)), _named(gives)]
     return " → ".join(dict.fromkeys(side for side in sides if side))

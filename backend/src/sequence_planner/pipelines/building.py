@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.place import Place
@@ -36,9 +37,30 @@ def load_messages(station: Station) -> MessageRegistry:
         raise ModelError([Finding(Place(str(error.path), error.line, 1), error.text)]) from error
 
 
+@dataclass(frozen=True)
+class Built:
+    """The pipelines as far as they are sound, and what is wrong with them. `chains` has all that were begun, by name;
+    those with findings are among the `pipelines` too.
+    """
+
+    pipelines: StationPipelines
+    chains: Mapping[str, ChainBuilding]
+    findings: Sequence[Finding]
+
+
 def build_pipelines(station: Station, automaton: Automaton, registry: MessageRegistry) -> StationPipelines:
     """The pipelines of all topics, whose message types `registry` knows. Raises `ModelError` with all findings."""
-    building = _Building(station, automaton, registry)
+    built = build_what_is_sound(station, automaton, registry)
+    if built.findings:
+        raise ModelError(list(built.findings))
+    return built.pipelines
+
+
+def build_what_is_sound(
+    station: Station, automaton: Automaton, registry: MessageRegistry, cut: Collection[str] = ()
+) -> Built:
+    """The same, for a station that may be wrong: `cut` are topics, parts and flows of which not all stages are read."""
+    building = _Building(station, automaton, registry, frozenset(cut))
     for resource, document in station.resources.items():
         for name, topic in document.topics.items():
             building.add(resource, name, topic, name)
@@ -53,20 +75,20 @@ def build_pipelines(station: Station, automaton: Automaton, registry: MessageReg
     clients = ClientBuilding(automaton, building.findings)
     for resource, document in station.resources.items():
         clients.add(resource, document, building.incoming, building.outgoing)
-    if building.findings.found:
-        raise ModelError(building.findings.found)
     incoming = {name: each for name, each in building.incoming.items() if not is_part(name)}
     outgoing = {name: each for name, each in building.outgoing.items() if not is_part(name)}
-    return StationPipelines(incoming, outgoing, building.flows, clients.services, clients.actions)
+    made = StationPipelines(incoming, outgoing, building.flows, clients.services, clients.actions)
+    return Built(made, building.chains, building.findings.found)
 
 
 class _Building:
-    def __init__(self, station: Station, automaton: Automaton, registry: MessageRegistry) -> None:
+    def __init__(self, station: Station, automaton: Automaton, registry: MessageRegistry, cut: frozenset[str]) -> None:
+        self._cut = cut
         self._folder = station.folder
         self._automaton = automaton
         self._registry = registry
         self._resources = {name: Resource(name, automaton) for name in station.resources}
-        self._chains: dict[str, ChainBuilding] = {}
+        self.chains: dict[str, ChainBuilding] = {}
         self._fed: dict[str, SourceText] = {}
         self._above: dict[str, frozenset[str]] = {}  # the variables written by a topic or flow, or before it
         self._unsound: set[str] = set()  # topics and flows with findings: what follows from these is not said as well
@@ -82,7 +104,7 @@ class _Building:
         except ValueError as error:
             self.findings.add(name.place, str(error).replace("'", "`"))
             return
-        if name in self._chains:
+        if name in self.chains:
             what = "a service or an action" if is_part(name) else "a topic"
             self.findings.add(name.place, f"duplicate name `{called}`: {what} belongs to one resource")
             return
@@ -98,17 +120,18 @@ class _Building:
             self._note(topic.name, before)
         else:
             chain = ChainBuilding(name, False, message, self._folder, self.findings, [of.all])
-            self._chains[topic.name] = chain
+            chain.is_cut = topic.name in self._cut
+            self.chains[topic.name] = chain
             self.outgoing[topic.name] = outgoing_pipeline(of, topic, document, chain, constants)
             self._check_read(topic.name, "the message has no field", message)
-            if len(self.findings.found) == before:
+            if len(self.findings.found) == before and chain.is_sound:
                 self._check_writable(name, document)
 
     def add_flow(self, flow: WrittenFlow) -> None:
         """Add a flow, unless one of its sources could not be made."""
-        if not all(source in self._chains and self._chains[source].is_sound for source in flow.sources.values()):
+        if not all(source in self.chains and self.chains[source].is_sound for source in flow.sources.values()):
             return
-        ends = {alias: self._chains[source].chain.end for alias, source in flow.sources.items()}
+        ends = {alias: self.chains[source].chain.end for alias, source in flow.sources.items()}
         of = self._resources[flow.resource]
         before = len(self.findings.found)
         chain = self._begin(flow.name, flow.written, joined_fields(flow.joining, ends), of)
@@ -122,18 +145,24 @@ class _Building:
 
     def has_all(self, flows: int) -> bool:
         """Whether so many flows, which is all, could be made: else nobody knows what is of no use."""
-        return len(self.flows) == flows and all(self._chains[name].is_sound for name in self.flows)
+        return len(self.flows) == flows and all(self.chains[name].is_sound for name in self.flows)
 
     def check_uses(self) -> None:
         """Whether everything that topics and flows give has a use."""
         for name in (*self.incoming, *self.flows):
-            chain = self._chains[name]
+            chain = self.chains[name]
             node = self.incoming.get(name) or self.flows[name]
             resource = node.topic.resource if isinstance(node, IncomingPipeline) else node.resource
             before = len(self.findings.found)
             self._check_read(name, f"`{resource}` has no measured variable", self._resources[resource].measured)
             self._note(name, before)
-            if name not in self._unsound and not node.variables and not self._readers(name) and not is_part(name):
+            if (
+                chain.is_sound
+                and name not in self._unsound
+                and not node.variables
+                and not self._readers(name)
+                and not is_part(name)
+            ):
                 what = "no field bears the name of a measured variable"
                 self.findings.add(chain.name.place, f"`{chain.name}` feeds no variable: {what}")
 
@@ -143,8 +172,9 @@ class _Building:
 
     def _begin(self, full: str, name: SourceText, fields: RecordType, of: Resource) -> ChainBuilding:
         """A chain for what comes in."""
-        self._chains[full] = ChainBuilding(name, True, of.measured, self._folder, self.findings, [fields])
-        return self._chains[full]
+        self.chains[full] = ChainBuilding(name, True, of.measured, self._folder, self.findings, [fields])
+        self.chains[full].is_cut = full in self._cut
+        return self.chains[full]
 
     def _feed(self, full: str, name: SourceText, variables: tuple[str, ...], above: frozenset[str]) -> None:
         self._above[full] = above.union(variables)
@@ -155,7 +185,7 @@ class _Building:
 
     def _check_read(self, name: str, complaint: str, wanted: Iterable[str]) -> None:
         """Whether all that the stages give is wanted at the end, or read."""
-        chain = self._chains[name]
+        chain = self.chains[name]
         if chain.is_sound:
             for given, edge in chain.unread(self._read_behind(name)):
                 said = f"{complaint} `{given}`, and no later stage reads it{suggestion(given, wanted)}"
@@ -168,7 +198,7 @@ class _Building:
         """The keys at the end of a topic or flow that flows behind it read or write."""
         found: set[str] = set()
         for flow in self._readers(name):
-            chain = self._chains[flow.name]
+            chain = self.chains[flow.name]
             read = frozenset().union(*(chain.keys_read(index) for index in range(len(chain.stages))))
             keys = read | self._read_behind(flow.name) | {each.field for each in flow.writings}
             if flow.joining is Joining.MERGE:
@@ -188,7 +218,7 @@ class _Building:
                 self._registry.encode(pipeline.topic.type_name, first_message(pipeline, state) or {})
         except MessageValueError as error:
             field = re.split(r"[.\[]", error.path)[0]
-            chain = self._chains[str(name)]
+            chain = self.chains[str(name)]
             key = next((each for each in (error.path, field) if each in chain.given), None)
             where = document.type.place if key is None else chain.place_of(key)
             origin = "" if key is None else chain.origin(key)

@@ -36,7 +36,11 @@ class Findings:
 
 @dataclass
 class ChainBuilding:
-    """A chain in the making: `name` is what findings call it, `wanted` what there is a use for at its end."""
+    """A chain in the making: `name` is what findings call it, `wanted` what there is a use for at its end.
+
+    Of one that `is_cut` more is written behind its documents, which nobody can read: it is never sound. `wrong` are the
+    findings of the stage behind the last sound one.
+    """
 
     name: SourceText
     is_incoming: bool
@@ -46,13 +50,16 @@ class ChainBuilding:
     fields: list[RecordType]
     stages: list[Stage] = field(default_factory=list)
     documents: list[StageDocument] = field(default_factory=list)
+    is_cut: bool = False
     is_sound: bool = True
+    wrong: list[Finding] = field(default_factory=list)
 
     def add(self, documents: Iterable[StageDocument]) -> None:
         """Add stages as written. What comes behind one that is not sound is not looked at: it would only follow."""
         for document in documents:
             if self.is_sound:
                 self._add(document)
+        self.is_sound = self.is_sound and not self.is_cut
 
     def _add(self, document: StageDocument) -> None:
         number = len(self.stages) + 1
@@ -66,6 +73,7 @@ class ChainBuilding:
         stage = build_stage(document, context)
         if stage is None or len(self.findings.found) > before:
             self.is_sound = False
+            self.wrong = self.findings.found[before:]
             return
         self.stages.append(stage)
         self.documents.append(document)

@@ -6,7 +6,7 @@ two ways has one record of it and not two. There is no clock and no thread here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Container, Iterable, Mapping, Set
 from dataclasses import dataclass, field
 
 from sequence_planner.expressions.types import Value, contains
@@ -180,10 +180,12 @@ class RunningPipelines:
         record = self._nodes[pipeline].chain.clear_override(name, now)
         self._carry({pipeline: [] if record is None else [record]}, now, self._nodes)
 
-    def observed(self) -> dict[str, PipelineView]:
-        """What has passed each edge of each pipeline."""
+    def observed(self, among: Container[str] | None = None) -> dict[str, PipelineView]:
+        """What has passed each edge of each pipeline, or of those `among` these."""
         views = {}
         for name, node in self._nodes.items():
+            if among is not None and name not in among:
+                continue
             sources = tuple(node.description.sources.values()) if isinstance(node.description, Flow) else ()
             end = ", ".join(node.description.variables) or ", ".join(self._readers[name])
             overrides = {each: course.override for each, course in node.chain.overrides.items()}

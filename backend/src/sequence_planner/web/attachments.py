@@ -1,7 +1,7 @@
-"""Attaching a topic of the network to the model of the running station; the station itself goes on as it is.
+"""Attaching a topic of the network to the draft of the model; the station itself goes on as it is.
 
-`sequence-planner attach` does it, as a process of its own: it joins the network and checks the model without holding
-the server up.
+`sequence-planner attach` does it to a copy of the draft, as a process of its own: it joins the network and checks the
+model without holding the server up. What it has changed there becomes a change of the draft.
 """
 
 from __future__ import annotations
@@ -9,23 +9,29 @@ from __future__ import annotations
 import asyncio
 import json
 import sys
+import tempfile
 from asyncio.subprocess import PIPE
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Request
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
+from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.actor import Actor as Acting
 from sequence_planner.analysis.document import FindingDocument
 from sequence_planner.identity.roles import Role
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
+from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.model import refusal, workshop
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
-from sequence_planner.web.settings import Settings
+from sequence_planner.web.workshop import Workshop
+from sequence_planner.workshop.edits import Edit, WriteText
+from sequence_planner.workshop.files import read_files, write_files
 
 LONGEST = 60.0  # seconds
 STATUS = {"no-topic": 404, "attached": 409, "not-written": 409}  # of refusals; others are 422
@@ -47,9 +53,10 @@ class AttachmentBody(BaseModel):
 
 
 class AttachmentAnswer(BaseModel):
-    """What was changed, as `diff -u` shows it, or would be; and what `check` finds then.
+    """What was changed in the draft, as `diff -u` shows it, or would be; and what `check` finds then.
 
     `made` is false for a dry run, and when one of the findings is an error: the model could not be used afterwards.
+    `number` is that of the change of the draft, null where none was made.
     """
 
     topic: str
@@ -57,34 +64,54 @@ class AttachmentAnswer(BaseModel):
     direction: Literal["in", "out"]
     resource: str
     made: bool
+    number: int | None
     difference: str
     findings: list[FindingDocument]
 
 
 @router.post("/attachments", responses=refused(404, 409, 504))
 async def attach(body: AttachmentBody, request: Request, identity: Identity, actor: Actor) -> AttachmentAnswer:
-    """Enter a topic that is on the network into the station's model; what runs does not change before a restart.
+    """Enter a topic that is on the network into the draft of the model; what runs does not change before a deployment.
 
     It is recorded before anything is changed, and again when its outcome is known.
     """
-    settings: Settings = request.app.state.settings
-    if settings.model is None:
-        detail = "This server does not know where the station's model is. Use `sequence-planner attach`."
-        raise ProblemFound(409, "no-model", "The model is not known", detail)
+    settings, shop = request.app.state.settings, await workshop(request)
     lock: asyncio.Lock = request.app.state.attaching
     async with lock:
         if body.dry_run:
-            return _told(await _run(_arguments(settings.model, settings.transport, body)))
+            return _told((await _tried(shop, settings.transport, body))[0], None)
         details: dict[str, JsonValue] = {"resource": body.resource, "direction": body.direction}
         entry = Entry(actor=actor, action="attach-topic", subject=f"topic {body.topic}", details=details)
         asked = await _record(identity, entry.model_copy(update={"outcome": Outcome.REQUESTED}), by=actor)
-        outcome = Outcome.FAILED
+        outcome, number = Outcome.FAILED, None
         try:
-            answer = await _run(_arguments(settings.model, settings.transport, body))
-            outcome = Outcome.DONE if answer.get("made") else Outcome.REFUSED
+            answer, edits = await _tried(shop, settings.transport, body)
+            outcome = Outcome.REFUSED
+            if answer.get("made"):
+                number = (await shop.change(edits, actor, f"{body.topic} belongs to {body.resource}")).number
+                outcome = Outcome.DONE
+        except EditError as error:
+            raise refusal(error) from error
         finally:
             await _record(identity, entry.model_copy(update={"outcome": outcome, "about": asked}))
-    return _told(answer)
+    return _told(answer, number)
+
+
+async def _tried(shop: Workshop, transport: str, body: AttachmentBody) -> tuple[dict[str, Any], list[Edit]]:
+    """What the command says of a copy of the draft, and what it has changed there."""
+    draft = await shop.open()
+    with tempfile.TemporaryDirectory(prefix="sequence-planner-attach-") as scratch:
+        folder = Path(scratch) / "model"
+        await run_in_threadpool(write_files, draft.files, folder, shop.folder)
+        answer = await _run(_arguments(folder, transport, body))
+        after = await run_in_threadpool(read_files, folder)
+    edits: list[Edit] = [
+        WriteText(file=path, was=draft.files.get(path), text=text)
+        for path, text in after.items()
+        if draft.files.get(path) != text
+    ]
+    plain: dict[str, Any] = json.loads(json.dumps(answer).replace(f"{folder}/", ""))
+    return plain, edits
 
 
 async def _record(identity: IdentityOffice, entry: Entry, *, by: Acting | None = None) -> int:
@@ -94,11 +121,11 @@ async def _record(identity: IdentityOffice, entry: Entry, *, by: Acting | None =
     return record.number
 
 
-def _told(answer: dict[str, Any]) -> AttachmentAnswer:
+def _told(answer: dict[str, Any], number: int | None) -> AttachmentAnswer:
     if "refused" in answer:
         slug, detail = answer["refused"]["slug"], answer["refused"]["detail"]
         raise ProblemFound(STATUS.get(slug, 422), slug, "The topic cannot be attached", detail)
-    return AttachmentAnswer.model_validate(answer)
+    return AttachmentAnswer.model_validate({**answer, "number": number})
 
 
 def _arguments(model: Path, transport: str, body: AttachmentBody) -> list[str]:

@@ -23,12 +23,14 @@ class Latest:
         self._subscribers: set[Subscriber] = set()
 
     @contextmanager
-    def subscription(self) -> Iterator[Subscriber | None]:
-        """A subscriber for as long as the block lasts; None when there are too many already."""
+    def subscription(self, present: Callable[[], str] | None = None) -> Iterator[Subscriber | None]:
+        """A subscriber for as long as the block lasts; None when there are too many already. With a `present` of its
+        own it is shown a part.
+        """
         if len(self._subscribers) >= self.limits.clients:
             yield None
             return
-        subscriber = Subscriber(self._present, 0)
+        subscriber = Subscriber(present or self._present, 0)
         self._subscribers.add(subscriber)
         self.somebody.set()
         try:

@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import asyncio
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager
+from functools import partial
 
 from sequence_planner.control.asks import AboutFlows
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.pipeline_view import FlowsView
+from sequence_planner.web.broadcast import Subscriber
 from sequence_planner.web.controller_client import ControllerClient
 from sequence_planner.web.latest import Latest
 from sequence_planner.web.looking_messages import FlowsSnapshot, NetworkSnapshot, Silence
 from sequence_planner.web.settings import StreamLimits
 from sequence_planner.web.stream_messages import ControllerState
+
+# Pipelines that somebody looks at; none is all.
+Names = frozenset[str] | None
 
 LOOK_EVERY = 0.5  # seconds between two questions what has passed the pipelines
 NOTICE_EVERY = 0.1  # seconds between looks at whether the controller is still heard
@@ -54,36 +61,73 @@ class NetworkShow:
 
 
 class FlowsShow:
-    """What passes the pipelines: the controller is asked twice a second, as long as somebody looks."""
+    """What passes the pipelines: the controller is asked twice a second for those that somebody looks at."""
 
     def __init__(self, controller: ControllerClient, limits: StreamLimits) -> None:
-        self.latest = Latest(self._present, limits)
+        self.latest = Latest(partial(self._present, None), limits)
         self._controller = controller
-        self._encoded: str | None = None
+        self._looked_at: list[Names] = []  # of each who looks; none is all
+        self._flows: FlowsView | None = None
+        self._encoded: dict[Names, str] = {}
+
+    def of(self, names: Names) -> Part:
+        """What passes these pipelines, or all."""
+        return Part(self, names)
+
+    @contextmanager
+    def looking(self, names: Names) -> Iterator[Subscriber | None]:
+        """A subscriber to these pipelines for as long as the block lasts; None when there are too many already."""
+        self._looked_at.append(names)
+        try:
+            with self.latest.subscription(partial(self._present, names)) as subscriber:
+                yield subscriber
+        finally:
+            self._looked_at.remove(names)
 
     async def run(self) -> None:
         """Ask until cancelled."""
         while True:
             if not self.latest.somebody.is_set():
-                self._encoded = None
+                self._take(None)
                 await self.latest.somebody.wait()
-            self._encode(await self._asked())
+            self._take(await self._asked())
             await asyncio.sleep(LOOK_EVERY)
 
     async def _asked(self) -> FlowsView | None:
+        wanted = [names for names in self._looked_at if names is not None]
+        among = None if len(wanted) < len(self._looked_at) else frozenset().union(*wanted)
         try:
-            return await self._controller.ask(AboutFlows())
+            return await self._controller.ask(AboutFlows(among=among))
         except CommandRefused:
             return None
 
-    def _encode(self, flows: FlowsView | None) -> None:
-        before = self._encoded
-        self._encoded = None if flows is None else FlowsSnapshot(kind="flows", flows=flows).model_dump_json()
-        if self._encoded != before:
+    def _take(self, flows: FlowsView | None) -> None:
+        is_news = flows != self._flows
+        self._flows, self._encoded = flows, {}
+        if is_news:
             self.latest.tell()
 
-    def _present(self) -> str:
-        return self._encoded or Silence(kind="link", controller=_state(self._controller)).model_dump_json()
+    def _present(self, names: Names) -> str:
+        if self._flows is None:
+            return Silence(kind="link", controller=_state(self._controller)).model_dump_json()
+        if names not in self._encoded:
+            chosen = {name: view for name, view in self._flows.pipelines.items() if names is None or name in names}
+            shown = self._flows.model_copy(update={"pipelines": chosen})
+            self._encoded[names] = FlowsSnapshot(kind="flows", flows=shown).model_dump_json()
+        return self._encoded[names]
+
+
+class Part:
+    """What passes some pipelines, as clients subscribe to it."""
+
+    def __init__(self, show: FlowsShow, names: Names) -> None:
+        self.limits = show.latest.limits
+        self._show = show
+        self._names = names
+
+    def subscription(self) -> AbstractContextManager[Subscriber | None]:
+        """A subscriber for as long as the block lasts; None when there are too many already."""
+        return self._show.looking(self._names)
 
 
 def _state(controller: ControllerClient) -> ControllerState:

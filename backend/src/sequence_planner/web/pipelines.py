@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, WebSocket
+from typing import Annotated
+
+from fastapi import APIRouter, Query, WebSocket
 
 from sequence_planner.control.asks import AboutFlows, AboutPipelines
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
@@ -12,6 +14,9 @@ from sequence_planner.web.looking import FlowsShow
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import Controller
 from sequence_planner.web.stream import serve
+
+# Pipelines by name, repeated as in `?pipeline=/robot/state&pipeline=robot.holding`.
+Names = Annotated[list[Annotated[str, Query(max_length=500)]] | None, Query(max_length=200)]
 
 router = APIRouter(
     prefix="/pipelines",
@@ -28,13 +33,15 @@ async def pipelines(client: Controller) -> PipelinesView:
 
 
 @router.get("/edges")
-async def edges(client: Controller) -> FlowsView:
-    """What has passed each edge: counts, rates, drops and the last record. Rates come with the second look."""
-    return await client.ask(AboutFlows())
+async def edges(client: Controller, pipeline: Names = None) -> FlowsView:
+    """What has passed each edge of the pipelines that are named, or of all: counts, rates, drops and the last record.
+    Rates come with the second look.
+    """
+    return await client.ask(AboutFlows(among=None if pipeline is None else frozenset(pipeline)))
 
 
 @router.websocket("/stream")
-async def stream(websocket: WebSocket) -> None:
-    """Serve one client: what has passed each edge, twice a second."""
+async def stream(websocket: WebSocket, pipeline: Names = None) -> None:
+    """Serve one client: what has passed each edge of the pipelines that are named, or of all, twice a second."""
     show: FlowsShow = websocket.app.state.flows_show
-    await serve(websocket, show.latest)
+    await serve(websocket, show.of(None if pipeline is None else frozenset(pipeline)))

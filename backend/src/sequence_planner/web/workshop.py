@@ -18,14 +18,21 @@ from sequence_planner.web.latest import Latest
 from sequence_planner.web.looking_messages import WorkshopSnapshot
 from sequence_planner.web.settings import StreamLimits
 from sequence_planner.workshop import draft as drafts
+from sequence_planner.workshop.asking import Changed, DraftAnswering
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckView, waiting
 from sequence_planner.workshop.draft import Change, Differences, Draft, Proposal
-from sequence_planner.workshop.edits import Edit, PartChangedError, WriteText
+from sequence_planner.workshop.edits import AddEntry, Edit, PartChangedError, WriteText
 from sequence_planner.workshop.files import Files, read_files
-from sequence_planner.workshop.pipelines.questions import PipelineAnswer, PipelineQuestion
-from sequence_planner.workshop.pipelines.view import RecordedView
-from sequence_planner.workshop.processes import Answering, worked
+from sequence_planner.workshop.pipelines.questions import (
+    Asked,
+    Examples,
+    PipelineAnswer,
+    PipelineQuestion,
+    Recording,
+)
+from sequence_planner.workshop.pipelines.view import RecordedView, RecordingView, RunsView
+from sequence_planner.workshop.processes import worked
 from sequence_planner.workshop.questions import LanguageAnswer, LanguageQuestionKind, TextAt
 from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
 from sequence_planner.workshop.showing import Reader, change_view, marks
@@ -33,6 +40,7 @@ from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, 
 
 MOST_SHOWN = 50  # changes
 ANSWERED_WITHIN = 5.0  # seconds, for questions about a text
+RUN_WITHIN = 30.0  # seconds, for questions about pipelines, which run
 
 
 def _revision_view(revision: Revision, running: str, edited: str) -> RevisionView:
@@ -58,8 +66,8 @@ class Workshop:
         self._keeping = asyncio.Lock()
         self._reader = Reader()
         self._desk = CheckDesk(model, self._found)
-        self._language = Answering("language_worker", "answering")
-        self._told: dict[str, str] = {}  # the files that the process of the language knows
+        self._language = DraftAnswering("language_worker", "answering", 1)
+        self._pipelines = DraftAnswering("pipelines.worker", "answering", 2)  # the draft, and what runs
         self._check: CheckView | None = None
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
@@ -69,6 +77,7 @@ class Workshop:
         """End what is being checked and answered."""
         await self._desk.close()
         await self._language.close()
+        await self._pipelines.close()
 
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since."""
@@ -186,27 +195,36 @@ class Workshop:
         """What is answered to a question about a text. Raises `WorkEndedError`."""
         draft = await self.open()
 
-        def question() -> object:
-            if not self._language.begun:
-                self._told = {}
-            changed: dict[str, str | None] = {
-                path: text for path, text in draft.files.items() if self._told.get(path) != text
-            }
-            changed |= dict.fromkeys(self._told.keys() - draft.files.keys())
-            self._told = dict(draft.files)
+        def question(changed: Changed) -> object:
             return changed, kind, asked
 
-        answer = await self._language.ask(question, ANSWERED_WITHIN)
+        answer = await self._language.ask(question, draft.files, patience=ANSWERED_WITHIN)
         assert isinstance(answer, LanguageAnswer)
         return answer
 
     async def ask_pipelines(self, question: PipelineQuestion) -> PipelineAnswer:
         """What is answered to a question about the pipelines. Raises `EditError` and `WorkEndedError`."""
-        raise NotImplementedError
+        draft = await self.open()
+
+        def asked(changed: Changed, running: Changed) -> Asked:
+            return Asked(draft.number, changed, running, self.folder, question)
+
+        answer = await self._pipelines.ask(asked, draft.files, draft.base, patience=RUN_WITHIN)
+        if isinstance(answer, str):
+            raise EditError(answer)
+        assert isinstance(answer, PipelineAnswer)
+        return answer
 
     async def record(self, pipeline: str, name: str, heard: RecordView, by: Actor) -> RecordedView:
         """Add an example to the draft. Raises `EditError` and `WorkEndedError`."""
-        raise NotImplementedError
+        question = Recording(pipeline=pipeline, name=name, first=heard.first, last=heard.last)
+        made = await self.ask_pipelines(question)
+        assert isinstance(made, RecordingView)
+        edit = AddEntry(file=made.file, path=[*made.path, 0], value=made.example)
+        changed = await self.change([edit], by, f"An example of {pipeline}: {name}")
+        runs = await self.ask_pipelines(Examples(pipeline=pipeline, name=name))
+        assert isinstance(runs, RunsView)
+        return RecordedView(number=changed.number, run=runs.runs[-1], example=made.example, left_out=made.left_out)
 
     async def _again(self, draft: Draft, by: Actor, *, undo: bool) -> Proposal:
         def last(connection: Connection) -> tuple[Change, Differences]:

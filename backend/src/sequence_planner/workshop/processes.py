@@ -23,7 +23,9 @@ from typing import Any
 from sequence_planner.lifeline import end_without_parent
 
 _CONTEXT = multiprocessing.get_context("forkserver")
-_CONTEXT.set_forkserver_preload([f"{__package__}.{each}" for each in ("checking", "tasks", "language_worker")])
+_CONTEXT.set_forkserver_preload(
+    [f"{__package__}.{each}" for each in ("checking", "tasks", "language_worker", "pipelines.worker")]
+)
 PATIENCE = 60.0  # seconds for a task
 _NICENESS = 5  # ticks come first
 _PREFIX = "sequence-planner-workshop-"  # of folders

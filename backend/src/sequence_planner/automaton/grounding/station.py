@@ -11,7 +11,7 @@ from sequence_planner.automaton.grounding.operations import ground_operations, g
 from sequence_planner.automaton.grounding.specifications import ground_specifications
 from sequence_planner.automaton.structure import Ability, Automaton, Flag
 from sequence_planner.model.loading import Station
-from sequence_planner.model.source import ModelError, SourceText
+from sequence_planner.model.source import Finding, ModelError, SourceText
 
 
 def ground(station: Station) -> Automaton:
@@ -55,3 +55,22 @@ def _flags(abilities: dict[str, Ability], declarations: Declarations, findings: 
         message = f"flags depend on each other in a circle: {' → '.join(circle)}"
         findings.add(declarations.places[ability.name], message)
     return ordered
+
+
+def ground_variables(station: Station) -> tuple[Automaton, list[Finding]]:
+    """An automaton that has the variables of `station` alone, those that are declared as they should be; and what is
+    wrong with the names that are declared.
+    """
+    findings = Findings()
+    declarations = Declarations(station, findings)
+    automaton = Automaton(
+        name=str(station.station.name),
+        title=str(station.title),
+        description="",
+        resources={name: str(doc.title or name) for name, doc in station.resources.items()},
+        variables=declarations.variables,
+        abilities={},
+        flags=(),
+        places=declarations.places,
+    )
+    return automaton, findings.all

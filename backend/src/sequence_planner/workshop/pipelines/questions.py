@@ -2,16 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
+from sequence_planner.workshop.asking import Changed
 from sequence_planner.workshop.edits import Edit
 from sequence_planner.workshop.pipelines.view import (
     DraftPipelinesView,
     FitsView,
     PreviewView,
-    RecordedView,
+    RecordingView,
     RunsView,
 )
 
@@ -44,10 +47,10 @@ class Preview(Question):
 
 
 class Examples(Question):
-    """How the examples of a pipeline end: all of them, or the one of that index."""
+    """How the examples of a pipeline end: all of them, or those of that name."""
 
     pipeline: PipelineId
-    example: Annotated[int, Field(ge=0, le=100_000, strict=True)] | None = None
+    name: Annotated[str, Field(min_length=1, max_length=500)] | None = None
 
 
 class TrialStep(Question):
@@ -65,13 +68,26 @@ class Trial(Question):
 
 
 class Recording(Question):
-    """The example that a record makes, and how it ends."""
+    """The example that a record of the station makes, by what stood at the beginning of the pipeline and at its end."""
 
     pipeline: PipelineId
     name: str
-    first: Given
-    last: Given
+    first: dict[str, JsonValue]
+    last: dict[str, JsonValue] | None
 
 
 PipelineQuestion = Everything | Fitting | Preview | Examples | Trial | Recording
-PipelineAnswer = DraftPipelinesView | FitsView | PreviewView | RunsView | RecordedView
+PipelineAnswer = DraftPipelinesView | FitsView | PreviewView | RunsView | RecordingView
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A question about the draft after change `number`: `changed` are files that are others since the last one, and
+    `running` such of the model that runs; none is a file that is gone. `stages` is the model with the Python stages.
+    """
+
+    number: int
+    changed: Changed
+    running: Changed
+    stages: Path
+    question: PipelineQuestion

@@ -217,8 +217,8 @@ class DraftPipelinesView(View):
 
 
 class StageOfferView(View):
-    """A kind of stage at an edge. Where it `fits`, `edits` put it there as `stage`, to be filled in further, and declare
-    what it needs; else `reason` says why no such stage can stand there.
+    """A kind of stage at an edge. Where it `fits`, `edits` put it there as `stage`, to be filled in further, and
+    declare what it needs; else `reason` says why no such stage can stand there.
     """
 
     kind: str
@@ -328,12 +328,21 @@ class LeftOutView(View):
     draft: JsonValue
 
 
+class RecordingView(View):
+    """An example as it could be added to the list at `path`, and what is left out of it."""
+
+    file: str
+    path: list[str | int]
+    example: dict[str, JsonValue]
+    left_out: list[LeftOutView]
+
+
 class RecordedView(View):
     """An example that was made of what the station has heard or said last. `left_out` is not expected in it: it came of
     what was before, or the draft makes something else of it.
     """
 
     number: int
-    example: DraftExampleView
+    example: dict[str, JsonValue]
     run: RunView
     left_out: list[LeftOutView]
