@@ -2,6 +2,7 @@
 import { createContext } from 'svelte';
 import type { Draft } from './draft.svelte.ts';
 import { countsOf, foundIn } from './found.ts';
+import type { Spot } from './language.ts';
 import { lookupOf, treeOf, type Node } from './tree.ts';
 
 /** Where the file editor is asked to go. */
@@ -16,6 +17,8 @@ export class Bench {
 	readonly #entry: () => string;
 	readonly #may: () => boolean;
 	readonly #look: (entry: string) => void;
+	/** What else can be written in a field than what the files tell. */
+	readonly further: (name: string, spot: Spot) => readonly string[];
 	/** Where the file editor is asked to go, each time anew. */
 	sight = $state.raw<Sight | null>(null);
 
@@ -26,7 +29,14 @@ export class Bench {
 	);
 	readonly counts = $derived(countsOf(this.found, this.lookup));
 
-	constructor(draft: Draft, entry: () => string, may: () => boolean, look: (entry: string) => void) {
+	constructor(
+		draft: Draft,
+		entry: () => string,
+		may: () => boolean,
+		look: (entry: string) => void,
+		further: (name: string, spot: Spot) => readonly string[] = () => []
+	) {
+		this.further = further;
 		this.draft = draft;
 		this.#entry = entry;
 		this.#may = may;

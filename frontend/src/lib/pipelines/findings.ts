@@ -15,7 +15,8 @@ export function troublesOf(pipeline: DraftPipeline): { errors: number; warnings:
 	return { errors, warnings: all.length - errors };
 }
 
-const begins = (path: Path, way: Path): boolean => way.length <= path.length && way.every((step, at) => path[at] === step);
+/** Whether `path` is `way`, or leads on from it. */
+export const begins = (path: Path, way: Path): boolean => way.length <= path.length && way.every((step, at) => path[at] === step);
 
 /** Where something of a pipeline is written. */
 export interface Sight {

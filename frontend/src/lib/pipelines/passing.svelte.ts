@@ -25,9 +25,12 @@ export class Passing {
 		this.#station = station;
 	}
 
-	/** Connects to the server's stream; the result disconnects. */
-	attach(url: string, ended: () => void): () => void {
-		const connection = connect<FlowsMessage>(url, {
+	/** Connects to the server's stream of these pipelines, or of all; the result disconnects. */
+	attach(pipelines: readonly string[] | null, ended: () => void): () => void {
+		const url = new URL('/api/v1/pipelines/stream', location.href);
+		url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+		for (const each of pipelines ?? []) url.searchParams.append('pipeline', each);
+		const connection = connect<FlowsMessage>(url.href, {
 			opened: () => undefined,
 			heard: (message) => {
 				if (message.kind === 'flows') this.flows = message.flows;
@@ -38,7 +41,11 @@ export class Passing {
 				if (code === ENDED) ended();
 			}
 		});
-		return () => connection.close();
+		return () => {
+			connection.close();
+			this.live = false;
+			this.flows = null;
+		};
 	}
 
 	/** What passes the edge; null where nothing is known of it. */

@@ -121,9 +121,7 @@ export const pipelines = {
 			variables: 'Variables',
 			stage: 'Stage',
 			variable: 'Variable'
-		},
-		box: (kind: string, name: string, about: string, errors: number): string =>
-			[`${kind} ${name}`, about, errors > 0 ? count(errors, 'error', 'errors') : ''].filter(Boolean).join(', ')
+		}
 	},
 	examples: {
 		title: 'Examples',

@@ -123,8 +123,7 @@ export const pipelines: Text['pipelines'] = {
 			variables: 'Variabler',
 			stage: 'Steg',
 			variable: 'Variabel'
-		},
-		box: (kind, name, about, errors) => [`${kind} ${name}`, about, errors > 0 ? `${errors} fel` : ''].filter(Boolean).join(', ')
+		}
 	},
 	examples: {
 		title: 'Exempel',
