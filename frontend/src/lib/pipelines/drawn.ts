@@ -1,5 +1,6 @@
 /** What is drawn of pipelines: their messages, joins, stages and variables, and what passes between them. */
 import type { DraftPipeline, DraftPipelines, Finding } from '#lib/contract.ts';
+import { shortOf } from './findings.ts';
 import type { Box, BoxKind, Picture, Wire } from './picture.ts';
 
 type Shown = Pick<DraftPipelines, 'pipelines' | 'variables'>;
@@ -34,7 +35,7 @@ const KINDS: Readonly<Record<DraftPipeline['part'], BoxKind>> = {
 };
 
 const errors = (findings: readonly Finding[]): string[] =>
-	findings.filter(({ severity }) => severity === 'error').map(({ message }) => message);
+	findings.filter(({ severity }) => severity === 'error').map(({ message }) => shortOf(message));
 
 /** The box of a pipeline's message, or of the join that a flow begins with. */
 export const headOf = (pipeline: string): string => `m:${pipeline}`;

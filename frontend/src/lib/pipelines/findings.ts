@@ -4,6 +4,9 @@ import type { Path } from '#lib/model/content.ts';
 import { pathAt, placesOf } from '#lib/model/places.ts';
 import type { PartAt } from './address.ts';
 
+/** What a finding says, where its place is seen anyway: without `` `/robot/state` → stage 2 `map`: `` before it. */
+export const shortOf = (message: string): string => message.replace(/^`[^`]+` → (?:stage \d+ `[^`]+`|[^:]*): /, '');
+
 /** All that is found in a pipeline. */
 export function findingsIn({ findings, stages, sources }: DraftPipeline): Finding[] {
 	return [...findings, ...sources.flatMap((source) => source.findings), ...stages.flatMap((stage) => stage.findings)];

@@ -23,6 +23,7 @@ const options = ({ between, apart }: Sizes): Record<string, string> => ({
 	'elk.direction': 'RIGHT',
 	'elk.edgeRouting': 'ORTHOGONAL',
 	'elk.layered.considerModelOrder.strategy': 'NODES_AND_EDGES',
+	'elk.layered.considerModelOrder.components': 'MODEL_ORDER',
 	'elk.layered.nodePlacement.strategy': 'BRANDES_KOEPF',
 	'elk.layered.nodePlacement.bk.fixedAlignment': 'BALANCED',
 	'elk.layered.spacing.nodeNodeBetweenLayers': String(between),

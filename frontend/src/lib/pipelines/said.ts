@@ -46,6 +46,6 @@ export function saidOf(
 	const often = seen && field === null ? rateText(seen.rate, texts) : '';
 	const age = seen?.isOld && seen.age !== null ? common.time.ago(ageText(seen.age * 1000)) : '';
 	const count = Object.keys(fields).length;
-	const what = values.length > 0 || field !== null ? values : [record === null && isRun ? pipelines.nothingPassed : pipelines.fields(count)];
+	const what = values.length > 0 || field !== null ? values : [record === null && isRun ? pipelines.nothingPassed : count === 0 ? '' : pipelines.fields(count)];
 	return [[often, age].filter(Boolean).join(' · '), ...what].filter(Boolean);
 }

@@ -226,6 +226,7 @@ export const model = {
 	wrongFile: (line: number, message: string): string => `The file cannot be read, line ${line}: ${message}`,
 	wrongFileAbout: 'What is shown is what it held when it could be read last. Correct the file; until then the form cannot be written in.',
 	gone: 'There is no such part any more.',
+	inPipelines: 'Show its pipeline',
 	parts: (n: number): string => count(n, 'part', 'parts'),
 	open: (name: string): string => `Open ${name}`,
 	hover: {

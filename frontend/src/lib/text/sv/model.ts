@@ -220,6 +220,7 @@ export const model: Text['model'] = {
 	wrongFile: (line, message) => `Filen kan inte läsas, rad ${line}: ${message}`,
 	wrongFileAbout: 'Det som visas är vad den innehöll när den senast kunde läsas. Rätta filen; till dess går formuläret inte att skriva i.',
 	gone: 'Det finns ingen sådan del längre.',
+	inPipelines: 'Visa dess pipeline',
 	parts: (n) => count(n, 'del', 'delar'),
 	open: (name) => `Öppna ${name}`,
 	hover: {
