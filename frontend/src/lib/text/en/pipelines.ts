@@ -133,7 +133,7 @@ export const pipelines = {
 		mark: { waiting: '…', passed: '✓', failed: '✕', refused: '✕' },
 		standing: { waiting: 'being run', passed: 'passed', failed: 'failed', refused: 'cannot be run' },
 		show: 'Show its records',
-		showOf: (name: string): string => `Show the records of ${name}`,
+		showOf: (name: string): string => `Show its records: ${name}`,
 		open: 'Details',
 		openOf: (name: string): string => `Details of ${name}`,
 		removeOf: (name: string): string => `Delete the example ${name}`,

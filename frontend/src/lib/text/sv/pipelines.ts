@@ -135,7 +135,7 @@ export const pipelines: Text['pipelines'] = {
 		mark: { waiting: '…', passed: '✓', failed: '✕', refused: '✕' },
 		standing: { waiting: 'körs', passed: 'stämmer', failed: 'stämmer inte', refused: 'kan inte köras' },
 		show: 'Visa dess poster',
-		showOf: (name) => `Visa posterna för ${name}`,
+		showOf: (name) => `Visa dess poster: ${name}`,
 		open: 'Detaljer',
 		openOf: (name) => `Detaljer om ${name}`,
 		removeOf: (name) => `Ta bort exemplet ${name}`,
