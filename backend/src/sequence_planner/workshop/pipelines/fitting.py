@@ -114,7 +114,7 @@ def _sources(graph: Graph, view: DraftPipelineView, trying: Trying) -> Iterator[
     """The topics and flows that a flow could have beside those it has: one more of a merge or of those in order of
     arrival; a flow of a single source becomes a merge only by hand, since its fields are called otherwise then.
     """
-    path, own = [*view.place.path, "from"], {each.pipeline for each in view.sources}
+    path, own = [*view.place.path, "from"], {view.id, *(each.pipeline for each in view.sources)}
     for id_, other in graph.pipelines.items():
         if id_ in own or other.part.value not in ("topic", "flow"):
             continue

@@ -12,8 +12,9 @@ from sequence_planner.workshop.files import Files
 from sequence_planner.workshop.pipelines.graph import Graph
 from sequence_planner.workshop.pipelines.questions import Preview
 from sequence_planner.workshop.pipelines.reading import Reader
-from sequence_planner.workshop.pipelines.view import PreviewView
+from sequence_planner.workshop.pipelines.view import DraftPipelineView, PreviewView
 
+_LINE = re.compile(r'"line":\d+,"column":\d+')
 _NUMBER = re.compile(r"stage \d+|line \d+|:\d+:\d+")
 
 
@@ -23,7 +24,8 @@ def preview(number: int, graph: Graph, files: Files, reader: Reader, question: P
         after = Graph(reader.beside().sketch(applied(files, question.edits)))
     except EditError as error:
         return PreviewView(number=number, refused=str(error), pipelines={}, gone=[], types={}, findings=[])
-    changed = {id_: view for id_, view in after.pipelines.items() if view != graph.pipelines.get(id_)}
+    before = {id_: _elsewhere(view) for id_, view in graph.pipelines.items()}
+    changed = {id_: view for id_, view in after.pipelines.items() if _elsewhere(view) != before.get(id_)}
     return PreviewView(
         number=number,
         refused=None,
@@ -32,6 +34,11 @@ def preview(number: int, graph: Graph, files: Files, reader: Reader, question: P
         types=after.types,
         findings=new_findings(graph, after),
     )
+
+
+def _elsewhere(view: DraftPipelineView) -> str:
+    """A pipeline without the lines in which it stands."""
+    return _LINE.sub("", view.model_dump_json())
 
 
 def new_findings(before: Graph, after: Graph) -> list[FindingDocument]:

@@ -73,9 +73,25 @@ def _given(
         case OutgoingPipeline():
             initial = {name: graph.sketch.automaton.variables[full].initial for name, full in node.read.items()}
             return {name: value for name, value in known.items() if initial.get(name) != value}
+    if (path := _not_finite(first)) is not None:
+        raise EditError(f"{path.lstrip('.')} is not finite: write an example with `.nan` or `.inf` by hand instead")
     registry, type_name = graph.sketch.registry, node.topic.type_name
     usual = registry.decode(type_name, registry.encode(type_name, {}))
     return {name: value for name, value in known.items() if not agrees(usual.get(name), value)}
+
+
+def _not_finite(value: JsonValue | Mapping[str, JsonValue], path: str = "") -> str | None:
+    """Where a message has a number that JSON has not; messages have no unknown values."""
+    match value:
+        case None:
+            return path
+        case Mapping():
+            parts = ((f"{path}.{name}", each) for name, each in value.items())
+        case list():
+            parts = ((f"{path}[{index}]", each) for index, each in enumerate(value))
+        case _:
+            return None
+    return next((found for at, each in parts if (found := _not_finite(each, at)) is not None), None)
 
 
 def _came(graph: Graph, name: str, given: Plain | Mapping[str, JsonValue]) -> Plain:

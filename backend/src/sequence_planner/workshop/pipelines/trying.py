@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from sequence_planner.automaton.grounding.station import ground_variables
 from sequence_planner.expressions.place import Place
+from sequence_planner.expressions.types import Type
 from sequence_planner.model.documents import ResourceDocument, VariableDocument
 from sequence_planner.model.flow_documents import FlowDocument
 from sequence_planner.model.loading import Station
@@ -44,8 +45,8 @@ class Trying:
         self._concerned = concerned
 
     @cached_property
-    def _before(self) -> tuple[frozenset[str], frozenset[str]]:
-        """What is found without any change, and the variables that there are."""
+    def _before(self) -> tuple[frozenset[str], Mapping[str, Type]]:
+        """What is found without any change, and the variables that there are with their types."""
         findings, variables = self._built(self._station)
         return frozenset(map(_bare, findings)), variables
 
@@ -96,12 +97,14 @@ class Trying:
         known, before = self._before
         new = [each for each in findings if _bare(each) not in known]
         of_stages = [each for each in new if _STAGE.match(each)]
-        if not of_stages and (gone := sorted(before - there)):
+        if not of_stages and (gone := sorted(before.keys() - there.keys())):
             return f"`{gone[0]}` would be no variable any more: it follows from a field that the stage uses up"
+        if not new and (others := [name for name, type_ in before.items() if there[name] != type_]):
+            return f"`{others[0]}` would be {there[others[0]]}, and is {before[others[0]]}: declare its type first"
         return _STAGE.sub("", (of_stages or new)[0]) if new else None
 
-    def _built(self, station: Station) -> tuple[Sequence[str], frozenset[str]]:
-        """What is wrong with a station, as the builder says it, and its variables."""
+    def _built(self, station: Station) -> tuple[Sequence[str], Mapping[str, Type]]:
+        """What is wrong with a station, as the builder says it, and its variables with their types."""
         sketch = self._graph.sketch
         cut = [pipeline_name(resource_of(file), path) for file, path in sketch.cut]
         inferred, found = variables_inferred(station, sketch.registry)
@@ -118,7 +121,9 @@ class Trying:
         )
         automaton, declared = ground_variables(inferred)
         built = build_what_is_sound(inferred, automaton, sketch.registry, cut)
-        return [each.message for each in (*found, *declared, *built.findings)], frozenset(automaton.variables)
+        return [each.message for each in (*found, *declared, *built.findings)], {
+            name: variable.type for name, variable in automaton.variables.items()
+        }
 
 
 def _concerned(graph: Graph, view: DraftPipelineView) -> frozenset[str]:
@@ -132,7 +137,7 @@ def _concerned(graph: Graph, view: DraftPipelineView) -> frozenset[str]:
             above.update(source.pipeline for source in graph.pipelines[id_].sources if source.pipeline is not None)
     found = behind | above
     if view.role == "flow":
-        found |= {id_ for id_, each in graph.pipelines.items() if each.role != "outgoing"}
+        found |= set(graph.pipelines)
     return frozenset(graph.pipelines[id_].name for id_ in found if id_ in graph.pipelines)
 
 
