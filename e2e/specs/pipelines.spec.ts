@@ -48,15 +48,15 @@ test('the graph is live; a stage is added where it fits, set right, proven by an
 	await field(page, 'seconds').getByRole('textbox').fill('-1');
 	await expect(field(page, 'seconds')).toContainText('The number is too small.');
 	await field(page, 'seconds').getByRole('textbox').fill('0.2');
-	await field(page, 'fields').getByRole('textbox').first().fill('mooving');
+	await field(page, 'fields').locator('input').first().fill('mooving');
 	await expect(stage(page, 'debounce')).toContainText('did you mean `moving`?');
 	await expect(page.locator('.svelte-flow__edge').locator('.wrong')).toHaveCount(1);
 	await expect(stage(page, 'remember')).toContainText('Nobody can say whether it fits');
 	await expect(page.getByRole('link', { name: /^\/ur10\/state/ })).toContainText('1 error');
 	await stage(page, 'remember').getByRole('link').click();
 	await page.getByRole('region', { name: 'Problems' }).getByRole('button', { name: /robot\.yaml:\d+/ }).first().click();
-	await expect(field(page, 'fields').getByRole('textbox').first()).toBeFocused();
-	await field(page, 'fields').getByRole('textbox').first().fill('moving');
+	await expect(field(page, 'fields').locator('input').first()).toBeFocused();
+	await field(page, 'fields').locator('input').first().fill('moving');
 	await expect(stage(page, 'debounce')).not.toContainText('did you mean');
 
 	// What the station hears becomes an example, which is run as the draft is edited.
@@ -67,7 +67,7 @@ test('the graph is live; a stage is added where it fits, set right, proven by an
 	const close = dialog(page).getByRole('button', { name: 'Close' });
 	if (await close.isVisible()) await close.click();
 	await steps(page).locator('[data-stage="0"]').click();
-	await field(page, 'values').getByRole('textbox', { name: 'Values, value 1', exact: true }).fill('3, 3, 3, 3, 3, 3');
+	await field(page, 'values').getByLabel('Values, value 1', { exact: true }).fill('3, 3, 3, 3, 3, 3');
 	await expect(examples(page).locator('[data-example="at home"]')).toHaveAttribute('data-standing', 'failed');
 	await expect(examples(page).locator('[data-right="false"]').first()).toContainText('home');
 	await page.getByRole('button', { name: /^Undo/ }).click();
@@ -129,6 +129,7 @@ test('a topic of the network is added to a resource @long', async ({ browse, sta
 	await dialog(page).getByLabel('Search').fill('operator');
 	await dialog(page).getByRole('radio', { name: '/operator/task' }).check();
 	await dialog(page).getByLabel('Resource that it belongs to').selectOption({ label: 'Operator with watch' });
+	await dialog(page).getByLabel('Direction').selectOption('out');
 	await dialog(page).getByRole('button', { name: 'Add', exact: true }).click();
 	await expect(page.getByRole('heading', { name: '/operator/task' }).first()).toBeVisible({ timeout: 60_000 });
 	await part(page).getByRole('link', { name: 'On the ROS network' }).click();

@@ -177,6 +177,10 @@ export const pipelines = {
 		none: 'There is no other topic on the network.',
 		publishedBy: (nodes: string): string => `published by ${nodes}`,
 		resource: 'Resource that it belongs to',
+		direction: 'Direction',
+		told: 'as the network tells',
+		in: 'in: the device publishes it',
+		out: 'out: the station publishes it',
 		do: 'Add',
 		working: 'It is being looked at on the network and tried in the draft.',
 		notMade: 'It was not added: the model could not be used with it.'

@@ -179,6 +179,10 @@ export const pipelines: Text['pipelines'] = {
 		none: 'Det finns ingen annan topic på nätet.',
 		publishedBy: (nodes) => `publiceras av ${nodes}`,
 		resource: 'Resurs som den hör till',
+		direction: 'Riktning',
+		told: 'som nätet säger',
+		in: 'in: enheten publicerar den',
+		out: 'ut: stationen publicerar den',
 		do: 'Lägg till',
 		working: 'Den undersöks på nätet och prövas i utkastet.',
 		notMade: 'Den lades inte till: modellen skulle inte kunna användas med den.'
