@@ -76,7 +76,7 @@ bench: install-bench ## Measure
 	cd backend && for each in benchmarks/*.py; do echo "$$each" && .venv/bin/python "$$each" || exit 1; done
 
 campaign: install-test page e2e/node_modules/done.stamp chromium ## The long runs themselves, resumable
-	cd backend && SHARE_OF_EXAMPLES=4 .venv/bin/pytest -m 'not heavy' -n auto --dist worksteal
+	cd backend && SHARE_OF_EXAMPLES=4 .venv/bin/pytest --timeout 0 -m 'not heavy' -n auto --dist worksteal
 	cd e2e && LONG=yes FAULTS=10 npx playwright test --project light --grep '@long|alarm to production'
 	cd backend && for each in campaigns/*.py; do echo "$$each" && PYTHONPATH=tests .venv/bin/python "$$each" || exit 1; done
 

@@ -23,8 +23,8 @@ export default defineConfig({
 	testDir: 'specs',
 	outputDir: 'artefacts/results',
 	reporter: [['list'], ['html', { outputFolder: 'artefacts/report', open: 'never' }]],
-	// One station at a time: the machines that run this have two cores, and each station is several processes.
-	workers: 1,
+	// Two cores: the machines that run this have no more, and each station is several processes.
+	workers: 2,
 	// What takes long is for the campaigns: `LONG=yes`.
 	...(process.env['LONG'] ? {} : { grepInvert: /@long/ }),
 	forbidOnly: Boolean(process.env['CI']),

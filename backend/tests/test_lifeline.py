@@ -7,18 +7,24 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 # A process that starts another and waits; its child says its id and waits too.
 LAUNCHED = """
-import os, time
+import os, sys, time
+from pathlib import Path
 from sequence_planner.lifeline import end_with_launcher
-end_with_launcher()
+end_with_launcher(Path(sys.argv[1]) if sys.argv[1:] else None)
 print(os.getpid(), flush=True)
 time.sleep(60)
 """
-LAUNCHER = (
-    f"import subprocess, sys\nsubprocess.Popen([sys.executable, '-c', {LAUNCHED!r}], stdin=subprocess.PIPE).wait()"
-)
+
+
+def launcher(*arguments: str) -> str:
+    """A program that starts a process and waits."""
+    command = f"[sys.executable, '-c', {LAUNCHED!r}, *{arguments!r}]"
+    return f"import subprocess, sys\nsubprocess.Popen({command}, stdin=subprocess.PIPE).wait()"
+
 
 PARENT = """
 import multiprocessing, os, time
@@ -62,8 +68,23 @@ def killed(program: str) -> int:
 
 
 def test_what_was_launched_ends_with_a_launcher_that_is_killed() -> None:
-    assert ends(killed(LAUNCHER))
+    assert ends(killed(launcher()))
 
 
 def test_what_multiprocessing_started_ends_with_a_parent_that_is_killed() -> None:
     assert ends(killed(PARENT))
+
+
+def test_nothing_is_left_of_a_demonstration_whose_launcher_was_killed(tmp_path: Path) -> None:
+    folder = tmp_path / "launcher"
+    (folder / "demonstration.revisions.git" / "objects").mkdir(parents=True)
+    (folder / "demonstration.revisions.git" / "HEAD").write_text("ref: refs/heads/main\n")
+    (folder / "demonstration.sqlite-wal").touch()
+    assert ends(killed(launcher(str(folder))))
+    assert not folder.exists()
+
+
+def test_what_is_not_of_a_demonstration_stays_when_the_launcher_was_killed(tmp_path: Path) -> None:
+    (tmp_path / "station.sqlite").touch()
+    assert ends(killed(launcher(str(tmp_path))))
+    assert (tmp_path / "station.sqlite").exists()

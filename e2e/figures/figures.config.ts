@@ -9,5 +9,6 @@ export default defineConfig({
 	outputDir: '../artefacts/figures',
 	reporter: [['list']],
 	timeout: 60 * 60_000,
+	workers: 1, // what is measured has the machine for itself
 	projects: [{ name: 'figures' }]
 });

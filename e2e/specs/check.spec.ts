@@ -1,8 +1,8 @@
 import type { Locator, Page } from '@playwright/test';
 import { examine } from '../station/barriers.ts';
-import { copiedModel, Drafting, type Replacement } from '../station/drafting.ts';
+import type { Replacement } from '../station/drafting.ts';
 import { ERIK, VERA } from '../station/station.ts';
-import { expect, test as base } from '../station/test.ts';
+import { expect, test } from '../station/test.ts';
 
 const FORBIDS = (what: string): Replacement => [
 	'specifications.yaml',
@@ -16,21 +16,13 @@ const BY_ITSELF: Replacement = [
 	'when: not tool_is_running_forward'
 ];
 
-const test = base.extend({
-	station: async ({ bench }, use) => {
-		const logs = new URL('../artefacts/logs/check', import.meta.url).pathname;
-		await use(
-			await bench.kept('check', { byItself: false, devices: false, people: [ERIK, VERA], logs, model: copiedModel() })
-		);
-	}
-});
+test.use({ shared: 'drafted', byItself: false, people: 'everybody', copied: 'bolt_tightening' });
 
 const verdict = (page: Page, is: string): Promise<void> =>
 	expect(page.getByTestId('check')).toHaveAttribute('data-verdict', is, { timeout: 40_000 });
 const player = (page: Page): Locator => page.getByTestId('trace');
 
-test('a specification that cannot be met is found, with a run that plays', async ({ station, browse, complaints }) => {
-	const drafting = await Drafting.of(station);
+test('a specification that cannot be met is found, with a run that plays', async ({ drafting, browse, complaints }) => {
 	const page = await browse(ERIK, '/check');
 	await verdict(page, 'good');
 	await expect(page.getByTestId('check')).toContainText('It is checked, and can be deployed. 0 errors, 0 warnings.');
@@ -51,13 +43,10 @@ test('a specification that cannot be met is found, with a run that plays', async
 	await expect(player(page).getByRole('status')).toContainText('This state is forbidden by never_so');
 	await expect(player(page).locator('[data-value="nutrunner.tool_is_running_forward"]')).toHaveText('true');
 	await expect(page.getByText('There is none.')).toBeVisible();
-	await drafting.undo();
-	await verdict(page, 'good');
 	expect(complaints).toEqual([]);
 });
 
-test('a longer run plays by keyboard, each step with what it changes', async ({ station, browse, complaints }) => {
-	const drafting = await Drafting.of(station);
+test('a longer run plays by keyboard, each step with what it changes', async ({ drafting, browse, complaints }) => {
 	await drafting.change('The first pair is never tightened', FORBIDS('bolts[bolt_pair_1] == tightened'));
 	await drafting.checked();
 	const page = await browse(VERA, '/check');
@@ -81,6 +70,12 @@ test('a longer run plays by keyboard, each step with what it changes', async ({ 
 	await expect(player(page)).toHaveAttribute('data-place', '0');
 	await player(page).getByRole('button', { name: /^2 / }).press('Enter');
 	await expect(player(page)).toHaveAttribute('data-place', '2');
+	await player(page).getByText('An ability in this step').press('Enter');
+	const [ability, course] = [player(page).getByLabel('Ability', { exact: true }), page.getByTestId('run-phase')];
+	await expect(course).toHaveAttribute('data-phase', /^(executing|finished|enabled|idle)$/, { timeout: 20_000 });
+	await ability.selectOption('robot.move_to_position(above_engine)');
+	await expect(page.getByTestId('automaton')).toContainText('robot.target_pose == robot.pose');
+	await expect(page.getByTestId('supervised')).toHaveCount(0);
 	await examine(page, 'check');
 
 	await page.setViewportSize({ width: 1440, height: 900 });
@@ -90,8 +85,7 @@ test('a longer run plays by keyboard, each step with what it changes', async ({ 
 	expect(complaints).toEqual([]);
 });
 
-test('what cannot be read is an error, and leads to its line', async ({ station, browse, complaints }) => {
-	const drafting = await Drafting.of(station);
+test('what cannot be read is an error, and leads to its line', async ({ drafting, browse, complaints }) => {
 	const page = await browse(ERIK, '/check');
 	await drafting.change('A name that nobody knows', ['operations.yaml', 'goal: bolts[pair] == placed', 'goal: nuts[pair] == placed']);
 	await verdict(page, 'unusable');
@@ -99,7 +93,5 @@ test('what cannot be read is an error, and leads to its line', async ({ station,
 	await expect(error).toContainText('nuts');
 	await expect(error.getByRole('link')).toHaveText(/^operations\.yaml:\d+:\d+$/);
 	await expect(error.getByRole('link')).toHaveAttribute('href', /^\/model\?file=operations\.yaml&line=\d+$/);
-	await drafting.undo();
-	await verdict(page, 'good');
 	expect(complaints).toEqual([]);
 });

@@ -2,10 +2,10 @@ import type { Locator, Page } from '@playwright/test';
 import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { examine } from '../station/barriers.ts';
-import { copiedModel, Drafting, type Replacement } from '../station/drafting.ts';
+import type { Replacement } from '../station/drafting.ts';
 import { startProduction, takeControl } from '../station/seen.ts';
-import { ERIK, EVA, Station, VERA } from '../station/station.ts';
-import { expect, test as base } from '../station/test.ts';
+import { ERIK, Station, VERA } from '../station/station.ts';
+import { expect, test } from '../station/test.ts';
 
 const TITLED = 'Bolt tightening station, rebuilt';
 /** The station is called otherwise, and the next engine comes only when the robot is out of the way. */
@@ -20,18 +20,7 @@ const NO_TOOL: Replacement = [
 ];
 
 /** Each test has a station of its own: it is another one after a deployment. */
-const test = base.extend<{ model: string }>({
-	model: async ({}, use) => {
-		await use(copiedModel());
-	},
-	station: async ({ model }, use, info) => {
-		const logs = join(import.meta.dirname, '../artefacts/logs', `deploy-${info.testId}`);
-		const people = [EVA, ERIK, VERA];
-		const station = await Station.start({ byItself: false, devices: true, people, logs, model });
-		await use(station);
-		await station.stop();
-	}
-});
+test.use({ shared: null, byItself: false, devices: true, people: 'everybody', copied: 'bolt_tightening' });
 
 const revision = (page: Page, name: string): Locator => page.locator(`[data-revision="${name}"]`);
 const need = (page: Page, name: string, met: boolean): Promise<void> =>
@@ -59,12 +48,11 @@ async function holdsTool(station: Station): Promise<void> {
 }
 
 test('a changed model is saved, compared, refused while at work, deployed when held, and rolled back', async ({
-	model,
 	station,
+	drafting,
 	browse,
 	complaints
 }) => {
-	const drafting = await Drafting.of(station);
 	const page = await browse(ERIK, '/deploy');
 	await expect(page.getByText('No revision has been saved yet.')).toBeVisible();
 	await startProduction(page);
@@ -128,7 +116,7 @@ test('a changed model is saved, compared, refused while at work, deployed when h
 	await need(page, 'standing', true);
 	await deploy(page, 'Rebuilt');
 	await expect(page).toHaveTitle(new RegExp(TITLED));
-	expect(readFileSync(join(model, 'station.yaml'), 'utf8')).toContain(TITLED);
+	expect(readFileSync(join(station.model, 'station.yaml'), 'utf8')).toContain(TITLED);
 
 	await page.getByRole('button', { name: 'Back to this revision… As the station was' }).click();
 	await expect(page.getByRole('dialog')).toContainText('can be undone');
@@ -146,10 +134,10 @@ test('a changed model is saved, compared, refused while at work, deployed when h
 
 test('what is not checked, or would be illegal, is not deployed, and the page says why @long', async ({
 	station,
+	drafting,
 	browse,
 	complaints
 }) => {
-	const drafting = await Drafting.of(station);
 	await drafting.change('No tool', NO_TOOL);
 	const number = await drafting.checked();
 	const id = await drafting.save('No tool');

@@ -4,7 +4,7 @@ import { picture } from '../station/seen.ts';
 import { INA, IVO, VERA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
-test.use({ shared: null, byItself: false, people: 'engineers', copied: 'bolt_tightening' });
+test.use({ shared: 'drafted', byItself: false, people: 'everybody', copied: 'bolt_tightening' });
 
 const ROBOT = 'resources/robot.yaml';
 const at = (...steps: string[]): string => `/model?${new URLSearchParams({ entry: steps.join('#') })}`;

@@ -1,10 +1,10 @@
 import type { Locator, Page } from '@playwright/test';
 import { examine } from '../station/barriers.ts';
 import { Drafting } from '../station/drafting.ts';
-import { ERIK, INA, VERA } from '../station/station.ts';
+import { INA, VERA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
-test.use({ shared: null, byItself: false, devices: true, people: 'engineers', copied: 'bolt_tightening' });
+test.use({ shared: null, byItself: false, devices: true, people: 'everybody', copied: 'bolt_tightening' });
 
 const STATE = '/pipelines?of=%2Fur10%2Fstate';
 const box = (page: Page, kind: string, name: string): Locator => page.locator('.svelte-flow__node').filter({ hasText: kind }).filter({ hasText: name });
@@ -116,7 +116,6 @@ test('a pipeline is edited by keyboard alone; a viewer sees it all and can edit 
 });
 
 test('a topic of the network is added to a resource @long', async ({ browse, station }) => {
-	await station.add(ERIK);
 	const draft = await Drafting.of(station);
 	const { body } = await draft.ask('GET', 'model/files');
 	const { text = '' } = (body['files'] as Record<string, { text: string }>)['resources/operator.yaml'] ?? {};

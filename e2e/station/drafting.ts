@@ -1,20 +1,9 @@
-/** A model that a test may change: a copy of the usual one, and its draft as an engineer edits it over REST. */
-import { cpSync, mkdtempSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join, resolve } from 'node:path';
+/** The draft of a station, as an engineer edits it over REST. */
 import { setTimeout as sleep } from 'node:timers/promises';
 import { ERIK, type Station } from './station.ts';
 
-const MODEL = resolve(import.meta.dirname, '../../models/bolt_tightening');
 /** Milliseconds in which a small draft is checked. */
 const CHECKED = 40_000;
-
-/** A folder of its own with the usual model in it. */
-export function copiedModel(): string {
-	const folder = join(mkdtempSync(join(tmpdir(), 'model-')), 'bolt_tightening');
-	cpSync(MODEL, folder, { recursive: true });
-	return folder;
-}
 
 /** What is put in the place of what, in a file. */
 export type Replacement = readonly [file: string, what: string, by: string];
@@ -46,17 +35,36 @@ export class Drafting {
 		return { status: answer.status, body: text === '' ? {} : (JSON.parse(text) as Record<string, unknown>) };
 	}
 
+	/** The text of each file. */
+	async files(): Promise<Map<string, string>> {
+		const { body } = await this.ask('GET', 'model/files');
+		const files = Object.entries(body['files'] as Record<string, { text: string }>);
+		return new Map(files.map(([file, { text }]) => [file, text]));
+	}
+
+	/** Makes all files as they were before, if they are not. */
+	async restore(before: Map<string, string>): Promise<void> {
+		const now = await this.files();
+		const edits = [...new Set([...before.keys(), ...now.keys()])]
+			.filter((file) => before.get(file) !== now.get(file))
+			.map((file) => ({ kind: 'text', file, was: now.get(file) ?? null, text: before.get(file) ?? null }));
+		if (edits.length > 0) await this.#write('As it was', edits);
+	}
+
 	/** Puts some text in the place of other text. */
 	async change(title: string, ...replacements: Replacement[]): Promise<void> {
-		const { body } = await this.ask('GET', 'model/files');
-		const files = body['files'] as Record<string, { text: string }>;
+		const files = await this.files();
 		const texts = new Map<string, string>();
 		for (const [file, what, by] of replacements) {
-			const text = texts.get(file) ?? files[file]?.text ?? '';
+			const text = texts.get(file) ?? files.get(file) ?? '';
 			if (!text.includes(what)) throw new Error(`${file} has no ${what}`);
 			texts.set(file, text.replace(what, by));
 		}
-		const edits = [...texts].map(([file, text]) => ({ kind: 'text', file, was: files[file]?.text, text }));
+		const edits = [...texts].map(([file, text]) => ({ kind: 'text', file, was: files.get(file), text }));
+		await this.#write(title, edits);
+	}
+
+	async #write(title: string, edits: object[]): Promise<void> {
 		const { status, body: said } = await this.ask('POST', 'model/changes', { title, edits });
 		if (status !== 200) throw new Error(`${title}: ${JSON.stringify(said)}`);
 	}

@@ -8,6 +8,12 @@ import { alive, argumentsOf, signal, treeOf, type Identity } from './process-tre
 /** Milliseconds that a process and those it started get to end by themselves. */
 const GRACE = 15_000;
 
+/** What a test that was given up has left running ends with the process of the tests. */
+const left = new Set<ChildProcess>();
+process.on('exit', () => {
+	for (const child of left) child.kill('SIGTERM');
+});
+
 export class StationProcess {
 	readonly #child: ChildProcess;
 	readonly #ended: Promise<void>;
@@ -20,10 +26,11 @@ export class StationProcess {
 		const output = openSync(options.log, 'a');
 		this.#child = spawn(command, args, { cwd: options.cwd, env: options.env, stdio: ['ignore', output, output] });
 		closeSync(output);
-		this.#ended = new Promise((resolve) => {
+		left.add(this.#child);
+		this.#ended = new Promise<void>((resolve) => {
 			this.#child.once('exit', () => resolve());
 			this.#child.once('error', () => resolve());
-		});
+		}).then(() => void left.delete(this.#child));
 	}
 
 	get running(): boolean {
@@ -65,11 +72,11 @@ export class StationProcess {
 		if (this.running) this.#child.kill('SIGTERM');
 		const deadline = Date.now() + GRACE;
 		while (tree.some(alive) && Date.now() < deadline) await sleep(50);
-		const left = tree.filter(alive);
-		signal(left, 'SIGKILL');
+		const forced = tree.filter(alive);
+		signal(forced, 'SIGKILL');
 		await this.#ended;
-		if (left.length > 0)
-			throw new Error(`${left.length} of ${tree.length} processes did not end in ${GRACE / 1000} s; see ${this.log}`);
+		if (forced.length > 0)
+			throw new Error(`${forced.length} of ${tree.length} processes did not end in ${GRACE / 1000} s; see ${this.log}`);
 	}
 
 	/** Ends the process and all it has started, at once and without warning. */

@@ -4,8 +4,8 @@
  * `SEQUENCE_PLANNER` names another executable than the one that `make run` installs.
  */
 import { spawnSync } from 'node:child_process';
-import { mkdtempSync, readFileSync, rmSync } from 'node:fs';
-import { createServer } from 'node:net';
+import { cpSync, mkdtempSync, readFileSync, rmSync } from 'node:fs';
+import { createServer, type Server } from 'node:net';
 import { tmpdir } from 'node:os';
 import { join, resolve } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
@@ -58,53 +58,86 @@ export interface Options {
 	readonly logs: string;
 	/** The folder of another model than the usual one. */
 	readonly model?: string;
+	/** The name of a model of which the station has a copy, which may be changed. */
+	readonly copied?: string | null;
 	/** A program that is started beside the station, on its network. */
 	readonly beside?: readonly [command: string, args: readonly string[]];
 }
 
-let stations = 0;
+/** The port of a domain's mark, less its number. */
+const MARKS = 7000;
+/** Above it the ports of a domain are those that the system hands out to anybody. */
+const DOMAINS = 100;
+/** How many domains were looked at: one that was left is not taken at once, while others may still know who was there. */
+let looked = process.pid;
 
-/**
- * A DDS domain that keeps a station apart from all others of this run, and most likely from those of other runs on this
- * machine. Above 100 its ports are those that the system hands out to anybody.
- */
-function nextDomain(): number {
-	stations += 1;
-	return 1 + ((process.pid + stations) % 100);
+/** A DDS domain of this machine that a station has for itself. */
+class Domain {
+	readonly #mark: Server;
+
+	private constructor(
+		readonly number: number,
+		mark: Server
+	) {
+		this.#mark = mark;
+	}
+
+	/** One that no other station under test has, in this run or another: a port that it listens on says so. */
+	static async free(): Promise<Domain> {
+		for (let tries = 0; tries < DOMAINS; tries += 1) {
+			looked += 1;
+			const number = 1 + (looked % DOMAINS);
+			const mark = createServer();
+			const listens = new Promise<boolean>((told) => {
+				mark.once('error', () => told(false));
+				mark.listen(MARKS + number, '127.0.0.1', () => told(true));
+			});
+			if (await listens) return new Domain(number, mark);
+		}
+		throw new Error('all DDS domains have a station');
+	}
+
+	async leave(): Promise<void> {
+		await new Promise((left) => this.#mark.close(left));
+	}
 }
 
 export class Station {
 	readonly #env: NodeJS.ProcessEnv;
+	readonly #domain: Domain;
 	readonly #logs: string;
 	readonly #started: StationProcess[] = [];
 	/** Where the database of a station is that is no demonstration. */
 	readonly #folder = mkdtempSync(join(tmpdir(), 'station-'));
 	readonly #demonstration: boolean;
-	readonly #model: string;
+	/** The folder of the model, from where it was started. */
+	readonly model: string;
 	#cookie: string | null = null;
 	readonly server: StationProcess;
 
 	private constructor(
 		readonly port: number,
+		domain: Domain,
 		options: Options
 	) {
+		this.#domain = domain;
 		const database = options.byItself ? {} : { SEQUENCE_PLANNER_DATABASE: `sqlite:///${this.#folder}/station.sqlite` };
-		this.#env = { ...process.env, ROS_DOMAIN_ID: String(nextDomain()), ...database };
+		this.#env = { ...process.env, ROS_DOMAIN_ID: String(domain.number), ...database };
 		this.#logs = options.logs;
 		this.#demonstration = options.byItself;
-		this.#model = options.model ?? MODEL;
+		this.model = options.copied ? this.#copy(options.copied) : (options.model ?? MODEL);
 		const devices = options.byItself || options.devices ? ['--emulator', '--emulator-speed', '4'] : [];
 		const alone = options.byItself ? ['--start', '--demonstration'] : [];
-		this.server = this.#start('server', ['run', this.#model, '--port', String(port), ...devices, ...alone]);
+		this.server = this.#start('server', ['run', this.model, '--port', String(port), ...devices, ...alone]);
 		if (options.beside) this.#start('beside', [...options.beside[1]], options.beside[0]);
 	}
 
 	/** Starts a station and waits until it answers. */
 	static async start(options: Options): Promise<Station> {
-		const station = new Station(await freePort(), options);
+		const station = new Station(await freePort(), await Domain.free(), options);
 		try {
 			await station.#answers();
-			if (!options.byItself) for (const person of options.people) await station.add(person);
+			if (!options.byItself) await station.#let(options.people);
 		} catch (error) {
 			await station.stop();
 			throw error;
@@ -116,19 +149,37 @@ export class Station {
 		return `http://127.0.0.1:${this.port}`;
 	}
 
-	/** Makes somebody who can sign in, as who sits at the machine does, and has them choose their own password. */
-	async add({ name, role, password }: Person): Promise<void> {
-		const args = ['people', 'add', name, '--role', role, this.#model];
+	/** Makes the first somebody who can sign in, as who sits at the machine does; the first makes the others. */
+	async #let([first, ...others]: readonly Person[]): Promise<void> {
+		if (!first) return;
+		await this.add(first);
+		if (others.length === 0) return;
+		const cookie = await this.signIn(first);
+		for (const person of others) {
+			await this.#ask('POST', 'people', { ...person, password: given(person.password) }, cookie);
+			await this.#chooses(person);
+		}
+	}
+
+	/** Makes somebody who can sign in, as who sits at the machine does. */
+	async add(person: Person): Promise<void> {
+		const { name, role, password } = person;
+		const args = ['people', 'add', name, '--role', role, this.model];
 		const input = `${given(password)}\n`;
 		const ended = spawnSync(EXECUTABLE, args, { cwd: ROOT, env: this.#env, input, encoding: 'utf8' });
 		if (ended.status !== 0) throw new Error(`${args.join(' ')}: ${ended.stderr}`);
+		await this.#chooses(person);
+	}
+
+	/** Somebody chooses their own password. */
+	async #chooses({ name, password }: Person): Promise<void> {
 		const cookie = await this.#session('POST', 'session', { name, password: given(password) });
 		await this.#session('PUT', 'session/password', { old: given(password), new: password }, cookie);
 	}
 
 	/** The first-start link, as it is shown to who sits at the machine. */
 	link(): string {
-		const args = ['people', 'link', this.#model, '--url', this.url];
+		const args = ['people', 'link', this.model, '--url', this.url];
 		const ended = spawnSync(EXECUTABLE, args, { cwd: ROOT, env: this.#env, encoding: 'utf8' });
 		const [link] = /https?:\S+#\S+/.exec(ended.stdout) ?? [];
 		if (link === undefined) throw new Error(`${args.join(' ')}: ${ended.stdout}${ended.stderr}`);
@@ -141,7 +192,15 @@ export class Station {
 		return this.#session('POST', 'session', { name: person.name, password: person.password });
 	}
 
+	/** A request that opens a session: its cookie. */
 	async #session(method: string, path: string, body: object, cookie?: Cookie): Promise<Cookie> {
+		const answer = await this.#ask(method, path, body, cookie);
+		const [name, value] = answer.headers.get('set-cookie')?.split(';')[0]?.split('=') ?? [];
+		if (name === undefined || value === undefined) throw new Error(`${path}: no session was opened`);
+		return { name, value };
+	}
+
+	async #ask(method: string, path: string, body: object, cookie?: Cookie): Promise<Response> {
 		const answer = await fetch(`${this.url}/api/v1/${path}`, {
 			method,
 			headers: {
@@ -151,15 +210,13 @@ export class Station {
 			},
 			body: JSON.stringify(body)
 		});
-		const [name, value] = answer.headers.get('set-cookie')?.split(';')[0]?.split('=') ?? [];
-		if (!answer.ok || name === undefined || value === undefined)
-			throw new Error(`not signed in: ${await answer.text()}`);
-		return { name, value };
+		if (!answer.ok) throw new Error(`${method} ${path}: ${await answer.text()}`);
+		return answer;
 	}
 
 	/** Starts emulated devices in a process of their own. */
 	emulate(): StationProcess {
-		return this.#start('emulator', ['emulate', this.#model]);
+		return this.#start('emulator', ['emulate', this.model]);
 	}
 
 	/** The values of all variables as the server knows them, in the words of the page. */
@@ -189,8 +246,16 @@ export class Station {
 	async stop(): Promise<void> {
 		const ends = await Promise.allSettled(this.#started.map((running) => running.stop()));
 		const failed = ends.find((end) => end.status === 'rejected');
+		await this.#domain.leave();
 		rmSync(this.#folder, { recursive: true });
 		if (failed) throw failed.reason;
+	}
+
+	/** It keeps its name: the station is called after it. */
+	#copy(name: string): string {
+		const model = join(this.#folder, name);
+		cpSync(join(ROOT, 'models', name), model, { recursive: true });
+		return model;
 	}
 
 	#start(name: string, args: string[], command = EXECUTABLE): StationProcess {

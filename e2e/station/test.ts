@@ -1,12 +1,12 @@
 /** The test function of all specs: with a station, an operator's page and a watch. */
 import { test as base, expect, type BrowserContext, type BrowserContextOptions, type Page } from '@playwright/test';
-import { cpSync, mkdtempSync, rmSync } from 'node:fs';
-import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { Bench } from './bench.ts';
-import { ADA, ADAM, EVA, INA, IVO, Station, VERA, type Person } from './station.ts';
+import { Drafting } from './drafting.ts';
+import { ADA, ADAM, ERIK, EVA, INA, IVO, Station, VERA, type Person } from './station.ts';
 
-const PEOPLE = { nobody: [], Eva: [EVA], everybody: [ADA, EVA, ADAM, VERA], engineers: [INA, IVO, VERA] } as const;
+/** Who can sign in: where anybody else can, the administrator is the first. */
+const PEOPLE = { nobody: [], Eva: [EVA], everybody: [ADA, EVA, ADAM, ERIK, INA, IVO, VERA] } as const;
 
 interface Given {
 	/** Name of the station to share with the other tests of that name; null for one of the test's own. */
@@ -17,9 +17,14 @@ interface Given {
 	devices: boolean;
 	/** Who can sign in at a station that waits for the test. */
 	people: keyof typeof PEOPLE;
-	/** The model of which a station of the test's own has a copy for itself; null where it only reads the usual one. */
+	/**
+	 * The model of which a station has a copy that may be changed; null where it only reads the usual one. The draft of a
+	 * station that is shared is as before after each test.
+	 */
 	copied: string | null;
 	station: Station;
+	/** The draft of a station whose model may be changed, as Erik edits it over REST. */
+	drafting: Drafting;
 	/** Opens a page in a browser of its own, signed in as somebody or as nobody. */
 	browse: (person: Person | null, address: string, screen?: Screen) => Promise<Page>;
 	/** The operator's page. */
@@ -73,25 +78,21 @@ export const test = base.extend<Given, { bench: Bench }>({
 	],
 	station: [
 		async ({ bench, shared, byItself, devices, people, copied }, use, info) => {
-			const project = info.project.name;
-			const given = { byItself, devices, people: PEOPLE[people] };
-			if (shared !== null) {
-				await use(await bench.kept(shared, { ...given, logs: logsOf(`${shared} ${project}`) }));
-				return;
-			}
-			const logs = logsOf(`${info.titlePath.join(' ')} ${project}`);
-			const folder = copied === null ? null : mkdtempSync(join(tmpdir(), 'model-'));
-			// It keeps its name: the station is called after it.
-			const model = folder === null || copied === null ? null : join(folder, copied);
-			if (model !== null && copied !== null)
-				cpSync(join(import.meta.dirname, '../../models', copied), model, { recursive: true });
-			const station = await Station.start({ ...given, logs, ...(model !== null && { model }) });
+			const name = shared ?? info.titlePath.join(' ');
+			const logs = logsOf(`${name} ${info.project.name}`);
+			const given = { byItself, devices, people: PEOPLE[people], copied, logs };
+			const station = shared === null ? await Station.start(given) : await bench.kept(shared, given);
+			const drafting = shared === null || copied === null ? null : await Drafting.of(station);
+			const before = await drafting?.files();
 			await use(station);
-			await station.stop();
-			if (folder !== null) rmSync(folder, { recursive: true });
+			if (before) await drafting?.restore(before);
+			if (shared === null) await station.stop();
 		},
 		{ timeout: 90_000 }
 	],
+	drafting: async ({ station }, use) => {
+		await use(await Drafting.of(station));
+	},
 	operate: async ({ page, station, byItself, complaints }, use) => {
 		listen(page, complaints);
 		if (!byItself) await enter(page.context(), station, EVA);

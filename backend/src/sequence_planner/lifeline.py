@@ -11,6 +11,7 @@ import atexit
 import contextlib
 import multiprocessing
 import os
+import shutil
 import signal
 import threading
 import time
@@ -19,6 +20,7 @@ from pathlib import Path
 
 STANDARD_INPUT = 0
 DEMONSTRATION_DATABASE = "demonstration.sqlite"  # in the launcher's folder; nothing of it is kept
+DEMONSTRATION_FILES = "demonstration.*"  # with what SQLite writes beside it, and the revisions of the model
 DEPLOYED = 75  # the exit code with which the controller makes room for one that runs another model
 NEEDED = b"\n"  # what a spare reads when it is needed
 LAST_WORDS = 5.0  # seconds in which a process may end in good order
@@ -27,14 +29,17 @@ LAST_WORDS = 5.0  # seconds in which a process may end in good order
 def end_with_launcher(folder: Path | None = None) -> None:
     """End this process like SIGTERM does as soon as its standard input, a pipe from the launcher, is closed.
 
-    `folder` is the launcher's; it is removed then, if it is empty but for the database of a demonstration.
+    `folder` is the launcher's; it is removed then, if it is empty but for what a demonstration keeps.
     """
 
     def remove() -> None:
         if folder is not None:
             with contextlib.suppress(OSError):
-                for left in folder.glob(f"{DEMONSTRATION_DATABASE}*"):  # and what SQLite writes beside it
-                    left.unlink(missing_ok=True)
+                for left in folder.glob(DEMONSTRATION_FILES):
+                    if left.is_dir():
+                        shutil.rmtree(left, ignore_errors=True)
+                    else:
+                        left.unlink(missing_ok=True)
                 folder.rmdir()
 
     def end() -> None:

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
+from sequence_planner.automaton.grounding.abilities import GroundBefore
 from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.structure import Automaton
@@ -13,7 +14,7 @@ from sequence_planner.checking.connections import Connections
 from sequence_planner.collection import collection_put_off
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.model.flow_documents import ExampleDocument
-from sequence_planner.model.loading import Station, load_station
+from sequence_planner.model.loading import ReadBefore, Station, load_station
 from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.pipelines.building import build_pipelines, load_messages
 from sequence_planner.pipelines.examples import PipelineExample, failures, loading_failures
@@ -44,14 +45,43 @@ class ReadyStation:
         return loading_failures(self.pipelines) or failures(self.examples)
 
 
+@dataclass
+class Before:
+    """What is kept of a station that is read again and again while somebody edits it; reading it fills it in."""
+
+    files: ReadBefore = field(default_factory=ReadBefore)
+    abilities: GroundBefore = field(default_factory=GroundBefore)
+
+
+@dataclass(frozen=True)
+class MeantStation:
+    """A station of which all texts mean something: with its inferred variables, its message types, its automaton."""
+
+    station: Station
+    registry: MessageRegistry
+    automaton: Automaton
+
+
+@collection_put_off()
+def read_station(folder: Path, before: Before | None = None) -> MeantStation:
+    """Load a station's folder, without its pipelines; what is the same as `before` is not read again.
+
+    Raises `ModelError` with the findings.
+    """
+    before = before or Before()
+    written = load_station(folder, before.files)
+    registry = load_messages(written)
+    station = with_inferred_variables(written, registry)
+    automaton = ground(station, before.abilities)
+    _require_plannable(automaton)
+    return MeantStation(station, registry, automaton)
+
+
 @collection_put_off()
 def prepare_station(folder: Path) -> ReadyStation:
     """Load and check a station's folder. Raises `ModelError` with the findings."""
-    written = load_station(folder)
-    registry = load_messages(written)
-    station = with_inferred_variables(written, registry)
-    automaton = ground(station)
-    _require_plannable(automaton)
+    meant = read_station(folder)
+    station, registry, automaton = meant.station, meant.registry, meant.automaton
     pipelines = build_pipelines(station, automaton, registry)
     examples = tuple(
         PipelineExample(name, document, pipelines, automaton, registry)

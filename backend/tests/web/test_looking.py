@@ -7,6 +7,7 @@ import time
 from collections.abc import Iterator
 from contextlib import ExitStack
 from dataclasses import replace
+from typing import ClassVar
 
 import httpx
 import pytest
@@ -43,6 +44,7 @@ class Telling(Controller):
 
     asked = 0
     preparing = False
+    among: ClassVar[list[frozenset[str] | None]] = []
 
     async def answer(self, ask: Ask) -> View:
         if self.preparing:
@@ -52,10 +54,11 @@ class Telling(Controller):
         if not isinstance(ask, AboutFlows):
             return example_answer(ask)
         self.asked += 1
+        self.among.append(ask.among)
         edge = EdgeFlowView(to="arm.pose", records=self.asked, held=0, rate=2.0, last=None, troubles=[], at=None)
-        return FlowsView(
-            time=float(self.asked), pipelines={STATE: PipelineFlowView(edges=[edge], repeated=0, rate=2.0)}
-        )
+        pipelines = {name: PipelineFlowView(edges=[edge], repeated=0, rate=2.0) for name in (STATE, COMMAND)}
+        chosen = {name: each for name, each in pipelines.items() if ask.among is None or name in ask.among}
+        return FlowsView(time=float(self.asked), pipelines=chosen)
 
     def tell(self, shown: NetworkView) -> None:
         async def publish() -> None:
@@ -155,6 +158,24 @@ def test_edges_are_asked_for_only_while_somebody_looks(server: Server, controlle
         hear_kind(one, "flows")
         assert controller.asked <= asked + 2, "asked once for both"
     until(lambda: server_is_quiet(controller))
+
+
+def test_who_looks_at_some_pipelines_is_told_of_these_and_no_others_are_asked_for(
+    server: Server, controller: Telling, client: httpx.Client
+) -> None:
+    address = f"{path(server, 'pipelines')}?pipeline="
+    with listen(server, address + STATE) as one:
+        assert list(hear_kind(one, "flows")["flows"]["pipelines"]) == [STATE]
+        assert controller.among[-1] == frozenset({STATE})
+        with listen(server, address + COMMAND) as other:
+            until(lambda: list(hear_kind(other, "flows")["flows"]["pipelines"]) == [COMMAND])
+            assert controller.among[-1] == frozenset({STATE, COMMAND})
+            assert list(hear_kind(one, "flows")["flows"]["pipelines"]) == [STATE]
+            with listen(server, path(server, "pipelines")) as all_of_them:
+                until(lambda: controller.among[-1] is None)
+                assert len(hear_kind(all_of_them, "flows")["flows"]["pipelines"]) == 2
+    found = client.get("/api/v1/pipelines/edges", params={"pipeline": COMMAND}).json()
+    assert list(found["pipelines"]) == [COMMAND]
 
 
 def server_is_quiet(controller: Telling) -> bool:

@@ -175,6 +175,31 @@ def test_the_check_follows_the_draft(eva: httpx.Client) -> None:
     assert [(each["file"], each["severity"]) for each in found["findings"]] == [("operations.yaml", "error")]
 
 
+def test_an_ability_is_seen_to_go_through_the_run_that_shows_a_finding(eva: httpx.Client) -> None:
+    never = "never_placed:\n  forbidden: bolts[bolt_pair_1] == placed\n"
+    text = read(eva, "/files")["files"]["specifications.yaml"]["text"]
+    number = made(eva, {"kind": "text", "file": "specifications.yaml", "was": text, "text": text + never})["number"]
+    findings = checked(eva)["findings"]
+    at = next(place for place, each in enumerate(findings) if each["trace"] and each["trace"]["steps"])
+    steps = findings[at]["trace"]["steps"]
+    ability = next(name for step in steps if step["kind"] == "start" for name in step["names"])
+    path = f"{MODEL}/check/findings/{at}/run"
+    run = eva.get(path, params={"number": number, "ability": ability}).json()
+    assert len(run) == len(steps) + 1
+    assert {each["name"] for each in run} == {ability}
+    assert run[0]["executing"]["holds"] is False
+    started = next(place for place, step in enumerate(steps) if ability in step["names"])
+    assert run[started]["enabled"]["holds"] is True
+    assert all(each["done"] for each in run[started + 1]["start_actions"])
+    problem(eva.get(path, params={"number": number - 1, "ability": ability}), 404, "no-run")
+    problem(eva.get(path, params={"number": number, "ability": "robot.fly"}), 404, "no-run")
+    problem(
+        eva.get(f"{MODEL}/check/findings/{len(findings)}/run", params={"number": number, "ability": ability}),
+        404,
+        "no-run",
+    )
+
+
 def _workshop(stream: ClientConnection, number: int) -> dict[str, Any]:
     """The view once the check of that change is done."""
     while True:
@@ -250,6 +275,22 @@ def test_a_part_is_renamed_wherever_it_is_named(eva: httpx.Client) -> None:
     assert read(eva)["undo"] == "bolt_state is called state_of_bolts"
     assert eva.post(f"{MODEL}/undo", json={}).status_code == 200
     assert {each["state"] for each in read(eva)["files"].values()} == {"same"}
+
+
+def test_the_model_as_a_whole_follows_the_draft(eva: httpx.Client) -> None:
+    def tied(part: str) -> set[tuple[str, str]]:
+        """What the part uses, and how."""
+        found = read(eva, "/graph")
+        assert found["number"] == read(eva)["number"]
+        things = [each["id"] for each in found["things"]]
+        return {(things[tie["thing"]], tie["manner"]) for tie in found["ties"] if things[tie["by"]] == part}
+
+    assert ("variable:bolts", "goal") in tied("operation:new_engine")
+    assert ("variable:robot.tool_is_attached", "feeds") in tied("topic:/ur10/planning_scene/state")
+    new = {"kind": "set", "file": "operations.yaml", "path": ["new_engine", "goal"], "value": "robot.pose == home"}
+    goal = read(eva, "/files", path="operations.yaml")["files"]["operations.yaml"]["content"]["new_engine"]["goal"]
+    made(eva, {**new, "was": goal})
+    assert {each for each in tied("operation:new_engine") if each[1] == "goal"} == {("variable:robot.pose", "goal")}
 
 
 @pytest.mark.parametrize(

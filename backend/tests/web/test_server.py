@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import httpx
@@ -34,9 +35,15 @@ serve(Settings(controller_socket=socket, page=socket, database=database, host=sy
 """
 
 
-def start(folder: Path, host: str, port: int) -> subprocess.Popen[str]:
+@contextlib.contextmanager
+def started(folder: Path, host: str, port: int) -> Iterator[subprocess.Popen[str]]:
+    """A server; nothing is left of it whatever comes of the test."""
     command = [sys.executable, "-c", PROGRAM, str(folder / "controller.sock"), host, str(port)]
-    return subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    with subprocess.Popen(command, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
 
 
 def viewer(folder: Path, port: int) -> dict[str, str]:
@@ -58,7 +65,7 @@ def test_it_serves_until_it_is_told_to_stop(tmp_path: Path) -> None:
         except httpx.TransportError:
             return False
 
-    with start(tmp_path, "localhost", port) as process:
+    with started(tmp_path, "localhost", port) as process:
         until(answers, 15)
         with connect(f"ws://127.0.0.1:{port}/api/v1/stream", additional_headers=viewer(tmp_path, port)) as stream:
             assert "lost" in str(stream.recv(2))
@@ -90,7 +97,7 @@ def test_every_address_of_the_loopback_is_served(host: str) -> None:
 
 
 def test_a_refused_host_is_said_and_exits_with_2(tmp_path: Path) -> None:
-    with start(tmp_path, "0.0.0.0", free_port()) as process:
+    with started(tmp_path, "0.0.0.0", free_port()) as process:
         assert process.wait(15) == 2
         assert process.stderr is not None
         message = process.stderr.read()
@@ -100,7 +107,7 @@ def test_a_refused_host_is_said_and_exits_with_2(tmp_path: Path) -> None:
 
 def test_a_taken_port_is_said_and_exits_with_2(tmp_path: Path) -> None:
     port = free_port()
-    with bind(Endpoint(port=port)), start(tmp_path, "127.0.0.1", port) as process:
+    with bind(Endpoint(port=port)), started(tmp_path, "127.0.0.1", port) as process:
         assert process.wait(15) == 2
         assert process.stderr is not None
         assert process.stderr.read() == f"port {port} is taken; use --port\n"
@@ -118,7 +125,7 @@ def test_a_port_can_be_asked_for_before_anything_starts() -> None:
 
 def test_a_database_that_cannot_be_used_is_said_and_exits_with_2(tmp_path: Path) -> None:
     (tmp_path / "station.sqlite").write_text("no database, but somebody's notes")
-    with start(tmp_path, "127.0.0.1", free_port()) as process:
+    with started(tmp_path, "127.0.0.1", free_port()) as process:
         assert process.wait(15) == 2
         assert process.stderr is not None
         message = process.stderr.read()

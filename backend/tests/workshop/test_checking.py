@@ -16,6 +16,7 @@ from control.bench import until
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckState, CheckView
 from sequence_planner.workshop.checking import checked
+from sequence_planner.workshop.draft_process import DraftProcess
 from sequence_planner.workshop.processes import WorkEndedError, working
 from workshop.models import BOLTS, bolts
 
@@ -84,7 +85,8 @@ class Desk:
 
     def __init__(self) -> None:
         self.told: list[CheckView] = []
-        self.desk = CheckDesk(BOLTS, self.told.append)
+        self.process = DraftProcess()
+        self.desk = CheckDesk(BOLTS, self.process, self.told.append)
 
     async def until(self, what: Callable[[CheckView], bool]) -> CheckView:
         await until(lambda: bool(self.told) and what(self.told[-1]), PATIENCE)
@@ -100,6 +102,7 @@ def run(scenario: Callable[[Desk], Awaitable[None]], tmp_path: Path, monkeypatch
             await scenario(desk)
         finally:
             await desk.desk.close()
+            await desk.process.close()
 
     asyncio.run(live())
     assert list(tmp_path.glob("sequence-planner-*")) == []
@@ -144,3 +147,21 @@ def test_work_that_fails_is_not_waited_for() -> None:
                 await anext(found)
 
     asyncio.run(live())
+
+
+def test_a_process_that_is_not_waited_for_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+    async def live() -> None:
+        for seconds in (0.0, 0.01, 0.3):
+            process = DraftProcess()
+            asked = asyncio.create_task(process.errors(bolts()))
+            await asyncio.sleep(seconds)
+            asked.cancel()
+            with pytest.raises(asyncio.CancelledError):
+                await asked
+            await process.close()
+            assert [each for each in multiprocessing.active_children() if each.name == "answering"] == []
+
+    asyncio.run(live())
+    assert list(tmp_path.glob("sequence-planner-*")) == []

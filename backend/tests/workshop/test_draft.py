@@ -27,11 +27,10 @@ class Desk:
         self.now = 1000.0
         self.take_up(FILES)
 
-    def take_up(self, files: dict[str, str]) -> list[str]:
+    def take_up(self, files: dict[str, str]) -> None:
         self.now += 1
         with self._database.writing() as connection:
-            _, conflicts = drafts.take_up(connection, files, self.now)
-        return conflicts
+            drafts.take_up(connection, files, self.now)
 
     def change(self, by: Actor, propose: Callable[[Connection, Draft], Proposal]) -> Draft:
         self.now += 1
@@ -161,7 +160,8 @@ def test_a_file_that_was_taken_away_comes_back(desk: Desk) -> None:
 def test_what_happens_to_the_files_of_the_station_is_taken_up(desk: Desk) -> None:
     desk.set(EVA, ["title"], "Cell", "A cell")
     other = {**FILES, OPERATIONS: "drill:\n  goal: drilled\n", "resources/tool.yaml": "title: Tool\n"}
-    assert desk.take_up(other) == []
+    desk.take_up(other)
+    assert desk.said[0][2] == "The files of the station have changed"
     draft = desk.draft
     assert draft.base == other
     assert draft.files == {**other, STATION: FILES[STATION].replace("Cell", "A cell")}
@@ -170,7 +170,9 @@ def test_what_happens_to_the_files_of_the_station_is_taken_up(desk: Desk) -> Non
 def test_where_both_changed_the_same_lines_the_draft_stays(desk: Desk) -> None:
     desk.set(EVA, ["title"], "Cell", "A cell")
     other = {**FILES, STATION: FILES[STATION].replace("Cell", "Drilling cell")}
-    assert desk.take_up(other) == [STATION]
+    desk.take_up(other)
+    *_, told = desk.said[0]
+    assert told.endswith("; where the draft had changed the same lines, its own are kept: station.yaml")
     assert "A cell" in desk.draft.files[STATION]
     assert desk.draft.base == other
 

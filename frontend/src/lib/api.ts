@@ -741,6 +741,28 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/model/check/findings/{finding}/run": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Run
+         * @description How an ability goes through the run that shows a finding: its automaton in the initial state and after each step.
+         *
+         *     The finding is named by its place in the check of the draft after change `number`.
+         */
+        get: operations["run_api_v1_model_check_findings__finding__run_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/model/comparison": {
         parameters: {
             query?: never;
@@ -796,6 +818,26 @@ export interface paths {
          * @description Files of the draft with what they hold; all of them where no `path` is named.
          */
         get: operations["files_api_v1_model_files_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/model/graph": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Graph
+         * @description The model as a whole: all that has a name, on the layers of the station, and what is tied to what.
+         */
+        get: operations["graph_api_v1_model_graph_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2054,12 +2096,10 @@ export interface components {
         };
         /**
          * AbilityDefinitionView
-         * @description A ground ability as it is defined; `arguments` are the values of its parameters.
+         * @description An ability of the live station in the state of `revision`.
          *
-         *     All that holds does so in the state of `revision`. `allowed` says whether the supervisor would allow a start in it,
-         *     null where that cannot be told. `finish` is null for an ability that is done at its start. `supervised` is null
-         *     where nothing is added, or not known yet. `obstacle` says why it cannot be tried now; `real_devices` what speaks
-         *     against its devices being emulated, which has to be confirmed.
+         *     `obstacle` says why it cannot be tried now; `real_devices` what speaks against its devices being emulated, which has
+         *     to be confirmed.
          */
         AbilityDefinitionView: {
             /** Acknowledgement */
@@ -2362,6 +2402,52 @@ export interface components {
             next: number | null;
             /** Records */
             records: components["schemas"]["Record"][];
+        };
+        /**
+         * AutomatonView
+         * @description A ground ability as it is written, and what of that holds in a state; `arguments` are those of its parameters.
+         *
+         *     `allowed` says whether the supervisor would allow a start in that state, null where that cannot be told. `finish` is
+         *     null for an ability that is done at its start. `supervised` is null where nothing is added, or not known yet.
+         */
+        AutomatonView: {
+            /** Acknowledgement */
+            acknowledgement: string | null;
+            /** Allowed */
+            allowed: boolean | null;
+            /** Arguments */
+            arguments: string[];
+            /** Cancel Actions */
+            cancel_actions: components["schemas"]["AbilityActionView"][];
+            /** Duration */
+            duration: [
+                number,
+                number
+            ] | null;
+            enabled: components["schemas"]["PredicateView"];
+            executing: components["schemas"]["PredicateView"];
+            finish: components["schemas"]["PredicateView"] | null;
+            /** Finish Actions */
+            finish_actions: components["schemas"]["AbilityActionView"][];
+            finished: components["schemas"]["PredicateView"];
+            /** Name */
+            name: string;
+            place: components["schemas"]["WrittenPlaceView"] | null;
+            /** Reactions */
+            reactions: components["schemas"]["ReactionView"][];
+            /** Resource */
+            resource: string;
+            /** Restart */
+            restart: boolean;
+            start: components["schemas"]["PredicateView"];
+            /** Start Actions */
+            start_actions: components["schemas"]["AbilityActionView"][];
+            supervised: components["schemas"]["SupervisedView"] | null;
+            /** Task */
+            task: string | null;
+            timeouts: components["schemas"]["TimeoutsView"];
+            /** Title */
+            title: string;
         };
         /**
          * BehaviourDifference
@@ -2897,7 +2983,7 @@ export interface components {
             stages: components["schemas"]["DraftStageView"][];
             /** Stages Path */
             stages_path: (string | number)[] | null;
-            standing: components["schemas"]["Standing"];
+            standing: components["schemas"]["sequence_planner__workshop__pipelines__view__Standing"];
         };
         /**
          * DraftPipelinesView
@@ -2966,7 +3052,7 @@ export interface components {
             place: components["schemas"]["EntryView"] | null;
             /** Reads */
             reads: string[];
-            standing: components["schemas"]["Standing"];
+            standing: components["schemas"]["sequence_planner__workshop__pipelines__view__Standing"];
             /** Summary */
             summary: string;
             written: components["schemas"]["JsonValue"];
@@ -3386,6 +3472,20 @@ export interface components {
             types: string[];
         };
         /**
+         * GraphView
+         * @description All things of the draft after its change `number`, and all ties between them; `unread` could not be read.
+         */
+        GraphView: {
+            /** Number */
+            number: number;
+            /** Things */
+            things: components["schemas"]["ThingView"][];
+            /** Ties */
+            ties: components["schemas"]["TieView"][];
+            /** Unread */
+            unread: components["schemas"]["FindingDocument"][];
+        };
+        /**
          * GuardDocument
          * @description What the supervisor adds to the guards of `starts`; `guard` is null when only the states themselves say it.
          *
@@ -3438,7 +3538,8 @@ export interface components {
          * @description What the name between `start` and `end` is.
          *
          *     `names` are the full names it has, of which the page knows the values; a reference through a parameter has one for
-         *     each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`.
+         *     each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`, and `part` is the id
+         *     by which it is looked for in the model, but for a parameter.
          */
         HoverView: {
             declared: components["schemas"]["DeclarationView"] | null;
@@ -3453,6 +3554,8 @@ export interface components {
             name: string;
             /** Names */
             names: string[];
+            /** Part */
+            part: string | null;
             /** Pattern */
             pattern: string;
             /** Resource */
@@ -3637,6 +3740,12 @@ export interface components {
             /** Same */
             same: boolean;
         };
+        /**
+         * Manner
+         * @description What who uses a thing does with it. Those of a pipeline are said from its side: it feeds a variable.
+         * @enum {string}
+         */
+        Manner: "runs" | "after" | "brings" | "goal" | "precondition" | "formula" | "forbids" | "excludes" | "orders" | "zone" | "rest" | "guard" | "progress" | "acknowledgement" | "commands" | "writes" | "effect" | "expects" | "reads" | "feeds" | "sends" | "source" | "carries" | "example" | "ranges" | "names";
         /**
          * MarkView
          * @description A record as a time line shows it. Of its content there is what is drawn.
@@ -5099,12 +5208,6 @@ export interface components {
             summary: string;
         };
         /**
-         * Standing
-         * @description Whether something of a pipeline is sound.
-         * @enum {string}
-         */
-        Standing: "good" | "wrong" | "unknown";
-        /**
          * StateAnswer
          * @description Every variable.
          */
@@ -5580,6 +5683,62 @@ export interface components {
             start: number;
         };
         /**
+         * ThingView
+         * @description Something with a name: `id` is that of a part, such as `variable:robot.pose`, or `station` for the station.
+         *
+         *     `layer` is that of the paper: 0 ROS 2, 1 abilities and estimates, 2 operations and specifications, 3 the order of
+         *     work. `within` is the index of the thing that it is a part of, as a value is of an enumeration. File, line and
+         *     column are where it is declared, or else first used; the file is null where it is given.
+         */
+        ThingView: {
+            /** Column */
+            column: number;
+            /** File */
+            file: string | null;
+            /** Id */
+            id: string;
+            /** Kind */
+            kind: string;
+            /** Layer */
+            layer: number;
+            /** Line */
+            line: number;
+            /** Name */
+            name: string;
+            /** Resource */
+            resource: string | null;
+            /** Section */
+            section: string | null;
+            standing: components["schemas"]["sequence_planner__workshop__references__whole__Standing"];
+            /** Title */
+            title: string | null;
+            /** Within */
+            within: number | null;
+        };
+        /**
+         * TieView
+         * @description A use of the thing with index `thing` by that with index `by`, at the entry `at` within that.
+         *
+         *     `written` is false where no text names it: then a field of a message has its name, and line and column are of `by`.
+         */
+        TieView: {
+            /** At */
+            at: string;
+            /** By */
+            by: number;
+            /** Column */
+            column: number;
+            /** File */
+            file: string;
+            /** Line */
+            line: number;
+            manner: components["schemas"]["Manner"];
+            /** Thing */
+            thing: number;
+            /** Written */
+            written: boolean;
+        };
+        /**
          * TimeoutsView
          * @description Seconds after the start in which it must have reacted, and have finished; null where there is no limit.
          *
@@ -5842,8 +6001,9 @@ export interface components {
          * UsagesView
          * @description Where a part is named, and which of these places outside of it could not be without it.
          *
-         *     `unread` are texts that make no sense and hold the name, and files that cannot be read; `bound` says why the name
-         *     is not the model's alone.
+         *     `unwritten` are entries that use it though nothing in them names it, such as a topic whose message has a field of
+         *     that name; they stand at their own names. `unread` are texts that make no sense and hold the name, and files that
+         *     cannot be read; `bound` says why the name is not the model's alone.
          */
         UsagesView: {
             /** Bound */
@@ -5852,6 +6012,8 @@ export interface components {
             dependants: components["schemas"]["UsageView"][];
             /** Unread */
             unread: components["schemas"]["FindingDocument"][];
+            /** Unwritten */
+            unwritten: components["schemas"]["UsageView"][];
             /** Usages */
             usages: components["schemas"]["UsageView"][];
         };
@@ -6169,6 +6331,18 @@ export interface components {
             /** Then */
             then: boolean | number | string;
         };
+        /**
+         * Standing
+         * @description Whether something of a pipeline is sound.
+         * @enum {string}
+         */
+        sequence_planner__workshop__pipelines__view__Standing: "good" | "wrong" | "unknown";
+        /**
+         * Standing
+         * @description Where a thing comes from.
+         * @enum {string}
+         */
+        sequence_planner__workshop__references__whole__Standing: "declared" | "implied" | "missing";
         /**
          * ChangeView
          * @description A change of the draft; `of` is the number of the one that it undoes or does again. Time is in seconds since the
@@ -7795,6 +7969,46 @@ export interface operations {
             };
         };
     };
+    run_api_v1_model_check_findings__finding__run_get: {
+        parameters: {
+            query: {
+                ability: string;
+                number: number;
+            };
+            header?: never;
+            path: {
+                finding: number;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AutomatonView"][];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     comparison_api_v1_model_comparison_get: {
         parameters: {
             query: {
@@ -7899,6 +8113,39 @@ export interface operations {
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    graph_api_v1_model_graph_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["GraphView"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {

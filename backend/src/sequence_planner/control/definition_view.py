@@ -1,4 +1,4 @@
-"""How an ability is defined, and what of that holds at one moment of the live station."""
+"""How an ability is defined, and what of that holds in a state, most often that of the live station."""
 
 from __future__ import annotations
 
@@ -108,13 +108,11 @@ class TrialView(View):
     reactions: list[TriedReactionView]
 
 
-class AbilityDefinitionView(View):
-    """A ground ability as it is defined; `arguments` are the values of its parameters.
+class AutomatonView(View):
+    """A ground ability as it is written, and what of that holds in a state; `arguments` are those of its parameters.
 
-    All that holds does so in the state of `revision`. `allowed` says whether the supervisor would allow a start in it,
-    null where that cannot be told. `finish` is null for an ability that is done at its start. `supervised` is null
-    where nothing is added, or not known yet. `obstacle` says why it cannot be tried now; `real_devices` what speaks
-    against its devices being emulated, which has to be confirmed.
+    `allowed` says whether the supervisor would allow a start in that state, null where that cannot be told. `finish` is
+    null for an ability that is done at its start. `supervised` is null where nothing is added, or not known yet.
     """
 
     name: str
@@ -126,7 +124,6 @@ class AbilityDefinitionView(View):
     task: str | None  # what the person is asked to do who carries it out
     acknowledgement: str | None  # the variable by which that person says it is done
     duration: tuple[float, float] | None
-    revision: int
     enabled: PredicateView
     start: PredicateView
     start_actions: list[AbilityActionView]
@@ -139,6 +136,16 @@ class AbilityDefinitionView(View):
     cancel_actions: list[AbilityActionView]
     timeouts: TimeoutsView
     reactions: list[ReactionView]
+
+
+class AbilityDefinitionView(AutomatonView):
+    """An ability of the live station in the state of `revision`.
+
+    `obstacle` says why it cannot be tried now; `real_devices` what speaks against its devices being emulated, which has
+    to be confirmed.
+    """
+
+    revision: int
     obstacle: str | None
     real_devices: list[str]
     trial: TrialView | None

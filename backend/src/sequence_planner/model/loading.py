@@ -6,9 +6,10 @@ messages/<package>/srv/*.srv  messages/<package>/action/*.action
 
 from __future__ import annotations
 
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeVar
+from typing import TypeVar, cast
 
 from pydantic import BaseModel, ValidationError
 
@@ -21,7 +22,7 @@ from sequence_planner.model.documents import (
     StationDocument,
     WorkMasterDocument,
 )
-from sequence_planner.model.reading import Document, EntryPath, read_yaml
+from sequence_planner.model.reading import Document, EntryPath, read_text, text_of
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.validation import findings_of, shown
 
@@ -56,12 +57,35 @@ class Station:
         return self.station.title or self.station.name
 
 
-def load_station(folder: Path) -> Station:
-    """Read a station. Raises `ModelError` with every finding of every file."""
+class ReadBefore:
+    """What the files of one station were found to hold, each for its text: what is the same is not read again."""
+
+    def __init__(self) -> None:
+        self._known: dict[tuple[str, type[BaseModel]], tuple[str, object, tuple[Finding, ...]]] = {}
+
+    def find(self, name: str, kind: type[BaseModel], text: str) -> tuple[object, tuple[Finding, ...]] | None:
+        """What the file `name` holds as `kind`, and what is wrong with it; None unless it was read with this text."""
+        known = self._known.get((name, kind))
+        return None if known is None or known[0] != text else known[1:]
+
+    def keep(self, name: str, kind: type[BaseModel], text: str, found: object, wrong: tuple[Finding, ...]) -> None:
+        """Remember that."""
+        self._known[name, kind] = text, found, wrong
+
+    def forget_others(self, names: Collection[str]) -> None:
+        """Let go what files were read that are not among these."""
+        self._known = {key: known for key, known in self._known.items() if key[0] in names}
+
+
+def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
+    """Read a station; what was read `before` is not read again.
+
+    Raises `ModelError` with every finding of every file.
+    """
     if not _is_file(folder / "station.yaml"):
         message = "a station is a folder with a station.yaml: there is none here"
         raise ModelError([Finding(Place(str(folder / "station.yaml"), 1, 1), message)])
-    reader = _FolderReader(folder)
+    reader = _FolderReader(folder, before)
     reader.require_names()
     station = reader.whole("station.yaml", StationDocument)
     resources = {
@@ -71,6 +95,7 @@ def load_station(folder: Path) -> Station:
     operations = reader.entries("operations.yaml", OperationDocument)
     specifications = reader.entries("specifications.yaml", SpecificationDocument)
     work_masters = reader.entries("work_masters.yaml", WorkMasterDocument)
+    reader.end()
     if reader.findings or station is None:
         raise ModelError(reader.findings)
     present = {name: resource for name, resource in resources.items() if resource is not None}
@@ -84,9 +109,15 @@ def _is_file(path: Path) -> bool:
         return False
 
 
+# The content of a file and what is wrong with it, from the file as it was read.
+_Reading = Callable[[Document], tuple[object, list[Finding]]]
+
+
 class _FolderReader:
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, before: ReadBefore | None) -> None:
         self._folder = folder
+        self._before = before or ReadBefore()
+        self._names: set[str] = set()
         self.findings: list[Finding] = []
 
     def require_names(self) -> None:
@@ -112,30 +143,59 @@ class _FolderReader:
 
     def whole(self, name: str, kind: type[D]) -> D | None:
         """A file that is one document."""
-        document = self._read(name)
-        return None if document is None else self._validate(document, document.content, (), kind)
+        found = self._once(name, kind, lambda document: _validated(document, document.content, (), kind))
+        return cast("D | None", found)
 
     def entries(self, name: str, kind: type[D]) -> dict[SourceText, D]:
         """A file that maps names to documents; it may be missing."""
-        if not (self._folder / name).exists() or (document := self._read(name)) is None:
+        if not (self._folder / name).exists():
             return {}
-        if not isinstance(document.content, dict):
-            message = f"expected names with their definitions, found {shown(document.content)}"
-            self.findings.append(Finding(document.place(()), message))
-            return {}
-        read = {key: self._validate(document, content, (str(key),), kind) for key, content in document.content.items()}
-        return {key: entry for key, entry in read.items() if entry is not None}
+        found = self._once(name, kind, lambda document: _validated_entries(document, kind))
+        return cast("dict[SourceText, D] | None", found) or {}
 
-    def _read(self, name: str) -> Document | None:
+    def end(self) -> None:
+        """All files were asked for."""
+        self._before.forget_others(self._names)
+
+    def _once(self, name: str, kind: type[BaseModel], reading: _Reading) -> object:
+        """What the file holds, read now unless it was with the same text before; None where it cannot be read."""
+        self._names.add(name)
+        called = str(self._folder / name)
         try:
-            return read_yaml(self._folder / name, str(self._folder / name))
+            text = text_of(self._folder / name, called)
         except ModelError as error:
             self.findings.extend(error.findings)
             return None
+        known = self._before.find(name, kind, text)
+        if known is None:
+            try:
+                found, wrong = reading(read_text(text, called))
+            except ModelError as error:
+                found, wrong = None, error.findings
+            known = found, tuple(wrong)
+            self._before.keep(name, kind, text, *known)
+        self.findings.extend(known[1])
+        return known[0]
 
-    def _validate(self, document: Document, content: object, at: EntryPath, kind: type[D]) -> D | None:
-        try:
-            return kind.model_validate(content)
-        except ValidationError as error:
-            self.findings.extend(findings_of(error, document, at, kind))
-            return None
+
+def _validated_entries(document: Document, kind: type[BaseModel]) -> tuple[object, list[Finding]]:
+    if not isinstance(document.content, dict):
+        message = f"expected names with their definitions, found {shown(document.content)}"
+        return {}, [Finding(document.place(()), message)]
+    entries: dict[SourceText, object] = {}
+    findings: list[Finding] = []
+    for key, content in document.content.items():
+        entry, wrong = _validated(document, content, (str(key),), kind)
+        findings += wrong
+        if entry is not None:
+            entries[key] = entry
+    return entries, findings
+
+
+def _validated(
+    document: Document, content: object, at: EntryPath, kind: type[BaseModel]
+) -> tuple[BaseModel | None, list[Finding]]:
+    try:
+        return kind.model_validate(content), []
+    except ValidationError as error:
+        return None, findings_of(error, document, at, kind)

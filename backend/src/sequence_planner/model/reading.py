@@ -49,12 +49,16 @@ class Document:
 
 def read_yaml(path: Path, name: str) -> Document:
     """Read one YAML file; `name` is how it is called in messages. Raises `ModelError`."""
+    return read_text(text_of(path, name), name)
+
+
+def text_of(path: Path, name: str) -> str:
+    """The text of a file; `name` is how it is called in messages. Raises `ModelError`."""
     try:
-        text = path.read_text(encoding="utf-8")
+        return path.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8 text"
         raise ModelError([Finding(Place(name, 1, 1), f"cannot be read: {reason}")]) from error
-    return read_text(text, name)
 
 
 def read_text(text: str, name: str) -> Document:

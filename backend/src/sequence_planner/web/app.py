@@ -1,7 +1,8 @@
 """The server's parts put together: routes, guards, problems, the stream, the page.
 
 From the outside in, a request passes the security headers, the last resort for errors, what knows proxies where there
-are any, the guard, and then the route for its address; what no route knows is a file of the page, or nothing.
+are any, the guard, what compresses long answers, and then the route for its address; what no route knows is a file of
+the page, or nothing.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from typing import Any
 
 from fastapi import FastAPI
 from starlette.concurrency import run_in_threadpool
+from starlette.middleware.gzip import GZipMiddleware
 
 from sequence_planner.history.process import HistoryProcess
 from sequence_planner.storage.location import revisions_folder
@@ -66,6 +68,7 @@ from sequence_planner.web.watch_show import WatchShow
 from sequence_planner.web.workshop import Workshop
 
 PREFIX = "/api/v1"
+LONG = 10_000  # bytes; such answers are compressed for who takes them so
 PARTS = (
     session.router,
     station.router,
@@ -134,6 +137,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
         parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller))
         running = [asyncio.create_task(each.run()) for each in parts]
+        if shop is not None:
+            running.append(asyncio.create_task(shop.read_ahead()))
         try:
             yield
         finally:
@@ -168,6 +173,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     app.include_router(health.router)
     check_declared(app.routes)
     app.router.default = PageFiles(settings.page)
+    app.add_middleware(GZipMiddleware, minimum_size=LONG, compresslevel=1)
     app.add_middleware(Guard, endpoint=settings)
     if settings.proxies:
         app.add_middleware(Forwarded, proxies=settings.proxies)

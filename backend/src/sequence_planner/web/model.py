@@ -7,10 +7,11 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Query, WebSocket
+from fastapi import APIRouter, Depends, Path, Query, Response, WebSocket
 from fastapi.requests import HTTPConnection
 from pydantic import Field
 
+from sequence_planner.control.definition_view import AutomatonView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
@@ -21,10 +22,13 @@ from sequence_planner.web.stream import serve
 from sequence_planner.web.workshop import Workshop
 from sequence_planner.workshop.check_view import CheckView
 from sequence_planner.workshop.edits import Edit, FilePath, PartChangedError
+from sequence_planner.workshop.graph_view import GraphView
 from sequence_planner.workshop.processes import WorkEndedError
 from sequence_planner.workshop.view import DraftView, FilesView, UsagesView
 
 MOST_EDITS = 500  # of one change
+Finding = Annotated[int, Path(ge=0, le=2**31)]
+AbilityName = Annotated[str, Query(min_length=1, max_length=400)]
 PartId = Annotated[str, Field(min_length=3, max_length=500)]
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 ENGINEER = allowed(Role.ENGINEER)
@@ -80,6 +84,22 @@ async def check(shop: TheWorkshop) -> CheckView:
     return await shop.checked()
 
 
+@router.get("/check/findings/{finding}/run", dependencies=[VIEWER], responses=refused(404))
+async def run(
+    shop: TheWorkshop, finding: Finding, ability: AbilityName, number: Annotated[int, Query(ge=0, le=2**53 - 1)]
+) -> list[AutomatonView]:
+    """How an ability goes through the run that shows a finding: its automaton in the initial state and after each step.
+
+    The finding is named by its place in the check of the draft after change `number`.
+    """
+    try:
+        return await shop.played(finding, ability, number)
+    except EditError as error:
+        raise ProblemFound(404, "no-run", "There is no such run", _sentence(error)) from error
+    except WorkEndedError as error:
+        raise failed(error) from error
+
+
 @router.post("/changes", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
 async def change(body: ChangeBody, shop: TheWorkshop, actor: Actor) -> FilesView:
     """Carry edits out; the files that are others now.
@@ -114,6 +134,15 @@ async def usages(shop: TheWorkshop, part: PartId) -> UsagesView:
         raise failed(error) from error
 
 
+@router.get("/graph", dependencies=[VIEWER], response_model=GraphView)
+async def graph(shop: TheWorkshop) -> Response:
+    """The model as a whole: all that has a name, on the layers of the station, and what is tied to what."""
+    try:
+        return Response(await shop.tied(), media_type="application/json")
+    except WorkEndedError as error:
+        raise failed(error) from error
+
+
 @router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
 async def undo(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
     """Take back your last change that is not taken back yet; the files that are others now."""
@@ -142,14 +171,18 @@ async def stream(websocket: WebSocket) -> None:
 
 def failed(error: WorkEndedError) -> ProblemFound:
     """The problem that says that something could not be found out."""
-    text = f"{str(error)[:1].upper()}{str(error)[1:]}."
+    text = _sentence(error)
     return ProblemFound(503, "workshop-failed", "It could not be found out", f"{text} Try again.")
 
 
 def refusal(error: EditError) -> ProblemFound:
     """The problem that says why an edit is not made."""
-    text = f"{str(error)[:1].upper()}{str(error)[1:]}."
+    text = _sentence(error)
     if isinstance(error, PartChangedError):
         detail = f"{text} Nothing was changed: look at what it is now, and repeat yours if it is still wanted."
         return ProblemFound(409, "part-changed", "It was changed meanwhile", detail)
     return ProblemFound(422, "edit-refused", "It cannot be changed so", text)
+
+
+def _sentence(error: Exception) -> str:
+    return f"{str(error)[:1].upper()}{str(error)[1:]}."

@@ -11,6 +11,7 @@ from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.actor import Actor
+from sequence_planner.control.definition_view import AutomatonView
 from sequence_planner.control.pipeline_view import RecordView
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.identity import IdentityOffice
@@ -22,8 +23,9 @@ from sequence_planner.workshop.asking import Changed, DraftAnswering
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckView, waiting
 from sequence_planner.workshop.draft import Change, Differences, Draft, Proposal
+from sequence_planner.workshop.draft_process import DraftProcess
 from sequence_planner.workshop.edits import AddEntry, Edit, PartChangedError, WriteText
-from sequence_planner.workshop.files import Files, read_files
+from sequence_planner.workshop.files import Files, FolderReader
 from sequence_planner.workshop.pipelines.questions import (
     Asked,
     Examples,
@@ -39,7 +41,7 @@ from sequence_planner.workshop.showing import Reader, change_view, marks
 from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, RevisionView, UsagesView, WorkshopView
 
 MOST_SHOWN = 50  # changes
-ANSWERED_WITHIN = 5.0  # seconds, for questions about a text
+ANSWERED_WITHIN = 20.0  # seconds, for questions about a text
 RUN_WITHIN = 30.0  # seconds, for questions about pipelines, which run
 
 
@@ -61,32 +63,42 @@ class Workshop:
     def __init__(self, identity: IdentityOffice, model: Path, revisions: Path, limits: StreamLimits) -> None:
         self.latest = Latest(self._present, limits)
         self.folder = model
+        self._files = FolderReader(model)
         self._identity = identity
         self._revisions = Revisions(revisions)
         self._keeping = asyncio.Lock()
         self._reader = Reader()
-        self._desk = CheckDesk(model, self._found)
-        self._language = DraftAnswering("language_worker", "answering", 1)
+        self._process = DraftProcess()
+        self._desk = CheckDesk(model, self._process, self._found)
         self._pipelines = DraftAnswering("pipelines.worker", "answering", 2)  # the draft, and what runs
         self._check: CheckView | None = None
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
         self._opening = asyncio.Lock()
+        self._tied: tuple[int, str] | None = None  # the number of a draft, and its graph
+        self._tying = asyncio.Lock()
 
     async def close(self) -> None:
         """End what is being checked and answered."""
         await self._desk.close()
-        await self._language.close()
+        await self._process.close()
         await self._pipelines.close()
+
+    async def read_ahead(self) -> None:
+        """Read what the files hold, so that whoever asks for them first need not wait for that."""
+        files = await run_in_threadpool(self._files.read)
+        draft = await self._identity.read(drafts.read)
+        for each in (draft, Draft(draft.number, files, files)):
+            await run_in_threadpool(self._reader.views, each, each.files)
 
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since."""
         async with self._opening:
-            files = await run_in_threadpool(read_files, self.folder)
+            files = await run_in_threadpool(self._files.read)
             draft = await self._identity.read(drafts.read)
             if not draft.number or draft.base != files:
                 now = self._identity.now()
-                draft, _ = await self._identity.write(lambda connection: drafts.take_up(connection, files, now))
+                draft = await self._identity.write(lambda connection: drafts.take_up(connection, files, now))
             await self._noticed(draft)
         return draft
 
@@ -124,7 +136,7 @@ class Workshop:
         """
 
         async def propose(draft: Draft) -> Proposal:
-            found = await worked("renamed_files", draft.files, part, name)
+            found = await self._process.ask(draft.files, "renamed_files", part, name)
             if isinstance(found, str):
                 raise EditError(found)
             assert isinstance(found, dict)
@@ -136,10 +148,37 @@ class Workshop:
 
     async def usages(self, part: str) -> UsagesView:
         """Where a part is named. Raises `EditError` and `WorkEndedError`."""
-        found = await worked("used", (await self.open()).files, part)
+        found = await self._process.ask((await self.open()).files, "used", part)
         if isinstance(found, str):
             raise EditError(found)
         assert isinstance(found, UsagesView)
+        return found
+
+    async def tied(self) -> str:
+        """What is tied to what, as JSON of a `GraphView`: found once for each draft. Raises `WorkEndedError`."""
+        async with self._tying:
+            draft = await self.open()
+            if self._tied is None or self._tied[0] != draft.number:
+                found = await self._process.ask(draft.files, "tied", draft.number)
+                assert isinstance(found, str)
+                self._tied = draft.number, found
+            return self._tied[1]
+
+    async def played(self, finding: int, ability: str, number: int) -> list[AutomatonView]:
+        """How an ability goes through the run that shows a finding of the check of change `number`.
+
+        Raises `EditError` where there is no such run or ability, and `WorkEndedError`.
+        """
+        check, draft = await self.checked(), await self.open()
+        if number != check.number or number != draft.number:
+            raise EditError("the draft has changed since: look at its findings again")
+        trace = check.findings[finding].trace if finding < len(check.findings) else None
+        if trace is None:
+            raise EditError("there is no run that shows such a finding")
+        found = await worked("drawn", draft.files, self.folder, ability, trace)
+        if isinstance(found, str):
+            raise EditError(found)
+        assert isinstance(found, list)
         return found
 
     async def undo(self, by: Actor) -> FilesView:
@@ -194,11 +233,7 @@ class Workshop:
     async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> LanguageAnswer:
         """What is answered to a question about a text. Raises `WorkEndedError`."""
         draft = await self.open()
-
-        def question(changed: Changed) -> object:
-            return changed, kind, asked
-
-        answer = await self._language.ask(question, draft.files, patience=ANSWERED_WITHIN)
+        answer = await self._process.ask(draft.files, "answer", kind, asked, patience=ANSWERED_WITHIN)
         assert isinstance(answer, LanguageAnswer)
         return answer
 

@@ -72,13 +72,14 @@ def read(connection: Connection) -> Draft:
     )
 
 
-def take_up(connection: Connection, files: Files, now: float) -> tuple[Draft, list[str]]:
+def take_up(connection: Connection, files: Files, now: float) -> Draft:
     """Let the draft be one of the station that consists of `files`, with what was edited brought together with what
-    has happened to them since. Where both changed the same lines the draft stays as it is; these files are returned.
+    has happened to them since. A file of which both changed the same lines stays as it is in the draft; the change
+    says so, and the other version is what the draft is compared with from now on.
     """
     draft, conflicts = read(connection), list[str]()
     if draft.number and draft.base == files:
-        return draft, conflicts
+        return draft
     after = dict(draft.files)
     for path in sorted(draft.base.keys() | files.keys()):
         try:
@@ -90,10 +91,12 @@ def take_up(connection: Connection, files: Files, now: float) -> tuple[Draft, li
             after.pop(path, None)
         else:
             after[path] = text
-    title = "The files of the station" if not draft.number else "The files of the station have changed"
-    _write(connection, draft, Proposal(after, ChangeKind.TAKEN, None, title), SYSTEM, now)
+    title = "The files of the station have changed" if draft.number else "The files of the station"
+    if conflicts:
+        title += f"; where the draft had changed the same lines, its own are kept: {', '.join(conflicts)}"
+    _write(connection, draft, Proposal(after, ChangeKind.TAKEN, None, title), SYSTEM, now, always=bool(conflicts))
     rebase(connection, files)
-    return read(connection), conflicts
+    return read(connection)
 
 
 def rebase(connection: Connection, files: Files) -> None:
@@ -172,14 +175,16 @@ def stacks(connection: Connection, by: Actor) -> tuple[list[Change], list[Change
     return done, undone
 
 
-def _write(connection: Connection, draft: Draft, proposal: Proposal, by: Actor, now: float) -> Draft:
+def _write(
+    connection: Connection, draft: Draft, proposal: Proposal, by: Actor, now: float, *, always: bool = False
+) -> Draft:
     after = proposal.after
     differences = {
         path: (draft.files.get(path), after.get(path))
         for path in sorted(draft.files.keys() | after.keys())
         if draft.files.get(path) != after.get(path)
     }
-    if not differences and draft.number:
+    if not differences and draft.number and not always:
         return draft
     number = draft.number + 1
     connection.execute(

@@ -5,11 +5,14 @@ Python stages are none of them: these come only from files on the server.
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import shutil
 import tempfile
-from collections.abc import Mapping
+import time
+from collections.abc import Iterator, Mapping
+from operator import itemgetter
 from pathlib import Path
 
 from sequence_planner.model.loading import DEFINITIONS, FILES
@@ -22,6 +25,7 @@ Files = Mapping[str, str]
 LONGEST_FILE = 1_000_000  # characters
 MOST_FILES = 2_000
 STAGES = "stages"
+_FOLDERS = ("resources", "messages")  # where files are looked for
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
@@ -48,15 +52,59 @@ def check_text(path: str, text: str) -> None:
 
 def read_files(folder: Path) -> dict[str, str]:
     """The files of the model in `folder`; those that are no UTF-8 text are left out. Raises `OSError`."""
-    files: dict[str, str] = {}
-    for path in sorted(folder.rglob("*")):
-        name = path.relative_to(folder).as_posix()
-        if _PATH.fullmatch(name) and path.is_file() and len(files) < MOST_FILES:
-            try:
-                files[name] = path.read_bytes().decode("utf-8").removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n")
-            except UnicodeDecodeError:
-                continue
-    return files
+    return FolderReader(folder).read()
+
+
+class FolderReader:
+    """Reads the model in a folder again and again: only files that may be others than they were."""
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._known: dict[str, tuple[_Stamp, str | None]] = {}
+
+    def read(self) -> dict[str, str]:
+        """The files; those that are no UTF-8 text are left out. Raises `OSError`."""
+        known, self._known = self._known, {}
+        files: dict[str, str] = {}
+        for name, entry in sorted(_found(self._folder), key=itemgetter(0)):
+            if len(files) == MOST_FILES:
+                break
+            now, stamp = time.time_ns(), _stamp(entry.stat())
+            before = known.get(name)
+            text = before[1] if before is not None and before[0] == stamp else _text(Path(entry.path))
+            # A file that was written just before it was read may be written once more without another stamp.
+            if now - stamp[0] > _RACY:
+                self._known[name] = stamp, text
+            if text is not None:
+                files[name] = text
+        return files
+
+
+# When a file was written, its size, and which one it is.
+_Stamp = tuple[int, int, int, int]
+_RACY = 2_000_000_000  # nanoseconds
+
+
+def _stamp(status: os.stat_result) -> _Stamp:
+    return max(status.st_mtime_ns, status.st_ctime_ns), status.st_size, status.st_dev, status.st_ino
+
+
+def _found(folder: Path | str, below: str = "") -> Iterator[tuple[str, os.DirEntry[str]]]:
+    """The files of a model below `folder`, each with its name, that of `folder` being `below`."""
+    with contextlib.suppress(FileNotFoundError, NotADirectoryError, PermissionError), os.scandir(folder) as entries:
+        for entry in entries:
+            name = f"{below}{entry.name}"
+            if (below or name in _FOLDERS) and entry.is_dir(follow_symlinks=False):
+                yield from _found(entry.path, f"{name}/")
+            elif _PATH.fullmatch(name) and entry.is_file():
+                yield name, entry
+
+
+def _text(path: Path) -> str | None:
+    try:
+        return path.read_bytes().decode("utf-8").removeprefix(BYTE_ORDER_MARK).replace("\r\n", "\n")
+    except UnicodeDecodeError:
+        return None
 
 
 def write_files(files: Files, folder: Path, stages: Path | None = None) -> None:

@@ -61,7 +61,8 @@ class HoverView(View):
     """What the name between `start` and `end` is.
 
     `names` are the full names it has, of which the page knows the values; a reference through a parameter has one for
-    each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`.
+    each choice, and `pattern` is then all of them at once. `domain` are the values of its `type`, and `part` is the id
+    by which it is looked for in the model, but for a parameter.
     """
 
     start: int
@@ -75,4 +76,5 @@ class HoverView(View):
     initial: Value | None
     resource: str | None
     title: str | None
+    part: str | None
     declared: DeclarationView | None

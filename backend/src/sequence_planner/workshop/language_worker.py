@@ -1,17 +1,23 @@
-"""Answers to questions about texts, in the light of the draft as far as it can be read."""
+"""Answers to questions about the draft and the texts in it, by a process that keeps what it has read of it."""
 
 from __future__ import annotations
 
 import contextlib
-import shutil
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from multiprocessing.connection import Connection
 from pathlib import Path
 
-from sequence_planner.model.loading import Station, load_station
-from sequence_planner.model.source import ModelError
+from sequence_planner.analysis.document import FindingDocument, error_document
+from sequence_planner.model.loading import load_station
+from sequence_planner.model.paths import EditError
+from sequence_planner.model.source import Finding, ModelError
+from sequence_planner.ros.errors import MessageDefinitionError
+from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.station import Before, read_station
 from sequence_planner.workshop.files import Files, write_files
+from sequence_planner.workshop.graph_view import graph_view
 from sequence_planner.workshop.language import Field, Lexicon, check, complete, formatted, hover
+from sequence_planner.workshop.language.lexicon import messages_of
 from sequence_planner.workshop.language.view import completion_view, hover_view, problem_view
 from sequence_planner.workshop.language_view import CompletionView
 from sequence_planner.workshop.questions import (
@@ -23,23 +29,28 @@ from sequence_planner.workshop.questions import (
     ProblemsView,
     TextAt,
 )
+from sequence_planner.workshop.references import Usage, dependants, graph, parse_part, renamed, station_of, usages
+from sequence_planner.workshop.view import UsagesView, UsageView
 
 STATION, NOTHING = "station.yaml", "name: draft\n"
 
-# Files that are others since the last question, none for those that are gone; what is asked, and about which text.
-Question = tuple[Mapping[str, str | None], LanguageQuestionKind, TextAt]
+# Files that are others since the last question, none for those that are gone; what is asked, and about what.
+Question = tuple[Mapping[str, str | None], str, tuple[object, ...]]
 
 
 class Draft:
     """The draft while it is edited, and what its names mean. Its files are written into the empty `folder`.
 
     A file that cannot be used stands as it was when it could be: what is written elsewhere is not wrong because of it.
+    What is the same as before is not read again.
     """
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._files: dict[str, str] = {}
         self._usable: dict[str, str] = {}
+        self._written: dict[str, str] = {}  # what the folder holds
+        self._before = Before()
         self._lexicon: Lexicon | None = None
 
     def take(self, changed: Mapping[str, str | None]) -> None:
@@ -53,24 +64,47 @@ class Draft:
             self._lexicon = None
 
     @property
+    def files(self) -> Files:
+        """The files as they are."""
+        return self._files
+
+    @property
     def lexicon(self) -> Lexicon:
         """What names mean now."""
         if self._lexicon is None:
-            self._lexicon = Lexicon.of(self._station())
+            self._lexicon = self._made()
         return self._lexicon
 
-    def _station(self) -> Station:
+    def errors(self) -> list[Finding]:
+        """What makes it unusable, all that a check of it finds before it builds pipelines."""
+        with self._folder_of(self._files):
+            try:
+                read_station(Path(), self._before)
+            except ModelError as error:
+                return error.findings
+        return []
+
+    def messages(self) -> MessageRegistry | None:
+        """The message types that it defines; None where they cannot be read."""
+        with self._folder_of(self._files):
+            definitions = Path("messages")
+            try:
+                return MessageRegistry.from_folder(definitions if definitions.is_dir() else None)
+            except MessageDefinitionError:
+                return None
+
+    def _made(self) -> Lexicon:
         files = {STATION: NOTHING, **self._files}
         while True:
-            try:
-                station = self._loaded(files)
-                break
-            except ModelError as error:
-                wrong = {finding.place.file.removeprefix(f"{self._folder}/") for finding in error.findings}
-                for path in wrong & files.keys() or files.keys() - {STATION}:
-                    files = self._without(files, path)
-        self._usable = {path: text for path, text in files.items() if text != NOTHING}
-        return station
+            with self._folder_of(files):
+                try:
+                    station = load_station(Path(), self._before.files)
+                    self._usable = {path: text for path, text in files.items() if text != NOTHING}
+                    return Lexicon.of(station, messages_of(station))
+                except ModelError as error:
+                    wrong = {finding.place.file for finding in error.findings}
+            for path in wrong & files.keys() or files.keys() - {STATION}:
+                files = self._without(files, path)
 
     def _without(self, files: Files, path: str) -> dict[str, str]:
         """With the file as it was when it could be used, or else without it."""
@@ -80,11 +114,16 @@ class Draft:
             return {**others, path: usable}
         return {**others, STATION: NOTHING} if path == STATION else others
 
-    def _loaded(self, files: Files) -> Station:
-        shutil.rmtree(self._folder, ignore_errors=True)
-        self._folder.mkdir()
-        write_files(files, self._folder)
-        return load_station(self._folder)
+    @contextlib.contextmanager
+    def _folder_of(self, files: Files) -> Iterator[None]:
+        """Within the folder, which holds these files, so that places bear the names that files have in the model."""
+        self._folder.mkdir(parents=True, exist_ok=True)
+        for path in self._written.keys() - files.keys():
+            (self._folder / path).unlink()
+        write_files({path: text for path, text in files.items() if self._written.get(path) != text}, self._folder)
+        self._written = dict(files)
+        with contextlib.chdir(self._folder):
+            yield
 
 
 def answer(draft: Draft, kind: LanguageQuestionKind, asked: TextAt) -> LanguageAnswer:
@@ -113,12 +152,71 @@ def answer(draft: Draft, kind: LanguageQuestionKind, asked: TextAt) -> LanguageA
     return answers[kind](field)
 
 
+def errors(draft: Draft) -> list[FindingDocument]:
+    """What makes the draft unusable, as far as it shows before pipelines are built."""
+    return [error_document(finding) for finding in draft.errors()]
+
+
+def renamed_files(draft: Draft, part: str, name: str) -> dict[str, str | None] | str:
+    """The files that are others once a part has another name, or why it cannot have it."""
+    try:
+        return renamed(draft.files, parse_part(part), name, draft.messages())
+    except EditError as error:
+        return str(error)
+
+
+def used(draft: Draft, part: str) -> UsagesView | str:
+    """Where a part is named, or why nobody can say."""
+    try:
+        wanted, messages = parse_part(part), draft.messages()
+        found, without = usages(draft.files, wanted, messages), dependants(draft.files, wanted, messages)
+    except EditError as error:
+        return str(error)
+    return UsagesView(
+        usages=list(map(_usage_view, found.found)),
+        unwritten=list(map(_usage_view, found.unwritten)),
+        dependants=list(map(_usage_view, without.found)),
+        unread=[error_document(each) for each in (*found.skipped, *found.unread)],
+        bound=found.bound,
+    )
+
+
+def tied(draft: Draft, number: int) -> str:
+    """What is tied to what in the draft after change `number`, as JSON of a `GraphView`."""
+    found = graph(draft.files, draft.messages())
+    return graph_view(number, found, *station_of(draft.files)).model_dump_json()
+
+
+def _usage_view(usage: Usage) -> UsageView:
+    return UsageView(
+        part=usage.part.id,
+        file=usage.file,
+        path=list(usage.path),
+        line=usage.line,
+        column=usage.column,
+        length=usage.length,
+        written=usage.written,
+        used_by=usage.used_by,
+        declares=usage.declares,
+    )
+
+
+# What can be asked of the draft, by the names that questions bear.
+_ANSWERS: Mapping[str, Callable[..., object]] = {
+    "answer": answer,
+    "errors": errors,
+    "renamed_files": renamed_files,
+    "tied": tied,
+    "used": used,
+}
+
+
 def answering(connection: Connection, folder: Path) -> None:
     """Answer questions until nobody is there any more."""
     draft = Draft(folder / "draft")
     with contextlib.suppress(EOFError, OSError):
         while True:
             question: Question = connection.recv()
-            changed, kind, asked = question
+            changed, name, asked = question
             draft.take(changed)
-            connection.send(answer(draft, kind, asked))
+            connection.send(_ANSWERS[name](draft, *asked))

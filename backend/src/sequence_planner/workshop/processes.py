@@ -93,7 +93,7 @@ class Answering:
                 async with asyncio.timeout(patience):
                     asked = question()
                     if self._kept is None:
-                        self._kept = await asyncio.to_thread(self._started)
+                        self._kept = await self._start()
                     connection = self._kept[1]
                     await asyncio.to_thread(connection.send, asked)
                     return await _told(connection)
@@ -112,6 +112,14 @@ class Answering:
         async with self._turn:
             await self._end()
 
+    async def _start(self) -> tuple[ForkServerProcess, Connection, tempfile.TemporaryDirectory[str]]:
+        starting = asyncio.create_task(asyncio.to_thread(self._started))
+        try:
+            return await asyncio.shield(starting)
+        except asyncio.CancelledError:
+            self._kept = await starting  # so that it is ended
+            raise
+
     def _started(self) -> tuple[ForkServerProcess, Connection, tempfile.TemporaryDirectory[str]]:
         module, name = self._what
         folder = tempfile.TemporaryDirectory(prefix=_PREFIX)
@@ -126,9 +134,11 @@ class Answering:
         if self._kept is not None:
             (process, connection, folder), self._kept = self._kept, None
             process.kill()
-            await asyncio.shield(asyncio.to_thread(process.join))
-            connection.close()
-            folder.cleanup()
+            try:
+                await asyncio.shield(asyncio.to_thread(process.join))
+            finally:
+                connection.close()
+                folder.cleanup()
 
 
 async def _heard(connection: Connection) -> AsyncIterator[object]:

@@ -7,12 +7,10 @@ from collections.abc import Collection, Iterator, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.analysis import analyses
-from sequence_planner.analysis.document import error_document
+from sequence_planner.analysis.document import TraceDocument
+from sequence_planner.control.definition_view import AutomatonView
 from sequence_planner.expressions.types import Value
-from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import ModelError
-from sequence_planner.ros.errors import MessageDefinitionError
-from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.workshop.comparison import (
     Meant,
@@ -23,9 +21,8 @@ from sequence_planner.workshop.comparison import (
 )
 from sequence_planner.workshop.comparison_view import ComparisonView, TransferView
 from sequence_planner.workshop.files import Files, write_files
-from sequence_planner.workshop.references import Usage, dependants, parse_part, renamed, usages
+from sequence_planner.workshop.playing import played
 from sequence_planner.workshop.transfer import transfer
-from sequence_planner.workshop.view import UsagesView, UsageView
 from sequence_planner.workshop.what_if import what_if
 from sequence_planner.workshop.what_if_view import WhatIfView
 
@@ -73,30 +70,6 @@ def fitted(
     yield transfer(before, after.automaton, after.supervisor, present, running)
 
 
-def renamed_files(files: Files, part: str, name: str, folder: Path) -> Iterator[dict[str, str | None] | str]:
-    """The files that are others once a part has another name, or why it cannot have it; `folder` is empty."""
-    try:
-        yield renamed(files, parse_part(part), name, _messages(files, folder))
-    except EditError as error:
-        yield str(error)
-
-
-def used(files: Files, part: str, folder: Path) -> Iterator[UsagesView | str]:
-    """Where a part is named, or why nobody can say; `folder` is empty."""
-    try:
-        wanted, messages = parse_part(part), _messages(files, folder)
-        found, without = usages(files, wanted, messages), dependants(files, wanted, messages)
-    except EditError as error:
-        yield str(error)
-        return
-    yield UsagesView(
-        usages=list(map(_usage_view, found.found)),
-        dependants=list(map(_usage_view, without.found)),
-        unread=[error_document(each) for each in (*found.skipped, *found.unread)],
-        bound=found.bound,
-    )
-
-
 def simulated(
     files: Files,
     stages: Path | None,
@@ -124,6 +97,19 @@ def simulated(
     yield what_if(meant.station, meant.supervisor, present, seconds, deadline)
 
 
+def drawn(
+    files: Files, stages: Path | None, ability: str, trace: TraceDocument, folder: Path
+) -> Iterator[list[AutomatonView] | str]:
+    """How an ability goes through a run, or why nobody can say; `folder` is empty."""
+    try:
+        automaton = _station(files, stages, folder / "new").automaton
+    except ModelError as error:
+        yield f"the model cannot be used: {error.findings[0]}"
+        return
+    found = automaton.abilities.get(ability)
+    yield f"the model has no ability `{ability}`" if found is None else played(automaton, found, trace)
+
+
 def _meant(what: str, files: Files, stages: Path | None, folder: Path) -> Meant:
     """What a model means. Raises `Unusable`."""
     try:
@@ -144,27 +130,3 @@ def _station(files: Files, stages: Path | None, folder: Path) -> ReadyStation:
     write_files(files, folder, stages)
     with contextlib.chdir(folder):
         return prepare_station(Path())
-
-
-def _messages(files: Files, folder: Path) -> MessageRegistry | None:
-    """The message types that the files define; None where they cannot be read."""
-    write_files(files, folder)
-    definitions = folder / "messages"
-    try:
-        return MessageRegistry.from_folder(definitions if definitions.is_dir() else None)
-    except MessageDefinitionError:
-        return None
-
-
-def _usage_view(usage: Usage) -> UsageView:
-    return UsageView(
-        part=usage.part.id,
-        file=usage.file,
-        path=list(usage.path),
-        line=usage.line,
-        column=usage.column,
-        length=usage.length,
-        written=usage.written,
-        used_by=usage.used_by,
-        declares=usage.declares,
-    )

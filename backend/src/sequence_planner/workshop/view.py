@@ -93,11 +93,13 @@ class UsageView(View):
 class UsagesView(View):
     """Where a part is named, and which of these places outside of it could not be without it.
 
-    `unread` are texts that make no sense and hold the name, and files that cannot be read; `bound` says why the name
-    is not the model's alone.
+    `unwritten` are entries that use it though nothing in them names it, such as a topic whose message has a field of
+    that name; they stand at their own names. `unread` are texts that make no sense and hold the name, and files that
+    cannot be read; `bound` says why the name is not the model's alone.
     """
 
     usages: list[UsageView]
+    unwritten: list[UsageView]
     dependants: list[UsageView]
     unread: list[FindingDocument]
     bound: str | None

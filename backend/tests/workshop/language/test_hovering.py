@@ -10,8 +10,10 @@ from sequence_planner.model.reading import EntryPath
 from sequence_planner.workshop.language import FieldKind, Hover, NameKind, hover
 from sequence_planner.workshop.language.view import hover_view
 from sequence_planner.workshop.language_view import HoverView
+from sequence_planner.workshop.references import parse_part, usages
 
-from .drafts import STATIONS, draft, words
+from ..references.stations import of_folder
+from .drafts import MODELS, STATIONS, draft, words
 
 ROBOT, TOOL = "resources/robot.yaml", "resources/nutrunner.yaml"
 MOVE: EntryPath = ("abilities", "move_to_position", "finish", "when")
@@ -131,3 +133,24 @@ def test_every_name_of_a_station_is_known(station: str) -> None:
                 assert found is not None, f"{each}: {word} in {each.text}"
                 assert found.start <= at < found.end
             at += len(word)
+
+
+@pytest.mark.parametrize(
+    ("file", "path", "text", "part"),
+    [
+        (ROBOT, MOVE, "po|se == position", "variable:robot.pose"),
+        (ROBOT, MOVE, "bol|ts[bolt_pair_1] == empty", "variable:bolts"),
+        (ROBOT, MOVE, "|executing", "ability:robot.move_to_position"),
+        (ROBOT, MOVE, "operation.place_bolt_pair(bolt_pair_1).act|ive", "operation:place_bolt_pair"),
+        (ROBOT, MOVE, "bolts[bolt_pair_1] == pla|ced", "value:bolt_state.placed"),
+        (ROBOT, ("measured", "pose", "type"), "po|se", "enumeration:pose"),
+        ("specifications.yaml", ("a", "exclusive", 0), "robot.move_to_position|", "ability:robot.move_to_position"),
+        ("work_masters.yaml", ("truck_engine", "operations", "new_engine"), "new|_engine", "operation:new_engine"),
+    ],
+)
+def test_a_name_can_be_looked_for(file: str, path: EntryPath, text: str, part: str) -> None:
+    found = hovered(file, path, text)
+    assert found is not None
+    assert found.part == part
+    files = of_folder(MODELS / "bolt_tightening")
+    assert any(each.declares for each in usages(files, parse_part(part)).found)

@@ -1,5 +1,5 @@
 /** All that an ability is made of, as the rows of a table. */
-import type { AbilityAction, AbilityDefinition, Conjunct, Predicate } from '#lib/contract.ts';
+import type { AbilityAction, AbilityAutomaton, Conjunct, Predicate } from '#lib/contract.ts';
 
 export type PartName =
 	| 'enabled'
@@ -39,7 +39,7 @@ function actions(part: PartName, all: readonly AbilityAction[], of = ''): Row[] 
 }
 
 /** Its rows, in the order in which a run goes through them. */
-export function rowsOf(definition: AbilityDefinition): Row[] {
+export function rowsOf(definition: AbilityAutomaton): Row[] {
 	return [
 		...conditions('enabled', definition.enabled),
 		...conditions('start', definition.start),

@@ -1,5 +1,5 @@
 /** Findings as they are listed: in groups of one kind, or of one file. */
-import type { Finding } from '#lib/contract.ts';
+import type { Finding, ModelCheck } from '#lib/contract.ts';
 import { isError } from '#lib/workshop/verdict.ts';
 
 export type By = 'kind' | 'file';
@@ -57,4 +57,9 @@ export function placeOf({ file, line, column }: Pick<Finding, 'file' | 'line' | 
 /** Where the model is edited at that place. */
 export function addressOf({ file, line }: Pick<Finding, 'file' | 'line'>): string {
 	return `/model?${new URLSearchParams({ file, line: String(line) })}`;
+}
+
+/** Where the server tells of the run that shows a finding of this check. */
+export function runOf({ number, findings }: Pick<ModelCheck, 'number' | 'findings'>, finding: Finding): string {
+	return `/api/v1/model/check/findings/${findings.indexOf(finding)}/run?number=${number}`;
 }

@@ -1,7 +1,7 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
 import type { Trace, TraceStep } from '#lib/contract.ts';
-import { forbiddenAt, moving, namesIn, rowsAt, stepTo } from './play.ts';
+import { acting, actingAt, forbiddenAt, moving, namesIn, rowsAt, stepTo } from './play.ts';
 
 function step(changes: TraceStep['changes'], forbidden: string[] = []): TraceStep {
 	return { kind: 'tick', names: [], finished: [], changes, forbidden_by: forbidden, text: '' };
@@ -63,4 +63,13 @@ describe('any run', () => {
 			})
 		);
 	});
+});
+
+test('the ability that acts is the one of the step, or the last before it', () => {
+	const start = (name: string): TraceStep => ({ ...step({}), kind: 'start', names: [name] });
+	const run = { ...TRACE, steps: [step({}), start('lift'), { ...step({}), finished: ['lift'] }, start('drop'), step({})] };
+	expect(acting(run)).toEqual(['lift', 'drop']);
+	expect([0, 1, 2, 3, 4, 5].map((place) => actingAt(run, place))).toEqual(['lift', 'lift', 'lift', 'lift', 'drop', 'drop']);
+	expect(acting(TRACE)).toEqual([]);
+	expect(actingAt(TRACE, 2)).toBeNull();
 });

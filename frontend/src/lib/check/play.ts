@@ -48,3 +48,15 @@ export function rowsAt(trace: Trace, place: number): Row[] {
 function valuesAt(trace: Trace, place: number): Readonly<Record<string, Value | null>> {
 	return Object.assign({}, trace.initial, ...trace.steps.slice(0, Math.max(0, place)).map((step) => step.changes));
 }
+
+/** The abilities that start or finish in a run. */
+export function acting(trace: Trace): string[] {
+	const started = trace.steps.flatMap(({ kind, names }) => (kind === 'start' ? names : []));
+	return [...new Set([...started, ...trace.steps.flatMap(({ finished }) => finished)])];
+}
+
+/** The ability that has last started or finished on the way to `place`; before the first that one. */
+export function actingAt(trace: Trace, place: number): string | null {
+	const until = { ...trace, steps: trace.steps.slice(0, place) };
+	return acting({ ...until, steps: until.steps.slice(-1) })[0] ?? acting(until).at(-1) ?? acting(trace)[0] ?? null;
+}

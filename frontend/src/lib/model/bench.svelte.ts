@@ -1,9 +1,10 @@
 /** What the parts of this page share: the tree, what is chosen in it, what was found, and whether it can be edited. */
-import { createContext } from 'svelte';
+import { createContext, tick } from 'svelte';
 import type { Draft } from './draft.svelte.ts';
 import { countsOf, foundIn } from './found.ts';
 import type { Spot } from './language.ts';
-import { lookupOf, treeOf, type Node } from './tree.ts';
+import { pathAt, placesOf } from './places.ts';
+import { lookupOf, nodeAt, treeOf, type Node } from './tree.ts';
 
 /** Where the file editor is asked to go. */
 export interface Sight {
@@ -21,11 +22,13 @@ export class Bench {
 	readonly further: (name: string, spot: Spot) => readonly string[];
 	/** Where the file editor is asked to go, each time anew. */
 	sight = $state.raw<Sight | null>(null);
+	/** The part whose usages are asked for; null for none. */
+	sought = $state<string | null>(null);
 
 	readonly tree = $derived.by(() => treeOf(this.draft.files, this.draft.contents));
 	readonly lookup = $derived(lookupOf(this.tree));
 	readonly found = $derived.by(() =>
-		foundIn(this.draft.check?.findings ?? [], this.lookup, (file) => this.draft.text(file))
+		foundIn(this.draft.check?.findings ?? [], this.lookup, this.draft.files)
 	);
 	readonly counts = $derived(countsOf(this.found, this.lookup));
 
@@ -64,6 +67,19 @@ export class Bench {
 
 	choose(id: string): void {
 		if (id !== this.chosen) this.#look(id);
+	}
+
+	/** The entry in which a line of a file is. */
+	entryAt(file: string, line: number): string {
+		const path = pathAt(placesOf(this.draft.text(file)), line);
+		return nodeAt(this.lookup, file, path)?.id ?? file;
+	}
+
+	/** Leads to a place in a file: chooses what is there, and shows it. */
+	lead(sight: Sight): void {
+		this.sought = null;
+		this.choose(this.entryAt(sight.file, sight.line));
+		void tick().then(() => (this.sight = { ...sight }));
 	}
 
 	/** What a part is called where there is no room for more. */

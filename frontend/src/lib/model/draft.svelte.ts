@@ -48,6 +48,7 @@ export class Draft {
 
 	/** Connects to the server's stream; the result disconnects. */
 	attach(url: string, ended: () => void): () => void {
+		void this.#begin(); // meanwhile the stream connects
 		return this.#seen.attach(
 			url,
 			(isNew) => this.#told(isNew),
@@ -166,6 +167,14 @@ export class Draft {
 		this.contents = drop(this.contents);
 	}
 
+	/** Reads all there is, whatever the stream will say. */
+	async #begin(): Promise<void> {
+		this.#reading = true;
+		await this.#load(null);
+		this.#reading = false;
+		if (this.number !== null) await this.#follow();
+	}
+
 	/** Reads what has become another one, until all is as the stream says. */
 	async #follow(): Promise<void> {
 		if (this.#reading) return;
@@ -200,7 +209,7 @@ export class Draft {
 			if (file === null) {
 				delete shown[path];
 				delete contents[path];
-			} else {
+			} else if (shown[path]?.digest !== file.digest) {
 				shown[path] = file;
 				if (file.wrong === null) contents[path] = asJson(file.content);
 			}

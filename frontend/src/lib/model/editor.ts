@@ -162,7 +162,8 @@ function edited(host: HTMLElement, options: Common, more: Extension): { view: Ed
 				EditorView.updateListener.of((update) => {
 					if (update.docChanged && !shows) options.onwrite(update.state.doc.toString());
 				}),
-				EditorView.domEventHandlers({ blur: () => options.onleave(), beforeinput: typedOver })
+				// One that is taken out of the page while it has the focus loses it in the midst of an update of the page.
+				EditorView.domEventHandlers({ blur: () => queueMicrotask(() => options.onleave()), beforeinput: typedOver })
 			]
 		})
 	});
@@ -188,6 +189,9 @@ export interface ExpressionOptions extends Common {
 	readonly complete: (text: string, offset: number) => Promise<Completion | null>;
 	readonly hover: (text: string, offset: number) => Promise<Hover | null>;
 	readonly format: (text: string) => Promise<string | null>;
+	/** Leads to where a name is declared, and to where what it names is used. */
+	readonly define: (hover: Hover) => void;
+	readonly usages: (hover: Hover) => void;
 	/** The lines that are shown of what is named somewhere. */
 	readonly about: (hover: Hover) => readonly string[];
 	/** What is wrong with it now. */
@@ -206,6 +210,8 @@ export interface ExpressionEditor extends Editor {
 	format(): Promise<void>;
 }
 
+/** Milliseconds without a key after which a text is looked at: somebody who types on is not asked about half a word. */
+const REST = 120;
 /** Milliseconds after which a text is looked at again where the server did not say what is wrong with it. */
 const ASK_AGAIN = 3000;
 
@@ -216,6 +222,12 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 		const form = text.trim() === '' || view.state.readOnly ? null : await options.format(text);
 		const change = form === null || view.state.doc.toString() !== text ? null : changeTo(text, form);
 		if (change !== null) view.dispatch({ changes: change, userEvent: 'format' });
+	}
+
+	/** Does something with the name at the cursor. */
+	async function lead(where: (hover: Hover) => void): Promise<void> {
+		const found = await options.hover(view.state.doc.toString(), view.state.selection.main.head);
+		if (found !== null && !gone) where(found);
 	}
 
 	async function complete(context: CompletionContext): Promise<CompletionResult | null> {
@@ -258,12 +270,14 @@ export function expressionEditor(host: HTMLElement, options: ExpressionOptions):
 		EXPRESSIONS,
 		Prec.highest(keymap.of(completionKeymap)),
 		Prec.high(keymap.of([
+			{ key: 'F12', run: () => (void lead(options.define), true) },
+			{ key: 'Shift-F12', run: () => (void lead(options.usages), true) },
 			{ key: 'Shift-Alt-f', run: () => (void format(), true) },
 			{ key: 'Enter', run: () => (options.onenter(), true) },
 			{ key: 'Escape', run: closeCompletion }
 		])),
 		autocompletion({ override: [complete], icons: false, defaultKeymap: false }),
-		linter(lint, { delay: 250, needsRefresh: ({ transactions }) => transactions.some(({ effects }) => effects.some((each) => each.is(again))) }),
+		linter(lint, { delay: REST, needsRefresh: ({ transactions }) => transactions.some(({ effects }) => effects.some((each) => each.is(again))) }),
 		EditorView.clipboardInputFilter.of((text) => text.replaceAll(/\s*\n\s*/g, ' ')),
 		hoverTooltip(async (_, at) => {
 			const found = await options.hover(view.state.doc.toString(), at);

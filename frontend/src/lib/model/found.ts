@@ -1,6 +1,6 @@
 /** Which entries the findings of a check are about. */
 import type { Finding } from '#lib/contract.ts';
-import { pathAt, placesOf } from './places.ts';
+import { pathAt, placesOf, type Placed } from './places.ts';
 import { around, nodeAt, type Lookup, type Node } from './tree.ts';
 
 /** A finding with the entry that it is about; null where that is none of the tree. */
@@ -18,14 +18,26 @@ export interface Count {
 export function foundIn(
 	findings: readonly Finding[],
 	lookup: Lookup,
-	text: (file: string) => string
+	files: Readonly<Record<string, Text | undefined>>
 ): Found[] {
-	const places = new Map<string, ReturnType<typeof placesOf>>();
 	return findings.map((finding) => {
-		const known = places.get(finding.file) ?? placesOf(text(finding.file));
-		places.set(finding.file, known);
-		return { finding, node: nodeAt(lookup, finding.file, pathAt(known, finding.line)) };
+		const { file, line } = finding;
+		return { finding, node: nodeAt(lookup, file, pathAt(placesIn(files[file]), line)) };
 	});
+}
+
+interface Text {
+	readonly text: string;
+}
+
+/** Where entries stand in each file that was looked into: it is another object once its text is another. */
+const PLACES = new WeakMap<Text, readonly Placed[]>();
+
+function placesIn(file: Text | undefined): readonly Placed[] {
+	if (file === undefined) return [];
+	const places = PLACES.get(file) ?? placesOf(file.text);
+	PLACES.set(file, places);
+	return places;
 }
 
 /** How many there are at each entry and in it, by its id. */

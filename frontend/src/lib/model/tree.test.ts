@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import { pathAt, placesOf } from './places.ts';
-import { around, idOf, lookupOf, nodeAt, nodesOf, partOf, rowsOf, treeOf } from './tree.ts';
+import { around, idOf, lookupOf, nodeAt, nodesOf, parameterOf, partOf, rowsOf, treeOf } from './tree.ts';
 
 const FILES = {
 	'station.yaml': { digest: '1' },
@@ -48,8 +48,20 @@ describe('the tree', () => {
 			'variable:robot.pose',
 			'ability:robot.move',
 			'effect:robot.move.leaves',
-			'operation:make'
+			'operation:make',
+			'message:robot_msgs/msg/RobotState'
 		]);
+	});
+
+	test('a parameter is told with what it belongs to', () => {
+		const at = (file: string, ...path: string[]): string | null => {
+			const node = nodeAt(LOOKUP, file, path);
+			return node && parameterOf(node, 'to');
+		};
+		expect(at('resources/robot.yaml', 'abilities', 'move', 'start', 'when')).toBe('parameter:robot.move.to');
+		expect(at('resources/robot.yaml', 'abilities', 'move', 'effects', 'leaves', 'when')).toBe('parameter:robot.move.to');
+		expect(at('operations.yaml', 'make', 'goal')).toBe('parameter:operation:make.to');
+		expect(at('station.yaml', 'rest')).toBeNull();
 	});
 
 	test('what is around a node, and the node that a path belongs to', () => {
@@ -82,4 +94,21 @@ describe('the tree', () => {
 		expect(pathAt(placesOf('a:\n  b: c\n'.repeat(1000)), 2000)).toEqual(['a', 'b']);
 		expect(performance.now() - began).toBeLessThan(1000);
 	});
+});
+
+test('after an edit of one file all others are what they were', () => {
+	const [, resources] = treeOf(FILES, CONTENTS);
+	const edited = { ...CONTENTS, 'resources/arm.yaml': { measured: { pose: {} } } };
+	const files = { ...FILES, 'resources/arm.yaml': { digest: '5' } };
+	const tree = treeOf(files, edited);
+	expect(tree[1]?.children.find(({ name }) => name === 'robot')).toBe(resources?.children[0]);
+	// What is looked up is what a look through the whole tree finds.
+	const lookup = lookupOf(tree);
+	expect(new Set(lookup.byId.values())).toEqual(new Set(nodesOf(tree)));
+	for (const node of nodesOf(tree)) {
+		expect(lookup.byId.get(node.id)).toBe(node);
+		for (const child of node.children) expect(lookup.parents.get(child.id)).toBe(node);
+	}
+	expect(tree.map(({ id }) => lookup.parents.get(id))).toEqual(tree.map(() => undefined));
+	expect(lookup.byId.has('resources/arm.yaml#measured#speed')).toBe(false);
 });

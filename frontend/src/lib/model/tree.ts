@@ -92,7 +92,19 @@ function entriesIn(kind: EntryKind, file: string, path: Path, content: Json | un
 	});
 }
 
+/** The resource of each content that was made into one: an edit of one file leaves all others what they were. */
+const RESOURCES = new WeakMap<object, Node>();
+
 function resource(file: string, name: string, content: Json | undefined): Node {
+	if (!isMapping(content)) return resourceFrom(file, name, content);
+	const before = RESOURCES.get(content);
+	if (before?.file === file) return before;
+	const made = resourceFrom(file, name, content);
+	RESOURCES.set(content, made);
+	return made;
+}
+
+function resourceFrom(file: string, name: string, content: Json | undefined): Node {
 	const sections = (Object.keys(IN_RESOURCE) as InResource[])
 		.map((key) => section(key, file, [key], entriesIn(IN_RESOURCE[key], file, [key], content)))
 		.filter(({ children }) => children.length > 0);
@@ -144,20 +156,67 @@ export function* nodesOf(tree: readonly Node[]): Generator<Node> {
 	}
 }
 
+/** Nodes by an id. */
+export interface Nodes {
+	get(id: string): Node | undefined;
+	has(id: string): boolean;
+	values(): Iterable<Node>;
+}
+
 /** A tree as it can be looked up. */
 export interface Lookup {
-	readonly byId: ReadonlyMap<string, Node>;
-	readonly parents: ReadonlyMap<string, Node>;
+	readonly byId: Nodes;
+	readonly parents: Pick<Nodes, 'get'>;
+}
+
+/** A part of a tree as it can be looked up: `parents` has those of all nodes below its first. */
+interface Part {
+	readonly byId: Map<string, Node>;
+	readonly parents: Map<string, Node>;
+}
+
+/** What each resource was found to hold. */
+const PARTS = new WeakMap<Node, Part>();
+
+function partFrom(tree: Iterable<Node>): Part {
+	const part: Part = { byId: new Map(), parents: new Map() };
+	for (const node of tree) {
+		part.byId.set(node.id, node);
+		for (const child of node.children) part.parents.set(child.id, node);
+	}
+	return part;
+}
+
+/** All nodes but those within resources, each before those in it. */
+function* aroundResources(tree: readonly Node[]): Generator<Node> {
+	for (const node of tree) {
+		yield node;
+		if (node.kind !== 'resource') yield* aroundResources(node.children);
+	}
 }
 
 export function lookupOf(tree: readonly Node[]): Lookup {
-	const byId = new Map<string, Node>();
-	const parents = new Map<string, Node>();
-	for (const node of nodesOf(tree)) {
-		byId.set(node.id, node);
-		for (const child of node.children) parents.set(child.id, node);
+	const rest = partFrom(aroundResources(tree));
+	const within = new Map<string, Part>();
+	for (const node of rest.byId.values()) {
+		if (node.kind !== 'resource') continue;
+		const part = PARTS.get(node) ?? partFrom(nodesOf([node]));
+		PARTS.set(node, part);
+		within.set(node.file, part);
 	}
-	return { byId, parents };
+	const partOf = (id: string): Part | undefined => within.get(id.split('#', 1)[0] ?? '');
+	const get = (id: string): Node | undefined => partOf(id)?.byId.get(id) ?? rest.byId.get(id);
+	function* values(): Generator<Node> {
+		for (const node of rest.byId.values()) {
+			const part = node.kind === 'resource' ? within.get(node.file) : undefined;
+			if (part) yield* part.byId.values();
+			else yield node;
+		}
+	}
+	return {
+		byId: { get, has: (id) => get(id) !== undefined, values },
+		parents: { get: (id) => partOf(id)?.parents.get(id) ?? rest.parents.get(id) }
+	};
 }
 
 /** The nodes around `node`, from the outermost. */
@@ -182,7 +241,6 @@ export function partOf(node: Node): string | null {
 	switch (node.kind) {
 		case 'station':
 		case 'section':
-		case 'message':
 			return null;
 		case 'variable':
 		case 'ability':
@@ -193,6 +251,15 @@ export function partOf(node: Node): string | null {
 		default:
 			return `${node.kind}:${node.name}`;
 	}
+}
+
+/** Which part a parameter is that is named in an entry of `node`. */
+export function parameterOf(node: Node, name: string): string | null {
+	const [kind, ...rest] = (partOf(node) ?? '').split(':');
+	const owner = rest.join(':');
+	if (kind === 'effect') return `parameter:${owner.slice(0, owner.lastIndexOf('.'))}.${name}`;
+	if (kind === 'ability' || kind === 'variable') return `parameter:${owner}.${name}`;
+	return kind === 'operation' || kind === 'specification' ? `parameter:${kind}:${owner}.${name}` : null;
 }
 
 /** The shape of a node's document: what its form has. */

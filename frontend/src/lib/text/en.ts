@@ -12,6 +12,7 @@ import { pipelines } from './en/pipelines.ts';
 import { restart } from './en/restart.ts';
 import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
+import { station } from './en/station.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, pipelines, restart, ros, state, whatIf };
+export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, pipelines, restart, ros, state, station, whatIf };

@@ -12,7 +12,8 @@ import { pipelines } from './sv/pipelines.ts';
 import { restart } from './sv/restart.ts';
 import { ros } from './sv/ros.ts';
 import { state } from './sv/state.ts';
+import { station } from './sv/station.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, pipelines, restart, ros, state, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, pipelines, restart, ros, state, station, whatIf };

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
-from sequence_planner.automaton.grounding.declarations import FLAGS
-from sequence_planner.automaton.grounding.findings import Binding, instance_name, readable
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+from sequence_planner.automaton.grounding.declarations import FLAGS, Declarations
+from sequence_planner.automaton.grounding.findings import Binding, Findings, instance_name, readable
 from sequence_planner.automaton.grounding.meaning import Meaning, Writing
 from sequence_planner.automaton.structure import Ability, Effect, HumanTask, Kind, Timeouts
 from sequence_planner.expressions.place import Place
@@ -11,7 +15,7 @@ from sequence_planner.expressions.resolution import Scope, suggestion
 from sequence_planner.expressions.syntax import TRUE, Expression, conjunction
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.model.documents import AbilityDocument, EffectDocument, Predicate, TimeoutsDocument
-from sequence_planner.model.source import SourceText
+from sequence_planner.model.source import Finding, SourceText
 
 _COMMANDS = (Kind.OUTPUT, Kind.ESTIMATED)
 START = Writing("a start", _COMMANDS)
@@ -20,29 +24,107 @@ CANCEL = Writing("a cancel", _COMMANDS)
 EFFECT = Writing("an effect", (Kind.MEASURED,))
 
 
+class GroundAbility(NamedTuple):
+    """An ability as its document means it, with all that grounding noted of it and of nothing else.
+
+    `effects` are with what makes two of them one, and where each is written.
+    """
+
+    ability: Ability
+    places: dict[str, Place]
+    effects: tuple[tuple[tuple[object, ...], Effect, Place], ...]
+    findings: tuple[Finding, ...]
+    activities: tuple[str, ...]
+
+
+class GroundBefore:
+    """What the abilities of one station meant when they were ground before.
+
+    An ability means the same for as long as its document is the same object and what is declared is the same.
+    """
+
+    def __init__(self) -> None:
+        self._declared: object = None
+        self._known: dict[tuple[str, str], tuple[SourceText, AbilityDocument, list[GroundAbility]]] = {}
+        self._used: set[tuple[str, str]] = set()
+
+    def begin(self, declarations: Declarations) -> None:
+        """The station is ground with these names now."""
+        declared = declarations.all()
+        if declared != self._declared:
+            self._known = {}
+        self._declared = declared
+        self._used = set()
+
+    def end(self) -> None:
+        """All abilities were asked for."""
+        self._known = {key: known for key, known in self._known.items() if key in self._used}
+
+    def ground(
+        self, resource: str, name: SourceText, document: AbilityDocument, ground: Callable[[], list[GroundAbility]]
+    ) -> list[GroundAbility]:
+        """The ability for all choices of its parameters, made by `ground` unless it is known."""
+        key = resource, str(name)
+        self._used.add(key)
+        known = self._known.get(key)
+        if known is None or known[0] is not name or known[1] is not document:
+            known = self._known[key] = name, document, ground()
+        return known[2]
+
+
 def ground_abilities(
-    meaning: Meaning,
+    meaning: Meaning, before: GroundBefore | None = None
 ) -> tuple[dict[str, Ability], tuple[Effect, ...], dict[str, tuple[str, ...]]]:
     """All abilities by name, what is expected of the devices, and by ability the names of its part of that.
 
-    A reaction that is said once for each value of a parameter it does not depend on is one reaction.
+    A reaction that is said once for each value of a parameter it does not depend on is one reaction. What was ground
+    `before` and means the same is not ground again.
     """
     abilities: dict[str, Ability] = {}
     effects: dict[tuple[object, ...], Effect] = {}
     reactions: dict[str, tuple[str, ...]] = {}
-    for resource, name, document, binding in meaning.declarations.abilities():
-        scope = meaning.scope(binding, f"{instance_name(f'{resource}.{name}', binding)}.", f"{resource}.")
-        ability = _ability(meaning, resource, name, document, binding, scope)
-        abilities[ability.name] = ability
-        _note_places(meaning, ability.name, name, document)
-        for effect_name, effect_document in document.effects.items():
-            effect = _effect(meaning, f"{ability.name}.{effect_name}", resource, effect_document, scope)
-            written = (resource, str(name), str(effect_name))
-            shared = effects.setdefault((written, effect.guard, effect.actions), effect)
-            if shared is effect:
-                meaning.declarations.places[effect.name] = effect_name.place
-            reactions[ability.name] = (*reactions.get(ability.name, ()), shared.name)
+    declarations, places = meaning.declarations, meaning.declarations.places
+    before = before or GroundBefore()
+    before.begin(declarations)
+    for resource, name, document in declarations.written_abilities():
+        make = partial(_ground, declarations, resource, name, document)
+        for each in before.ground(resource, name, document, make):
+            ability = each.ability
+            abilities[ability.name] = ability
+            places |= each.places
+            meaning.take(each.findings, each.activities)
+            for key, effect, place in each.effects:
+                shared = effects.setdefault(key, effect)
+                if shared is effect:
+                    places[effect.name] = place
+                reactions[ability.name] = (*reactions.get(ability.name, ()), shared.name)
+    before.end()
     return abilities, tuple(effects.values()), reactions
+
+
+def _ground(
+    declarations: Declarations, resource: str, name: SourceText, document: AbilityDocument
+) -> list[GroundAbility]:
+    return [
+        _instance(declarations, resource, name, document, binding)
+        for binding in declarations.bindings(document.parameters)
+    ]
+
+
+def _instance(
+    declarations: Declarations, resource: str, name: SourceText, document: AbilityDocument, binding: Binding
+) -> GroundAbility:
+    findings = Findings()
+    meaning = Meaning(declarations, findings)
+    scope = meaning.scope(binding, f"{instance_name(f'{resource}.{name}', binding)}.", f"{resource}.")
+    ability = _ability(meaning, resource, name, document, binding, scope)
+    effects: list[tuple[tuple[object, ...], Effect, Place]] = []
+    for effect_name, effect_document in document.effects.items():
+        effect = _effect(meaning, f"{ability.name}.{effect_name}", resource, effect_document, scope)
+        written = (resource, str(name), str(effect_name))
+        effects.append(((written, effect.guard, effect.actions), effect, effect_name.place))
+    places = _places(ability.name, name, document)
+    return GroundAbility(ability, places, tuple(effects), tuple(findings.all), tuple(meaning.activities))
 
 
 def _ability(
@@ -111,7 +193,7 @@ def observable_condition(meaning: Meaning, text: Predicate, scope: Scope) -> Exp
     return guard
 
 
-def _note_places(meaning: Meaning, ability: str, name: SourceText, document: AbilityDocument) -> None:
+def _places(ability: str, name: SourceText, document: AbilityDocument) -> dict[str, Place]:
     """Where the ability and its parts were written; a part that is left out stands where the ability does."""
     finish = document.finish
     parts = {
@@ -119,10 +201,7 @@ def _note_places(meaning: Meaning, ability: str, name: SourceText, document: Abi
         "start": document.start.when,
         "finish": True if finish is None else finish.when,
     }
-    places = meaning.declarations.places
-    places[ability] = name.place
-    for part, text in parts.items():
-        places[f"{ability}.{part}"] = _place(text, name.place)
+    return {ability: name.place, **{f"{ability}.{part}": _place(text, name.place) for part, text in parts.items()}}
 
 
 def _place(text: object, otherwise: Place) -> Place:

@@ -54,12 +54,26 @@ class Declarations:
             other.types = types
         return other
 
-    def abilities(self) -> Iterator[tuple[str, SourceText, AbilityDocument, Binding]]:
-        """Each ground ability: its resource, its name as written, its document, and the values of its parameters."""
+    def all(self) -> tuple[object, ...]:
+        """All that a text can mean something by, in order: where two of these are equal, each text means the same."""
+        return (
+            list(self.types.items()),
+            list(self.variables.items()),
+            list(self.enumerations.items()),
+            frozenset(self.broken),
+        )
+
+    def written_abilities(self) -> Iterator[tuple[str, SourceText, AbilityDocument]]:
+        """Each ability as it is written: its resource, its name and its document."""
         for resource, document in self._station.resources.items():
             for name, ability in document.abilities.items():
-                for binding in self.bindings(ability.parameters):
-                    yield resource, name, ability, binding
+                yield resource, name, ability
+
+    def abilities(self) -> Iterator[tuple[str, SourceText, AbilityDocument, Binding]]:
+        """Each ground ability: its resource, its name as written, its document, and the values of its parameters."""
+        for resource, name, ability in self.written_abilities():
+            for binding in self.bindings(ability.parameters):
+                yield resource, name, ability, binding
 
     def bindings(self, parameters: Parameters) -> list[Binding]:
         """Every choice of values for `parameters`; one empty choice when there are none, none for an unknown type."""

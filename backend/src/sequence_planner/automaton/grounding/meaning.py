@@ -23,7 +23,7 @@ from sequence_planner.expressions.syntax import (
 )
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.model.documents import Predicate
-from sequence_planner.model.source import SourceText
+from sequence_planner.model.source import Finding, SourceText
 
 _KINDS = {
     Kind.MEASURED: "a measured variable",
@@ -101,6 +101,11 @@ class Meaning:
     def activities(self) -> dict[str, VariableDeclaration]:
         """The activities of operations that some text reads."""
         return {name: VariableDeclaration(name, BOOLEAN, Kind.ACTIVITY, False, None) for name in self._activities}
+
+    def take(self, findings: Iterable[Finding], activities: Iterable[str]) -> None:
+        """Take over what was noted of a part that was read by itself."""
+        self.findings.all.extend(findings)
+        self._activities |= dict.fromkeys(activities)
 
     def _condition(self, text: Predicate, scope: Scope, read: Callable[[SourceText], Expression]) -> Expression:
         if not isinstance(text, SourceText):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sequence_planner.automaton.dependencies import ordered_flags
-from sequence_planner.automaton.grounding.abilities import ground_abilities
+from sequence_planner.automaton.grounding.abilities import GroundBefore, ground_abilities
 from sequence_planner.automaton.grounding.declarations import FLAGS, Declarations
 from sequence_planner.automaton.grounding.findings import Findings
 from sequence_planner.automaton.grounding.meaning import Meaning
@@ -14,12 +14,15 @@ from sequence_planner.model.loading import Station
 from sequence_planner.model.source import Finding, ModelError, SourceText
 
 
-def ground(station: Station) -> Automaton:
-    """The automaton that `station` means. Raises `ModelError` with all findings."""
+def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
+    """The automaton that `station` means; what was ground `before` and means the same is not ground again.
+
+    Raises `ModelError` with all findings.
+    """
     findings = Findings()
     declarations = Declarations(station, findings)
     meaning = Meaning(declarations, findings)
-    abilities, effects, reactions = ground_abilities(meaning)
+    abilities, effects, reactions = ground_abilities(meaning, before)
     operations = ground_operations(meaning, station.operations)
     specifications = ground_specifications(meaning, station.specifications, station.resources)
     work_masters = ground_work_masters(meaning, station.work_masters, operations)

@@ -26,7 +26,8 @@ class Hover:
     """What stands from `start` to `end` of a text.
 
     `names` are the full names it has for the choices of the parameters, and `pattern` is all of them at once, with the
-    parameters as they are written. `place` is where it is declared, within the station.
+    parameters as they are written. `place` is where it is declared, within the station; `part` is the id by which it is
+    looked for there, but for a parameter.
     """
 
     start: int
@@ -40,6 +41,7 @@ class Hover:
     resource: str | None = None
     title: str | None = None
     place: Place | None = None
+    part: str | None = None
 
 
 def hover(lexicon: Lexicon, field: Field, text: str, offset: int) -> Hover | None:
@@ -88,7 +90,7 @@ class _Hovering:
                 family = self._lexicon.family.get(f"{OPERATION}.{word}.active")
                 return None if family is None else Hover(
                     span.start, span.end, word, NameKind.OPERATION, word, (word,), title=family.title,
-                    place=self._lexicon.within(family.place),
+                    place=self._lexicon.within(family.place), part=f"operation:{word}",
                 )  # fmt: skip
             case FieldKind.ABILITY:
                 return self._ability(span)
@@ -119,7 +121,10 @@ class _Hovering:
             declared = self._lexicon.declarations.enumerations[name]
             if word in declared.values and (type_ is None or type_ == declared):
                 place = self._lexicon.within(values[declared.values.index(word)].place)
-                return Hover(span.start, span.end, word, NameKind.VALUE, word, type=declared, title=name, place=place)
+                return Hover(
+                    span.start, span.end, word, NameKind.VALUE, word, type=declared, title=name, place=place,
+                    part=f"value:{name}.{word}",
+                )  # fmt: skip
         if type_ is not None and not isinstance(type_, EnumerationType) and contains(type_, _read(word)):
             return Hover(span.start, span.end, word, NameKind.VALUE, word, type=type_)
         return None
@@ -129,7 +134,10 @@ class _Hovering:
             if name == word:
                 type_ = self._lexicon.declarations.enumerations[word]
                 place = self._lexicon.within(name.place)
-                return Hover(span.start, span.end, word, NameKind.ENUMERATION, word, type=type_, place=place)
+                return Hover(
+                    span.start, span.end, word, NameKind.ENUMERATION, word, type=type_, place=place,
+                    part=f"enumeration:{word}",
+                )  # fmt: skip
         return None
 
     def _ability(self, span: Span) -> Hover | None:
@@ -146,6 +154,7 @@ class _Hovering:
                     span.start, span.end, str(name), NameKind.ABILITY, str(name), tuple(meant[:_MOST_NAMES]),
                     resource=family.owner, title=family.title,
                     place=self._lexicon.within(self._lexicon.declarations.places[family.name]),
+                    part=f"ability:{family.name}",
                 )  # fmt: skip
         return None
 
@@ -173,11 +182,20 @@ class _Hovering:
             return Hover(span.start, span.end, word, kind, pattern, full[:_MOST_NAMES], BOOLEAN) if known else None
         return Hover(
             span.start, span.end, word, family.kind, pattern, full[:_MOST_NAMES], family.type, family.initial,
-            family.owner, family.title, self._lexicon.within(family.place),
+            family.owner, family.title, self._lexicon.within(family.place), _part(family),
         )  # fmt: skip
 
     def _scopes(self) -> list[Scope]:
         return list(self._field.scopes(self._lexicon.meaning(self._field))) or [self._sight.scope]
+
+
+def _part(family: Family) -> str:
+    match family.kind:
+        case NameKind.FLAG:
+            return f"ability:{family.name}"
+        case NameKind.ACTIVITY:
+            return f"operation:{family.name.removeprefix(f'{OPERATION}.')}"
+    return f"variable:{family.name}"
 
 
 def _read(word: str) -> Value:

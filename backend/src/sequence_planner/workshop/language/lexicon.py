@@ -45,7 +45,7 @@ class Lexicon:
     @cached_property
     def station(self) -> Station:
         """The draft with the variables that follow from its message types, as far as these are known."""
-        registry = _messages(self._written) if self._registry is None else self._registry
+        registry = messages_of(self._written) if self._registry is None else self._registry
         return variables_inferred(self._written, registry)[0]
 
     @cached_property
@@ -122,8 +122,9 @@ class Lexicon:
         return types | dict.fromkeys(new, BOOLEAN) if new else types
 
 
-def _messages(station: Station) -> MessageRegistry:
+def messages_of(station: Station) -> MessageRegistry:
+    """The message types of a draft; the standard ones alone where a definition of its own is wrong."""
     try:
         return load_messages(station)
-    except ModelError:  # a definition of the draft is wrong: the standard ones still count
+    except ModelError:
         return MessageRegistry.from_folder(None)

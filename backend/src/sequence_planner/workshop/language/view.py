@@ -40,6 +40,7 @@ def hover_view(hover: Hover) -> HoverView:
         initial=hover.initial,
         resource=hover.resource,
         title=hover.title,
+        part=hover.part,
         declared=place and DeclarationView(file=place.file, line=place.line, column=place.column),
     )
 

@@ -6,7 +6,7 @@ from sequence_planner.expressions.types import IntegerRange
 from sequence_planner.pipelines.paths import NoFieldError, find_field
 from sequence_planner.workshop.references.declared import Variable
 from sequence_planner.workshop.references.fields import SINGLE, Pipeline
-from sequence_planner.workshop.references.occurrences import Binding
+from sequence_planner.workshop.references.occurrences import Binding, Unwritten, Where
 from sequence_planner.workshop.references.parts import variable_of
 from sequence_planner.workshop.references.record import Field
 from sequence_planner.workshop.references.stages import Stages, given_by
@@ -27,13 +27,17 @@ def bind(stages: Stages, pipeline: Pipeline, file: str) -> None:
             where = f"of the messages of {pipeline.called}"
             gathered = names.naming.gathered
             if pipeline.fields is None:
-                gathered.tie(part, f"{part} may be a field {where}, whose definition is not known")
+                why = f"{part} may be a field {where}, whose definition is not known"
+                gathered.tie(part, why)
             elif _is_of_constants(name, enumeration, pipeline):
-                gathered.tie(part, f"the field `{name}` {where} says the values of {part} by numbers of their names")
+                why = f"the field `{name}` {where} says the values of {part} by numbers of their names"
+                gathered.tie(part, why)
             else:
                 why = f"{part} would be the field `{name}` {where}"
                 binding = Binding(file, pipeline.path, pipeline.incoming, name, why)
                 gathered.bindings.setdefault(part, []).append(binding)
+            entry_of = Where(file, pipeline.path, f"{pipeline.kind} {pipeline.path[1]}", 2)
+            gathered.unwritten.append(Unwritten(part, entry_of, pipeline.incoming, why))
             stages.tie(enumeration, f"the field `{name}` {where} says the values of {part} by their names")
             if pipeline.incoming:
                 names.fields.setdefault(name, Field(part, enumeration))

@@ -19,6 +19,7 @@ from sequence_planner.workshop.references.texts import (
     Content,
     entry,
     items,
+    message_of,
     pairs,
     text_at,
 )
@@ -54,6 +55,7 @@ class Declared:
         self.abilities: dict[str, Parameters] = {}
         self.operations: dict[str, Parameters] = {}
         self.parts: list[Part] = []
+        self.sent: set[str] = set()  # topics on which the station speaks
         station = content.get(STATION)
         for name, values in pairs(entry(station, "enumerations")):
             self.enumerations[str(name)] = tuple(str(value) for value in items(values) if isinstance(value, SourceText))
@@ -63,6 +65,7 @@ class Declared:
         for resource, found in self.resources.items():
             self._read_resource(resource, found)
         self._read_others(content)
+        self.parts += [Part("message", None, name) for name in map(message_of, content.definitions) if name]
         has_actions = any(pairs(entry(found, "actions")) for found in self.resources.values())
         if has_actions:
             self.enumerations.setdefault(GOAL_STATE, tuple(map(str, GoalState)))
@@ -101,6 +104,7 @@ class Declared:
             self._note(part, self.abilities[part.full], part.full)
             self.parts += [Part("effect", part.full, str(each)) for each, _ in pairs(entry(document, "effects"))]
         self.parts += [Part("flow", resource, str(flow)) for flow, _ in pairs(entry(found, "flows"))]
+        self.sent |= {str(each) for each, topic in pairs(entry(found, "topics")) if entry(topic, "direction") == "out"}
         for kind in ("topic", "service", "action"):
             self.parts += [Part(kind, None, str(each)) for each, _ in pairs(entry(found, f"{kind}s"))]
         for own, variable in inferred(found, self.messages).items():

@@ -65,7 +65,7 @@ class _Reading:
     def assignment(self, action: Assignment) -> None:
         """What it writes, what that becomes, and when."""
         assert isinstance(action.target, Name)
-        expected = self._name(action.target, None)
+        expected = self._name(action.target, None, writes=True)
         found = self.read(action.value, expected)
         self._naming.link(expected, found)
         if action.condition is not None:
@@ -91,7 +91,7 @@ class _Reading:
         enumeration = self.read(first)
         self._naming.link(enumeration, self.read(second, enumeration))
 
-    def _name(self, name: Name, expected: str | None) -> str | None:
+    def _name(self, name: Name, expected: str | None, *, writes: bool = False) -> str | None:
         word, around = str(name), self._where.around
         named = self._naming.find(name, around)
         is_value = expected is not None and name.is_word and self._naming.has(expected, word)
@@ -105,7 +105,7 @@ class _Reading:
             steps = steps_of(name, self._text)
             named = named or self._naming.implied(steps, around)
             if named is not None:
-                self._naming.note(named, steps, self._where, self._text)
+                self._naming.note(named, steps, self._where, self._text, writes=writes)
         return None if named is None else named.enumeration
 
     def _is_value_first(self, left: Expression, right: Expression) -> bool:

@@ -12,7 +12,7 @@ from sequence_planner.model.source import Finding
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.workshop.references.occurrences import Gathered, Occurrence
 from sequence_planner.workshop.references.parts import Part, belongs_to
-from sequence_planner.workshop.references.texts import Content, file_of
+from sequence_planner.workshop.references.texts import Content
 from sequence_planner.workshop.references.walking import gather
 
 
@@ -36,11 +36,15 @@ class Usage:
 
 @dataclass(frozen=True)
 class Usages:
-    """What was found, in the order of the files, and in each from above. `skipped` are files that cannot be read as
-    YAML, `unread` texts that make no sense and hold the name, and `bound` says why the name is not the model's alone.
+    """What was found, in the order of the files, and in each from above.
+
+    `unwritten` are entries that use it though no text in them names it, such as a topic whose message has a field of
+    that name: each at the place of its own name. `skipped` are files that cannot be read as YAML, `unread` texts that
+    make no sense and hold the name, and `bound` says why the name is not the model's alone.
     """
 
     found: tuple[Usage, ...]
+    unwritten: tuple[Usage, ...] = ()
     skipped: tuple[Finding, ...] = ()
     unread: tuple[Finding, ...] = ()
     bound: str | None = None
@@ -111,17 +115,28 @@ def _answer(content: Content, gathered: Gathered, part: Part, found: Iterable[Oc
         for where, text in gathered.unread
         if part.name in text
     ]
+    homes = homes_of(gathered)
+    unwritten = {
+        Usage(part, home.file, home.path, home.line, home.column, 0, "", each.where.said, False)
+        for each in gathered.unwritten
+        if each.part == part and (home := homes.get((each.where.file, each.where.path[: each.where.depth])))
+    }
     unique = {(each.file, each.line, each.column, each.part): each for each in reversed(list(map(usage_of, found)))}
     ordered = sorted(unique.values(), key=lambda each: (each.file, each.line, each.column, each.part.id))
-    return Usages(tuple(ordered), tuple(content.skipped), tuple(unread), gathered.ties.get(part))
+    beside = tuple(sorted(unwritten, key=lambda each: (each.file, each.line, each.column, each.used_by)))
+    return Usages(tuple(ordered), beside, tuple(content.skipped), tuple(unread), gathered.ties.get(part))
+
+
+def homes_of(gathered: Gathered) -> dict[tuple[str, EntryPath], Usage]:
+    """Where entries of files are declared, by file and path."""
+    return {(each.where.file, each.where.path): usage_of(each) for each in gathered.occurrences if each.declares}
 
 
 def usage_of(found: Occurrence) -> Usage:
     """A place as people see it."""
     where, span = found.where, found.span
     if found.text is None:
-        name = found.part.name
-        return Usage(found.part, file_of(name), (), 1, 1, 0, name, where.said, found.declares)
+        return Usage(found.part, where.file, (), 1, 1, 0, found.part.name, where.said, found.declares)
     place = found.text.at(span)
     written = found.text[span.start : span.end]
     length = span.end - span.start

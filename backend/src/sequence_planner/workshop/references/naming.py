@@ -100,11 +100,14 @@ class Naming:
             return Named({0: Part("ability", around.resource, names[0])})
         return None
 
-    def note(self, named: Named, steps: tuple[Step, ...], where: Where, text: SourceText) -> None:
-        """Note that a name at some place names these parts."""
+    def note(
+        self, named: Named, steps: tuple[Step, ...], where: Where, text: SourceText, *, writes: bool = False
+    ) -> None:
+        """Note that a name at some place names these parts, or with `writes` gives the last of them a value."""
         whole = Span(steps[0].word.span.start, (steps[-1].arguments or (steps[-1].word,))[-1].span.end)
         for index, part in named.parts.items():
-            self.gathered.add(part, where, text, steps[index].word.span, whole=whole)
+            is_written = writes and index == max(named.parts)
+            self.gathered.add(part, where, text, steps[index].word.span, whole=whole, writes=is_written)
         if named.arguments is not None:
             index, parameters = named.arguments
             self.note_arguments(steps[index].arguments, parameters, where, text, whole)

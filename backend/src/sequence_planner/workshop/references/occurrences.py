@@ -57,9 +57,10 @@ def _plain(step: str | int) -> str | int:
 
 @dataclass(frozen=True, slots=True)
 class Occurrence:
-    """A part named at `span` of a text, within the name at `whole`. `fixed` says why it cannot be written otherwise.
+    """A part named at `span` of a text, within the name at `whole`. `fixed` says why it cannot be written otherwise,
+    and `writes` holds where a variable is given a value.
 
-    The text of a resource's declaration is the name of its file, so there is none.
+    The text of the declaration of a resource or of a type of message is the name of its file, so there is none.
     """
 
     part: Part
@@ -69,6 +70,16 @@ class Occurrence:
     whole: Span
     declares: bool = False
     fixed: str | None = None
+    writes: bool = False
+
+
+class Unwritten(NamedTuple):
+    """A variable that an entry gives a value, or else reads, though no text there names it; `why` says how that is."""
+
+    part: Part
+    where: Where
+    writes: bool
+    why: str
 
 
 class Binding(NamedTuple):
@@ -87,8 +98,8 @@ class Gathered:
 
     `links` are pairs of values that are one because variables of their enumerations are compared. `ties` are parts
     whose names are not the model's alone, each with why; `bindings` are variables for which a stage could say what
-    their names do. `hidden` are pairs of parts of which one stands in the way of
-    the other. `unread` are texts that make no sense, so that some names in them may be missed.
+    their names do. `hidden` are pairs of parts of which one stands in the way of the other. `unwritten` are uses
+    without a text that names what is used. `unread` are texts that make no sense, so that names in them may be missed.
     """
 
     occurrences: list[Occurrence] = field(default_factory=list)
@@ -96,6 +107,7 @@ class Gathered:
     ties: dict[Part, str] = field(default_factory=dict)
     bindings: dict[Part, list[Binding]] = field(default_factory=dict)
     hidden: set[tuple[Part, Part]] = field(default_factory=set)
+    unwritten: list[Unwritten] = field(default_factory=list)
     unread: list[tuple[Where, SourceText]] = field(default_factory=list)
 
     def add(
@@ -108,10 +120,11 @@ class Gathered:
         whole: Span | None = None,
         declares: bool = False,
         fixed: str | None = None,
+        writes: bool = False,
     ) -> None:
         """Note that `text` names a part at `span`, or as a whole."""
         span = Span(0, len(text)) if span is None else span
-        self.occurrences.append(Occurrence(part, where, text, span, whole or span, declares, fixed))
+        self.occurrences.append(Occurrence(part, where, text, span, whole or span, declares, fixed, writes))
 
     def tie(self, part: Part, why: str) -> None:
         """Note that the name of a part is not the model's alone."""

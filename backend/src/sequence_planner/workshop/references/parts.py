@@ -23,9 +23,10 @@ KINDS: Mapping[str, str] = {
     "flow": "the flow",
     "service": "the service",
     "action": "the action",
+    "message": "the type of message",
 }
 # Kinds whose names are those of ROS 2, and known in the whole station.
-ROS_KINDS = frozenset({"topic", "service", "action"})
+ROS_KINDS = frozenset({"topic", "service", "action", "message"})
 _OF_RESOURCE = frozenset({"variable", "ability", "flow"})
 _WITHIN = frozenset({"effect", "parameter"})
 

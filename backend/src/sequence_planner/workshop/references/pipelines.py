@@ -9,7 +9,7 @@ from sequence_planner.workshop.references.binding import bind
 from sequence_planner.workshop.references.examples import read_examples
 from sequence_planner.workshop.references.fields import pipelines
 from sequence_planner.workshop.references.naming import Naming
-from sequence_planner.workshop.references.occurrences import Where
+from sequence_planner.workshop.references.occurrences import Unwritten, Where
 from sequence_planner.workshop.references.parts import Part, value_of, variable_of
 from sequence_planner.workshop.references.record import Field, Fields, Names
 from sequence_planner.workshop.references.stages import Stages, given_by, kinds_of
@@ -47,10 +47,13 @@ class Pipelines:
             self._flow(full)
 
     def _client(self, resource: str, document: object, where: Where) -> None:
-        """The variables that call a service or an action, and say what has become of a goal."""
+        """The type of what is sent, and the variables that call a service or an action or say what became of a goal."""
+        if (type_ := text_at(document, "type")) is not None:
+            self._naming.gathered.add(Part("message", None, str(type_)), where.to("type"), type_)
         for key in ("when", "status"):
             if (text := text_at(document, key)) is not None:
-                self._naming.gathered.add(variable_of(resource, str(text)), where.to(key), text)
+                part, is_status = variable_of(resource, str(text)), key == "status"
+                self._naming.gathered.add(part, where.to(key), text, writes=is_status)
         if (status := text_at(document, "status")) is not None:
             enumeration = self._naming.declared.enumeration(resource, str(status))
             for value in self._naming.declared.enumerations.get(enumeration or "", ()):
@@ -95,7 +98,7 @@ class Pipelines:
                     fields |= self._source(resource, source, at.to(index))
             case _:
                 fields |= self._source(resource, written, at)
-        self._pass_through(resource, fields)
+        self._pass_through(resource, fields, where)
         before = dict(fields)
         pipeline = entry(flow, "pipeline")
         kinds = kinds_of(pipeline, self._naming.declared, resource)
@@ -105,7 +108,7 @@ class Pipelines:
         read_examples(names, before, entry(flow, "examples"), where.to("examples"))
         return names.fields
 
-    def _pass_through(self, resource: str, fields: Fields) -> None:
+    def _pass_through(self, resource: str, fields: Fields, where: Where) -> None:
         """A variable of another resource that becomes one of this resource because both bear the same name."""
         for name, field in fields.items():
             part = variable_of(resource, name)
@@ -115,6 +118,7 @@ class Pipelines:
             why = f"{part} and {field.part} are one in a flow because their names are the same"
             for each in (part, field.part):
                 self._naming.gathered.tie(each, why)
+                self._naming.gathered.unwritten.append(Unwritten(each, where, each == part, why))
             self._naming.link(self._naming.declared.enumeration(resource, name), field.enumeration)
 
     def _source(self, resource: str, written: object, where: Where) -> Fields:

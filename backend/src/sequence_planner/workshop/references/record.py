@@ -88,7 +88,7 @@ class Names:
         enumeration = self.naming.declared.enumeration(self.resource, match[0])
         if part.full not in self.naming.declared.variables:
             enumeration = self._kinds.get(match[0])
-        self.naming.gathered.add(part, where, text, Span(0, match.end()), fixed=fixed)
+        self.naming.gathered.add(part, where, text, Span(0, match.end()), fixed=fixed, writes=True)
         self._arguments(part, text, match.end(), where)
         self.fields[match[0]] = Field(part, enumeration)
         return enumeration

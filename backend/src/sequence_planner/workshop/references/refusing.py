@@ -22,6 +22,8 @@ _SHARING = ("variable", "ability")  # of a resource, which have no names in comm
 
 def require_name(part: Part, name: str) -> None:
     """Raises `EditError` for what is no name of such a part."""
+    if part.kind == "message":
+        raise EditError(f"{part} is known to all nodes by this name, which is a part of what ROS 2 compares: keep it")
     if part.kind in ROS_KINDS:
         try:
             check_topic(name)

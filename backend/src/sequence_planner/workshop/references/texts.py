@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
 
@@ -14,13 +15,18 @@ SPECIFICATIONS = "specifications.yaml"
 WORK_MASTERS = "work_masters.yaml"
 _RESOURCES = "resources/"
 _YAML = ".yaml"
+_DEFINITION = re.compile(r"messages/(\w+/(msg|srv|action)/\w+)\.\2")
 
 
 class Content(Mapping[str, object]):
-    """What the files of a model hold, by their paths. `skipped` says why a file could not be read as YAML."""
+    """What the files of a model hold, by their paths. `skipped` says why a file could not be read as YAML.
+
+    `definitions` are those of types of messages, by their files.
+    """
 
     def __init__(self, files: Mapping[str, str]) -> None:
         self.texts = {file: text for file, text in files.items() if _is_read(file)}
+        self.definitions = {file: text for file, text in files.items() if message_of(file) is not None}
         self.skipped: list[Finding] = []
         self._read: dict[str, object] = {}
         for file, text in sorted(self.texts.items()):
@@ -54,6 +60,12 @@ def resource_of(file: str) -> str | None:
 def file_of(resource: str) -> str:
     """The file that describes a resource."""
     return f"{_RESOURCES}{resource}{_YAML}"
+
+
+def message_of(file: str) -> str | None:
+    """The type of message that a file defines, such as `cell_msgs/msg/State`, or nothing for other files."""
+    found = _DEFINITION.fullmatch(file)
+    return None if found is None else found[1]
 
 
 def _is_read(file: str) -> bool:

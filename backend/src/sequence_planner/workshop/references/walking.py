@@ -9,6 +9,7 @@ from sequence_planner.expressions.syntax import ExpressionError, Name, Span
 from sequence_planner.model.source import SourceText
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.workshop.references.declared import SECTIONS, Declared, parameters
+from sequence_planner.workshop.references.definitions import read_definitions
 from sequence_planner.workshop.references.expressions import Expressions
 from sequence_planner.workshop.references.naming import Naming, steps_of
 from sequence_planner.workshop.references.occurrences import Gathered, Occurrence, Surroundings, Where
@@ -44,6 +45,7 @@ def gather(content: Content, messages: MessageRegistry | None, word: str | None 
     walk.operations(content.get(OPERATIONS))
     walk.specifications(content.get(SPECIFICATIONS))
     walk.work_masters(content.get(WORK_MASTERS))
+    read_definitions(content, gathered)
     return declared, gathered
 
 

@@ -106,7 +106,13 @@ export const check = {
 		changed: 'changed',
 		shown: 'Variables shown',
 		some: 'those that change on the way',
-		all: 'all'
+		all: 'all',
+		ability: {
+			title: 'An ability in this step',
+			which: 'Ability',
+			is: (title: string, phase: string): string => `${title}: ${phase}`,
+			asking: 'The ability is looked at in each step …'
+		}
 	},
 
 	supervisor: 'What the supervisor adds',

@@ -249,7 +249,8 @@ export const model = {
 		type: (type: string): string => `Type: ${type}`,
 		initial: (value: string): string => `First value: ${value}`,
 		now: (value: string): string => `Now: ${value}`,
-		declared: (file: string, line: number): string => `Declared in ${file}, line ${line}`
+		declared: (file: string, line: number): string => `Declared in ${file}, line ${line}`,
+		keys: 'F12: there. Shift+F12: its usages.'
 	},
 	act: {
 		label: 'What can be done with it',

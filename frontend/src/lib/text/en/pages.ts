@@ -9,6 +9,7 @@ export const pages = {
 	pipelines: 'Pipelines',
 	ros: 'ROS',
 	whatIf: 'What if',
+	station: 'Station',
 	check: 'Check',
 	deploy: 'Deploy',
 	ability: 'Ability',

@@ -105,7 +105,13 @@ export const check: Text['check'] = {
 		changed: 'ändrad',
 		shown: 'Variabler som visas',
 		some: 'de som ändras på vägen',
-		all: 'alla'
+		all: 'alla',
+		ability: {
+			title: 'En förmåga i det här steget',
+			which: 'Förmåga',
+			is: (title, phase) => `${title}: ${phase}`,
+			asking: 'Förmågan ses efter i varje steg …'
+		}
 	},
 
 	supervisor: 'Vad övervakaren lägger till',

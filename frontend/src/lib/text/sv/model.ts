@@ -243,7 +243,8 @@ export const model: Text['model'] = {
 		type: (type) => `Typ: ${type}`,
 		initial: (value) => `Första värde: ${value}`,
 		now: (value) => `Nu: ${value}`,
-		declared: (file, line) => `Deklarerad i ${file}, rad ${line}`
+		declared: (file, line) => `Deklarerad i ${file}, rad ${line}`,
+		keys: 'F12: dit. Skift+F12: dess användningar.'
 	},
 	act: {
 		label: 'Vad som kan göras med den',

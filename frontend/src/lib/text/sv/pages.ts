@@ -10,6 +10,7 @@ export const pages: Text['pages'] = {
 	pipelines: 'Pipelines',
 	ros: 'ROS',
 	whatIf: 'Tänk om',
+	station: 'Stationen',
 	check: 'Granskning',
 	deploy: 'Driftsättning',
 	ability: 'Förmåga',

@@ -1,0 +1,20 @@
+/** A sign for each kind of thing on the map, beside its name in words for who does not see it. */
+import type { Kind } from './bands.ts';
+
+export const SIGNS: Readonly<Record<Kind, string>> = {
+	work_master: '≡',
+	operation: '◎',
+	specification: '⊘',
+	station: '⌂',
+	ability: '▶',
+	estimated: '≈',
+	output: '⇤',
+	measured: '⇥',
+	variable: '?',
+	flow: '⑂',
+	topic: '/',
+	service: '?!',
+	action: '»',
+	enumeration: '{}',
+	message: '✉'
+};
