@@ -67,7 +67,8 @@ test('the graph is live; a stage is added where it fits, set right, proven by an
 	const close = dialog(page).getByRole('button', { name: 'Close' });
 	if (await close.isVisible()) await close.click();
 	await steps(page).locator('[data-stage="2"]').click();
-	await field(page, 'except').locator('input').first().fill('home');
+	await field(page, 'except').getByRole('button', { name: /^Add an entry/ }).click();
+	await field(page, 'except').locator('input').nth(1).fill('home');
 	await expect(examples(page).locator('[data-example="at home"]')).toHaveAttribute('data-standing', 'failed');
 	await expect(examples(page).locator('[data-right="false"]').first()).toContainText('home');
 	await page.getByRole('button', { name: /^Undo/ }).click();
