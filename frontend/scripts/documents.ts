@@ -17,6 +17,7 @@ interface Schema {
 	readonly additionalProperties?: Schema | boolean;
 	readonly anyOf?: readonly Schema[];
 	readonly items?: Schema;
+	readonly prefixItems?: readonly Schema[];
 	readonly enum?: readonly (string | number)[];
 	readonly default?: unknown;
 	readonly minimum?: number;
@@ -43,8 +44,22 @@ const isText = (schema: Schema | undefined): boolean => schema?.type === 'string
 const isPredicate = (schema: Schema | undefined): boolean =>
 	schema?.anyOf?.map((each) => each.type).join() === 'string,boolean';
 
+const isScalar = (schema: Schema | undefined): boolean =>
+	schema?.anyOf?.map((each) => each.type).join() === 'string,boolean,integer,number';
+/** A list of numbers, some of which may be missing. */
+const isNumbers = (schema: Schema | undefined): boolean =>
+	schema?.type === 'array' && (schema.items?.type === 'number' || schema.prefixItems !== undefined);
+/** What a definition is called that is written in a way of its own. */
+const refersTo = (schema: Schema | undefined, name: string): boolean => schema?.$ref?.endsWith(`/${name}Document`) ?? false;
+
 function kindOf(schema: Schema): Pick<FieldShape, 'kind' | 'part' | 'choices'> {
 	const within = typeof schema.additionalProperties === 'object' ? schema.additionalProperties : undefined;
+	if (refersTo(within, 'Bounds')) return { kind: 'bounds' };
+	if (refersTo(schema.items, 'TableRow')) return { kind: 'rows' };
+	if (isScalar(schema)) return { kind: 'scalar' };
+	if (schema.type === 'array' && isScalar(schema.items)) return { kind: 'scalars' };
+	if (isScalar(within) || schema.additionalProperties === true) return { kind: 'named' };
+	if (isNumbers(within)) return { kind: 'numbers' };
 	if (schema.$ref !== undefined) return { kind: 'part', part: partName(schema.$ref) };
 	if (schema.enum !== undefined) return { kind: 'choice', choices: schema.enum };
 	if (isPredicate(schema)) return { kind: 'predicate' };
@@ -92,13 +107,28 @@ for (const file of FILES) {
 	const schema = JSON.parse(readFileSync(join(FOLDER, `${file}.schema.json`), 'utf8')) as Schema;
 	if (schema.properties) parts[file] = partOf(schema);
 	for (const [name, each] of Object.entries(schema.$defs ?? {}))
-		if (!/Stage|Example/.test(name)) parts[partName(name)] = partOf(each);
+		if (!/Example/.test(name)) parts[partName(name)] = partOf(each);
 }
-// Only what a form is made of: the stages of pipelines are written as YAML.
-const used = new Set(['station', 'resource', 'operation', 'specification', 'work_master']);
-for (const name of used)
-	for (const field of Object.values(parts[name]?.fields ?? {})) if (field.part !== undefined) used.add(field.part);
-const kept = Object.fromEntries(Object.entries(parts).filter(([name]) => used.has(name)));
+/** These parts and all that are below them. */
+function within(names: readonly string[]): Set<string> {
+	const found = new Set(names);
+	for (const name of found)
+		for (const field of Object.values(parts[name]?.fields ?? {})) if (field.part !== undefined) found.add(field.part);
+	return found;
+}
+// Only what a form is made of. What stages name are fields of messages, which may be paths, and their texts.
+const stages = within(['stage']);
+const used = within(['station', 'resource', 'operation', 'specification', 'work_master', 'stage']);
+const loosened = (field: FieldShape): FieldShape =>
+	field.kind === 'names' ? { ...field, loose: true } : field.kind === 'lists' ? { ...field, kind: 'words' } : field;
+const kept = Object.fromEntries(
+	Object.entries(parts)
+		.filter(([name]) => used.has(name))
+		.map(([name, { about, fields }]) => {
+			const all = Object.entries(fields).map(([key, field]) => [key, stages.has(name) ? loosened(field) : field] as const);
+			return [name, { about, fields: Object.fromEntries(all) }];
+		})
+);
 const text = `${HEAD}${JSON.stringify(kept, null, '\t')};\n`;
 
 if (process.argv.includes('--check')) {

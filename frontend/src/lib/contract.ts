@@ -143,3 +143,24 @@ const MERGED: Record<keyof Schemas['StationRemoval'], true> = {
 
 /** The fields of the document that are maps: a delta merges into them and `removed` names the keys that are gone. */
 export const MAPS = Object.keys(MERGED) as (keyof typeof MERGED)[];
+
+export type DraftPipelines = Schemas['DraftPipelinesView'];
+export type DraftPipeline = Schemas['DraftPipelineView'];
+export type DraftStage = Schemas['DraftStageView'];
+export type DraftEdge = Schemas['DraftEdgeView'];
+export type LiveEdge = Schemas['LiveEdgeView'];
+export type DraftVariable = Schemas['DraftVariableView'];
+export type DraftExample = Schemas['DraftExampleView'];
+export type PipelineFits = Schemas['FitsView'];
+export type StageOffer = Schemas['StageOfferView'];
+export type PipelineTarget = Schemas['TargetView'];
+export type SourceOffer = Schemas['SourceOfferView'];
+export type PipelineRuns = Schemas['RunsView'];
+export type PipelineRun = Schemas['RunView'];
+export type RunStep = Schemas['RunStepView'];
+export type RecordedExample = Schemas['RecordedView'];
+export type TypeOfField = Schemas['TypeView'];
+export type Flows = Schemas['FlowsView'];
+export type EdgeFlow = Schemas['EdgeFlowView'];
+export type FlowsMessage = Schemas['FlowsStreamMessage'];
+export type Attachment = Schemas['AttachmentAnswer'];

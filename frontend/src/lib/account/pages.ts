@@ -35,6 +35,7 @@ export const GROUPS: readonly [Group, ...Group[]] = [
 		pages: [
 			{ address: '/model', title: 'model', role: 'viewer' },
 			{ address: '/station', title: 'station', role: 'viewer' },
+			{ address: '/pipelines', title: 'pipelines', role: 'viewer' },
 			{ address: '/ability', title: 'ability', role: 'viewer' },
 			{ address: '/check', title: 'check', role: 'viewer' },
 			{ address: '/what-if', title: 'whatIf', role: 'engineer' },

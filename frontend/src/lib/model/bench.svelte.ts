@@ -2,6 +2,7 @@
 import { createContext, tick } from 'svelte';
 import type { Draft } from './draft.svelte.ts';
 import { countsOf, foundIn } from './found.ts';
+import type { Spot } from './language.ts';
 import { pathAt, placesOf } from './places.ts';
 import { lookupOf, nodeAt, STATION, treeOf, type Node } from './tree.ts';
 
@@ -17,6 +18,8 @@ export class Bench {
 	readonly #entry: () => string;
 	readonly #may: () => boolean;
 	readonly #look: (entry: string) => void;
+	/** What else can be written in a field than what the files tell. */
+	readonly further: (name: string, spot: Spot) => readonly string[];
 	/** Where the file editor is asked to go, each time anew. */
 	sight = $state.raw<Sight | null>(null);
 	/** The part whose usages are asked for; null for none. */
@@ -29,7 +32,14 @@ export class Bench {
 	);
 	readonly counts = $derived(countsOf(this.found, this.lookup));
 
-	constructor(draft: Draft, entry: () => string, may: () => boolean, look: (entry: string) => void) {
+	constructor(
+		draft: Draft,
+		entry: () => string,
+		may: () => boolean,
+		look: (entry: string) => void,
+		further: (name: string, spot: Spot) => readonly string[] = () => []
+	) {
+		this.further = further;
 		this.draft = draft;
 		this.#entry = entry;
 		this.#may = may;

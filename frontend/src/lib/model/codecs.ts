@@ -1,5 +1,6 @@
 /** How the value of a field is written in a form, and read from it. */
 import { isList, isMapping, type Json } from './content.ts';
+import { isPairs, pairsBad, pairsFit, pairsRead, pairsShown, scalarRead, scalarShown, type Pair } from './pairs.ts';
 import type { FieldKind, FieldShape } from './shape.ts';
 
 /** A value as it is written in a form: a text, two, many, names with what is behind them, or a tick. */
@@ -16,11 +17,15 @@ const isPredicate = (value: Json): boolean => typeof value === 'string' || typeo
 /** Whether a form can show the value; else it is written as YAML. */
 export function fits(kind: FieldKind, value: Json | undefined): boolean {
 	if (value === undefined) return kind !== 'yaml';
+	if (isPairs(kind)) return pairsFit(kind, value);
 	switch (kind) {
 		case 'text':
 		case 'choice':
 		case 'value':
+		case 'scalar':
 			return isScalar(value);
+		case 'scalars':
+			return isList(value) && value.every(isScalar);
 		case 'number':
 			return typeof value === 'number';
 		case 'flag':
@@ -48,7 +53,12 @@ export function fits(kind: FieldKind, value: Json | undefined): boolean {
 
 /** What the form shows of a value that fits. */
 export function shownAs({ kind, otherwise }: FieldShape, value: Json | undefined): Written {
+	if (isPairs(kind)) return pairsShown(kind, value);
 	switch (kind) {
+		case 'scalar':
+			return isScalar(value) ? scalarShown(value) : '';
+		case 'scalars':
+			return isList(value) ? value.map(scalarShown) : [];
 		case 'flag':
 			return value === undefined ? otherwise === true : value === true;
 		case 'interval':
@@ -76,7 +86,14 @@ export function readFrom(shape: FieldShape, written: Written): Json | undefined 
 	const pairs = (): readonly (readonly [string, string])[] => (Array.isArray(written) ? written : []) as [string, string][];
 	const list = (): readonly string[] => (Array.isArray(written) ? written : []) as string[];
 	const empty = required ? '' : undefined;
+	if (isPairs(kind)) return pairs().length === 0 && !required ? undefined : pairsRead(kind, pairs());
 	switch (kind) {
+		case 'scalar':
+			return String(written) === '' ? undefined : scalarRead(String(written));
+		case 'scalars': {
+			const found = list().filter((each) => each.trim() !== '').map(scalarRead);
+			return found.length === 0 && !required ? undefined : found;
+		}
 		case 'flag':
 			return written === otherwise ? undefined : (written as boolean);
 		case 'number':
@@ -128,10 +145,11 @@ export function badValue(shape: FieldShape, written: Written): BadValue | null {
 		const wrong = bad(from) ?? (to?.trim() ? bad(to) : null);
 		return wrong ?? (to?.trim() && number(from) > number(to) ? 'order' : null);
 	}
+	if (isPairs(kind)) return pairsBad(kind, (Array.isArray(written) ? written : []) as readonly Pair[]);
 	if ((kind === 'names' || kind === 'zone') && Array.isArray(written)) {
 		const rows = written as readonly (readonly [string, string])[];
 		if (rows.some(([name, each]) => !name.trim() || !each.trim())) return 'pair';
-		if (rows.some(([name]) => !/^[A-Za-z_]\w*$/.test(name.trim()))) return 'name';
+		if (!shape.loose && rows.some(([name]) => !/^[A-Za-z_]\w*$/.test(name.trim()))) return 'name';
 		return new Set(rows.map(([name]) => name.trim())).size < rows.length ? 'twice' : null;
 	}
 	if (kind === 'text' && shape.required && String(written).trim() === '') return 'required';

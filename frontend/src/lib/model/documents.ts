@@ -257,6 +257,66 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 			}
 		}
 	},
+	"debounce": {
+		"about": "A new value counts when it has been there for some time; until then the old one does.",
+		"fields": {
+			"fields": {
+				"kind": "texts",
+				"help": "The fields, which change together.",
+				"required": true
+			},
+			"seconds": {
+				"kind": "number",
+				"help": "How long it must have been there.",
+				"required": true,
+				"above": 0,
+				"most": 86400
+			}
+		}
+	},
+	"discretise": {
+		"about": "Numbers become the value whose coordinates are within `tolerance` of each, else `otherwise`.",
+		"fields": {
+			"field": {
+				"kind": "text",
+				"help": "An array of numbers in the message, or a single number.",
+				"required": true
+			},
+			"variable": {
+				"kind": "text",
+				"help": "What gets the name of the point.",
+				"required": true
+			},
+			"values": {
+				"kind": "numbers",
+				"help": "The coordinates of each named point.",
+				"required": false
+			},
+			"ranges": {
+				"kind": "numbers",
+				"help": "For a single number: the least and the greatest of each value, `null` where there is no bound.",
+				"required": false
+			},
+			"tolerance": {
+				"kind": "number",
+				"help": "How far from a point each number may be.",
+				"required": false,
+				"above": 0
+			},
+			"otherwise": {
+				"kind": "text",
+				"help": "The value between points or ranges.",
+				"required": false
+			},
+			"hysteresis": {
+				"kind": "number",
+				"help": "How much further than that a number must go for the value to be left again.",
+				"required": false,
+				"otherwise": 0,
+				"least": 0
+			}
+		}
+	},
 	"effect": {
 		"about": "How measured variables are expected to react; `takes` is its shortest and longest time in seconds.",
 		"fields": {
@@ -292,6 +352,18 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 				"help": "It may happen, but nobody counts on it.",
 				"required": false,
 				"otherwise": false
+			}
+		}
+	},
+	"every": {
+		"about": "A period.",
+		"fields": {
+			"every": {
+				"kind": "number",
+				"help": "Seconds between two records.",
+				"required": true,
+				"above": 0,
+				"most": 86400
 			}
 		}
 	},
@@ -345,6 +417,173 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 			}
 		}
 	},
+	"map": {
+		"about": "Each value becomes another.",
+		"fields": {
+			"field": {
+				"kind": "text",
+				"help": "The field of the message.",
+				"required": true
+			},
+			"variable": {
+				"kind": "text",
+				"help": "The variable that corresponds to it.",
+				"required": true
+			},
+			"values": {
+				"kind": "named",
+				"help": "What each value of the message means; for an outgoing topic, what is sent for each value of the variable.",
+				"required": true
+			},
+			"otherwise": {
+				"kind": "scalar",
+				"help": "What all other values become; without it they are unknown.",
+				"required": false
+			}
+		}
+	},
+	"match": {
+		"about": "Texts are recognised: one kind of text makes a truth value, several make an enumeration.",
+		"fields": {
+			"field": {
+				"kind": "text",
+				"help": "A text of the message.",
+				"required": true
+			},
+			"variable": {
+				"kind": "text",
+				"help": "What becomes of it.",
+				"required": true
+			},
+			"contains": {
+				"kind": "text",
+				"help": "True for texts that contain this.",
+				"required": false
+			},
+			"begins": {
+				"kind": "text",
+				"help": "True for texts that begin so.",
+				"required": false
+			},
+			"ends": {
+				"kind": "text",
+				"help": "True for texts that end so.",
+				"required": false
+			},
+			"equals": {
+				"kind": "text",
+				"help": "True for exactly this text.",
+				"required": false
+			},
+			"values": {
+				"kind": "words",
+				"help": "The texts that mean each value.",
+				"required": false
+			},
+			"otherwise": {
+				"kind": "text",
+				"help": "The value of all other texts; without it they are unknown.",
+				"required": false
+			}
+		}
+	},
+	"member": {
+		"about": "Whether a list contains an item.",
+		"fields": {
+			"field": {
+				"kind": "text",
+				"help": "A list of the message.",
+				"required": true
+			},
+			"item": {
+				"kind": "scalar",
+				"help": "What is looked for.",
+				"required": true
+			},
+			"variable": {
+				"kind": "text",
+				"help": "True when it is there.",
+				"required": true
+			}
+		}
+	},
+	"override": {
+		"about": "A person's live values for some fields, within bounds, for a while.",
+		"fields": {
+			"name": {
+				"kind": "text",
+				"help": "What it is called where it is set.",
+				"required": true
+			},
+			"fields": {
+				"kind": "bounds",
+				"help": "The fields, each with the values allowed.",
+				"required": true
+			},
+			"expires": {
+				"kind": "number",
+				"help": "Seconds after which it is gone.",
+				"required": true,
+				"above": 0,
+				"most": 86400
+			}
+		}
+	},
+	"python": {
+		"about": "A function of the station's own, in a file of its folder `stages`.",
+		"fields": {
+			"file": {
+				"kind": "text",
+				"help": "The file, as in `stages/force.py`.",
+				"required": true
+			},
+			"function": {
+				"kind": "text",
+				"help": "The function's name. It is called with the fields it reads, and returns a dict of what it gives.",
+				"required": true
+			},
+			"reads": {
+				"kind": "names",
+				"help": "The fields it is called with, and their types: `bool`, `0..9`, `{a, b}`, `real`, `text`.",
+				"required": true,
+				"loose": true
+			},
+			"gives": {
+				"kind": "names",
+				"help": "What it returns, and the types.",
+				"required": true,
+				"loose": true
+			},
+			"deadline": {
+				"kind": "number",
+				"help": "Seconds within which it answers.",
+				"required": false,
+				"otherwise": 0.05,
+				"above": 0,
+				"most": 60
+			}
+		}
+	},
+	"remember": {
+		"about": "A variable keeps the last value of another, but for the values in `except`.",
+		"fields": {
+			"variable": {
+				"kind": "text",
+				"help": "The variable that keeps the value.",
+				"required": true
+			},
+			"of": {
+				"kind": "text",
+				"help": "The field or variable, of the same pipeline, whose value is kept.",
+				"required": true
+			},
+			"except": {
+				"kind": "texts",
+				"help": "Values that are not kept.",
+				"required": false
+			}
+		}
+	},
 	"service": {
 		"about": "A ROS 2 service of the device. It is called when an output rises, or every so often, or both.",
 		"fields": {
@@ -390,6 +629,115 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 			}
 		}
 	},
+	"stage": {
+		"about": "One stage of a pipeline: exactly one kind. Fields and variables of one name are mapped without being asked.",
+		"fields": {
+			"rename": {
+				"kind": "names",
+				"help": "Which field is which variable, where their names differ: `{field: variable}`.",
+				"required": false,
+				"loose": true
+			},
+			"constant": {
+				"kind": "named",
+				"help": "Fields with a fixed value; for outgoing topics.",
+				"required": false
+			},
+			"expression": {
+				"kind": "named",
+				"help": "Values computed from others: `{name: expression}`.",
+				"required": false
+			},
+			"discretise": {
+				"kind": "part",
+				"part": "discretise",
+				"help": "From numbers to the name of a point; for incoming topics.",
+				"required": false
+			},
+			"undiscretise": {
+				"kind": "part",
+				"part": "undiscretise",
+				"help": "From the name of a point to its numbers; for outgoing topics.",
+				"required": false
+			},
+			"map": {
+				"kind": "part",
+				"part": "map",
+				"help": "From each value to another.",
+				"required": false
+			},
+			"table": {
+				"kind": "part",
+				"part": "table",
+				"help": "From several values to several others, by rows.",
+				"required": false
+			},
+			"match": {
+				"kind": "part",
+				"part": "match",
+				"help": "From texts to truth values or names; for incoming topics.",
+				"required": false
+			},
+			"member": {
+				"kind": "part",
+				"part": "member",
+				"help": "Whether a list contains an item; for incoming topics.",
+				"required": false
+			},
+			"remember": {
+				"kind": "part",
+				"part": "remember",
+				"help": "Keep the last value of another variable; for incoming topics.",
+				"required": false
+			},
+			"filter": {
+				"kind": "predicate",
+				"help": "Only records for which this holds go on.",
+				"required": false
+			},
+			"debounce": {
+				"kind": "part",
+				"part": "debounce",
+				"help": "A new value counts when it has been there for some time; for incoming topics.",
+				"required": false
+			},
+			"limit": {
+				"kind": "part",
+				"part": "every",
+				"help": "At most one record per time, the newest.",
+				"required": false
+			},
+			"tick": {
+				"kind": "part",
+				"part": "every",
+				"help": "The last record again, every so often.",
+				"required": false
+			},
+			"override": {
+				"kind": "part",
+				"part": "override",
+				"help": "A person's live values, within bounds.",
+				"required": false
+			},
+			"fold": {
+				"kind": "texts",
+				"help": "Fields that are unknown keep their last value; an empty list means all.",
+				"required": false
+			},
+			"timeout": {
+				"kind": "part",
+				"part": "timeout",
+				"help": "Fields are unknown when no record has come for some time; for incoming topics.",
+				"required": false
+			},
+			"python": {
+				"kind": "part",
+				"part": "python",
+				"help": "A function of the station's own.",
+				"required": false
+			}
+		}
+	},
 	"start": {
 		"about": "The start of an ability: a further guard beside `enabled`, and the actions.",
 		"fields": {
@@ -403,6 +751,48 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 				"kind": "texts",
 				"help": "Actions on outputs and estimates, such as `wanted := closed`.",
 				"required": false
+			}
+		}
+	},
+	"table": {
+		"about": "The first row that fits says what the variables are.",
+		"fields": {
+			"fields": {
+				"kind": "texts",
+				"help": "What is looked at.",
+				"required": true
+			},
+			"variables": {
+				"kind": "texts",
+				"help": "What it gives.",
+				"required": true
+			},
+			"rows": {
+				"kind": "rows",
+				"help": "The rows, in order.",
+				"required": true
+			},
+			"otherwise": {
+				"kind": "scalars",
+				"help": "What it gives when no row fits; without it the variables are unknown.",
+				"required": false
+			}
+		}
+	},
+	"timeout": {
+		"about": "Fields are unknown when no record has come for some time.",
+		"fields": {
+			"fields": {
+				"kind": "texts",
+				"help": "The fields.",
+				"required": true
+			},
+			"seconds": {
+				"kind": "number",
+				"help": "How long they count.",
+				"required": true,
+				"above": 0,
+				"most": 86400
 			}
 		}
 	},
@@ -509,6 +899,26 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 				"kind": "yaml",
 				"help": "What comes of what, checked by `check`.",
 				"required": false
+			}
+		}
+	},
+	"undiscretise": {
+		"about": "A value becomes its coordinates.",
+		"fields": {
+			"variable": {
+				"kind": "text",
+				"help": "The variable whose value names a point.",
+				"required": true
+			},
+			"field": {
+				"kind": "text",
+				"help": "The array of numbers in the message.",
+				"required": true
+			},
+			"values": {
+				"kind": "numbers",
+				"help": "The coordinates of every value.",
+				"required": true
 			}
 		}
 	},

@@ -1,6 +1,10 @@
 /** What the parts of a model's documents look like: their fields, and of what kind each is. */
 
-/** How a field is written. `part` is one part below its name, `parts` are any number, each below a name of its own. */
+/**
+ * How a field is written. `part` is one part below its name, `parts` are any number, each below a name of its own. Behind
+ * the names of `named` is a scalar each, of `numbers` and `words` a list, of `bounds` what a person may set; `rows` are
+ * those of a table.
+ */
 export type FieldKind =
 	| 'text'
 	| 'number'
@@ -8,6 +12,13 @@ export type FieldKind =
 	| 'choice'
 	| 'interval'
 	| 'value'
+	| 'scalar'
+	| 'scalars'
+	| 'named'
+	| 'numbers'
+	| 'words'
+	| 'bounds'
+	| 'rows'
 	| 'names'
 	| 'texts'
 	| 'lists'
@@ -28,6 +39,8 @@ export interface FieldShape {
 	readonly choices?: readonly (string | number)[];
 	/** What counts where it is left out. */
 	readonly otherwise?: string | number | boolean;
+	/** Its names are fields of messages, or texts, which have more signs than names of a model. */
+	readonly loose?: boolean;
 	/** Only whole numbers. */
 	readonly whole?: boolean;
 	readonly least?: number;

@@ -8,10 +8,11 @@ import { deploy } from './en/deploy.ts';
 import { history } from './en/history.ts';
 import { model } from './en/model.ts';
 import { operate } from './en/operate.ts';
+import { pipelines } from './en/pipelines.ts';
 import { restart } from './en/restart.ts';
 import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
 import { station } from './en/station.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, restart, ros, state, station, whatIf };
+export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, pipelines, restart, ros, state, station, whatIf };

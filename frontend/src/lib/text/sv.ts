@@ -8,6 +8,7 @@ import { deploy } from './sv/deploy.ts';
 import { history } from './sv/history.ts';
 import { model } from './sv/model.ts';
 import { operate } from './sv/operate.ts';
+import { pipelines } from './sv/pipelines.ts';
 import { restart } from './sv/restart.ts';
 import { ros } from './sv/ros.ts';
 import { state } from './sv/state.ts';
@@ -15,4 +16,4 @@ import { station } from './sv/station.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, restart, ros, state, station, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, pipelines, restart, ros, state, station, whatIf };

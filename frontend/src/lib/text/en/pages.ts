@@ -6,6 +6,7 @@ export const pages = {
 	alarms: 'Alarms',
 	history: 'History',
 	model: 'Model',
+	pipelines: 'Pipelines',
 	ros: 'ROS',
 	whatIf: 'What if',
 	station: 'Station',

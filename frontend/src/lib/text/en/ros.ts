@@ -115,6 +115,7 @@ export const ros = {
 	never: 'never',
 	ofDeadline: (age: string, deadline: string): string => `${age}, deadline ${deadline}`,
 	chosen: {
+		pipeline: 'Show its pipeline',
 		topic: (name: string): string => `Topic ${name}`,
 		resource: (title: string): string => `Topics of ${title}`,
 		unknown: (name: string): string => `Nobody on the network, and not the station, knows a topic ${name}.`,

@@ -7,6 +7,7 @@ export const pages: Text['pages'] = {
 	alarms: 'Larm',
 	history: 'Historik',
 	model: 'Modell',
+	pipelines: 'Pipelines',
 	ros: 'ROS',
 	whatIf: 'Tänk om',
 	station: 'Stationen',

@@ -112,6 +112,7 @@ export const ros: Text['ros'] = {
 	never: 'aldrig',
 	ofDeadline: (age, deadline) => `${age}, gräns ${deadline}`,
 	chosen: {
+		pipeline: 'Visa dess pipeline',
 		topic: (name) => `Topic ${name}`,
 		resource: (title) => `Topics för ${title}`,
 		unknown: (name) => `Varken någon på nätet eller stationen känner till en topic ${name}.`,
