@@ -1,4 +1,4 @@
-/** The operator's screens, at the desk, on a tablet and on a wrist, in both themes: `docs/screens`. */
+/** The screens in both themes, those of operators at the desk, on a tablet and on a wrist: `docs/screens`. */
 import type { Page } from '@playwright/test';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
@@ -12,11 +12,14 @@ const SCREENS = [
 	[192, 192]
 ] as const;
 
+/** Where engineers sit. */
+const DESKS = SCREENS.slice(0, 2);
+
 /** Takes pictures of a page as it is now. */
-async function take(page: Page, name: string): Promise<void> {
+async function take(page: Page, name: string, screens: readonly (readonly [number, number])[] = SCREENS): Promise<void> {
 	for (const colorScheme of ['light', 'dark'] as const) {
 		await page.emulateMedia({ colorScheme });
-		for (const [width, height] of SCREENS) {
+		for (const [width, height] of screens) {
 			await page.setViewportSize({ width, height });
 			await page.waitForTimeout(300);
 			await page.screenshot({ path: join(FOLDER, `${name}-${width}-${colorScheme}.png`) });
@@ -73,4 +76,28 @@ test('all screens', async ({ station, operate, watch, browse }) => {
 	await dialog.getByRole('button', { name: 'Show what follows' }).click();
 	await dialog.getByTestId('follows').waitFor();
 	await take(operate, 'correct');
+});
+
+test('the screens of engineers', async ({ operate, watch, browse }) => {
+	await restsOnPerson(operate, watch);
+	for (const [name, address, settled] of [
+		['model', '/model?entry=resources%2Frobot.yaml%23abilities%23move_to_position', '[role="tree"]'],
+		['ability', '/ability?name=robot.move_to_position(home)', '[data-testid="automaton"]'],
+		['pipelines', '/pipelines?of=%2Fur10%2Fstate', '.svelte-flow__node'],
+		['station', '/station?thing=operation%3Aprepare_planning_scene', '[data-tied="near"]'],
+		['check', '/check', '[data-testid="check"][data-verdict="good"]'],
+		['deploy', '/deploy', '[data-testid="draft"][data-verdict="good"]']
+	] as const) {
+		const page = await browse(null, address);
+		await page.locator(settled).first().waitFor({ timeout: 60_000 });
+		await page.waitForTimeout(3000); // what moves until it is laid out
+		await take(page, name, DESKS);
+		await page.close();
+	}
+
+	const page = await browse(null, '/what-if');
+	await page.getByLabel('For how many seconds').fill('30');
+	await page.getByRole('button', { name: 'Simulate' }).click();
+	await page.getByRole('heading', { name: 'What would happen' }).waitFor({ timeout: 60_000 });
+	await take(page, 'what-if', DESKS);
 });

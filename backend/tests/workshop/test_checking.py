@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import multiprocessing
 import os
 import signal
@@ -158,7 +159,7 @@ def test_a_process_that_is_not_waited_for_is_ended(tmp_path: Path, monkeypatch: 
             asked = asyncio.create_task(process.errors(bolts()))
             await asyncio.sleep(seconds)
             asked.cancel()
-            with pytest.raises(asyncio.CancelledError):
+            with contextlib.suppress(asyncio.CancelledError):  # a quick machine has answered by then
                 await asked
             await process.close()
             assert [each for each in multiprocessing.active_children() if each.name == "answering"] == []

@@ -8,9 +8,10 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
+from core.budget import examples
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import ModelError
 from sequence_planner.model.stage_documents import StageDocument
@@ -57,7 +58,7 @@ def wrong(files: dict[str, str]) -> list[str]:
     return []
 
 
-@settings(deadline=None, max_examples=60)
+@examples(60)
 @given(st.sampled_from(EDGES), st.data())
 def test_the_checker_accepts_every_stage_that_fits(at: tuple[str, str, int], data: st.DataObject) -> None:
     name, pipeline, edge = at
@@ -72,7 +73,7 @@ def test_the_checker_accepts_every_stage_that_fits(at: tuple[str, str, int], dat
         assert refused.fits == (refused.reason is None) == bool(refused.edits)
 
 
-@settings(deadline=None, max_examples=60)
+@examples(60)
 @given(st.sampled_from(EDGES), st.data())
 def test_a_field_may_become_exactly_what_the_checker_lets_it(at: tuple[str, str, int], data: st.DataObject) -> None:
     name, pipeline, edge = at
