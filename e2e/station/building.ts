@@ -131,6 +131,6 @@ export class Builder {
 	/** The check of the draft as it is now has come to its end, and has found nothing. */
 	async clean(): Promise<void> {
 		await this.written();
-		await expect(this.problems.getByRole('status')).toContainText('Checked: nothing was found.', { timeout: 60_000 });
+		await expect(this.problems).toContainText('Checked: nothing was found.', { timeout: 60_000 });
 	}
 }

@@ -27,8 +27,13 @@ export class Mouse implements Hand {
 		return what.click({ force: true }); // else it is waited for until it is possible
 	}
 
-	write(field: Locator, text: string): Promise<void> {
-		return field.fill(text);
+	async write(field: Locator, text: string): Promise<void> {
+		if (!(await field.evaluate((element: HTMLElement) => element.isContentEditable))) return field.fill(text);
+		// An editor hears of what is selected by a key at once; else an update of it may come first.
+		await field.click();
+		await this.page.keyboard.press('Control+a');
+		if (text === '') await this.page.keyboard.press('Delete');
+		else await this.page.keyboard.insertText(text);
 	}
 
 	async choose(field: Locator, words: string): Promise<void> {

@@ -34,6 +34,12 @@ export interface Connection {
 	close(): void;
 }
 
+/** One that is closed before it is open would be complained of in the browser's console. */
+function close(socket: WebSocket): void {
+	if (socket.readyState === WebSocket.CONNECTING) socket.onopen = () => socket.close();
+	else socket.close();
+}
+
 /**
  * Connects to `url`, where each message is a `Message` in JSON, and keeps connecting until `close`. After `silent`
  * milliseconds in which nothing was heard it connects anew.
@@ -59,7 +65,7 @@ export function connect<Message = StreamMessage>(
 		const dead = socket;
 		socket = null;
 		if (dead === null) return;
-		dead.close();
+		close(dead);
 		listener.closed(code);
 		if (!ended) retry = setTimeout(open, pause(attempts++, Math.random()));
 	}
