@@ -101,6 +101,7 @@ test('a pipeline is edited by keyboard alone; a viewer sees it all and can edit 
 
 	// A field is connected with what it can become, and not with what it cannot.
 	await steps(page).locator('[data-edge="0"]').press('Enter');
+	await expect(part(page).getByRole('heading', { name: 'Record 1' })).toBeFocused();
 	await part(page).getByRole('button', { name: 'Make something of moving' }).press('Enter');
 	await expect(dialog(page).locator('[data-fits="false"]').first()).toContainText('Not here:');
 	await page.keyboard.press('Escape');
