@@ -3,7 +3,7 @@ import { expect, test } from '../station/test.ts';
 
 test.use({ shared: 'devices that come and go', byItself: false });
 
-test('silent devices make values unknown and name the topics awaited; when they speak again, work goes on', async ({
+test('silent devices make values unknown and name the topics awaited; when they speak again, work goes on @long', async ({
 	station,
 	operate,
 	watch

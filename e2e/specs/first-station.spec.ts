@@ -61,13 +61,13 @@ async function run(builder: Builder, watch: Page, model: string): Promise<void> 
 }
 
 const HANDS: readonly (readonly [title: string, hand: (page: Page) => Hand])[] = [
-	['from an empty station to a tightened bolt', (page) => new Mouse(page)],
-	['from an empty station to a tightened bolt, by keyboard alone @long', (page) => new Keyboard(page)]
+	['with the mouse', (page) => new Mouse(page)],
+	['by keyboard alone', (page) => new Keyboard(page)]
 ];
 
-for (const [title, hand] of HANDS)
-	test(title, async ({ browse, model, complaints }) => {
-		test.setTimeout(title.endsWith('@long') ? 900_000 : 300_000);
+for (const [how, hand] of HANDS)
+	test(`from an empty station to a tightened bolt, ${how} @long`, async ({ browse, model, complaints }) => {
+		test.setTimeout(900_000);
 		const page = await browse(ERIK, '/model');
 		const builder = new Builder(page, hand(page));
 		await build(builder, () => mistakes(builder));
