@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,41 +15,16 @@ from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.link import ControllerLink
 from sequence_planner.control.pipeline_view import RecordView
 from sequence_planner.control.view_part import View
-from sequence_planner.identity.roles import Role
 from sequence_planner.web.settings import Settings
-from workshop.models import BOLTS
 
-from .running import Controller, Loop, Server, free_port, until
+from .running import Controller, Loop, until
 from .test_acting import problem
-from .test_model import change, made, read
+from .test_model import change, eva, made, model, read, server
 
 PIPELINES = "/api/v1/model/pipelines"
 ROBOT = "resources/robot.yaml"
 STATE, COMMAND = "/ur10/state", "/ur10/command"
-PATIENCE = 60.0
-
-
-@pytest.fixture
-def model(tmp_path: Path) -> Path:
-    return shutil.copytree(BOLTS, tmp_path / "model")
-
-
-@pytest.fixture
-def server(loop: Loop, settings: Settings, model: Path) -> Iterator[Server]:
-    server = Server(
-        loop,
-        Settings(**{**vars(settings), "model": model, "port": free_port()}),  # the controller is not there
-    )
-    server.start()
-    yield server
-    server.stop()
-
-
-@pytest.fixture
-def eva(server: Server) -> Iterator[httpx.Client]:
-    with server.client(Role.ENGINEER) as client:
-        client.timeout = httpx.Timeout(PATIENCE)
-        yield client
+__all__ = ["eva", "model", "server"]
 
 
 def graph(client: httpx.Client) -> dict[str, Any]:

@@ -22,7 +22,7 @@ Content = Any
 
 def replace(text: str, path: EntryPath, value: object) -> str:
     """Give the entry at `path` another value. Of lists and dicts only what differs is touched. Raises `EditError`."""
-    old = _at(_content(text), path)
+    old = content_at(_content(text), path)
     if same(old, value):
         return text
     if isinstance(old, dict) and isinstance(value, Mapping) and old and value:
@@ -42,7 +42,7 @@ def insert(
     In a list the last step of `path` is not looked at: the entry gets the index of the place where it is inserted.
     """
     parent = path[:-1]
-    content = _at(_content(text), parent)
+    content = content_at(_content(text), parent)
     if not isinstance(content, dict | list):
         raise EditError(f"`{shown_path(parent)}` holds no entries, so none can be added: replace it")
     if isinstance(content, dict) and path[-1] in content:
@@ -60,17 +60,17 @@ def remove(text: str, path: EntryPath) -> str:
     """Take an entry out, with the comments directly above it. Raises `EditError`."""
     if not path:
         raise EditError("the whole document cannot be removed")
-    _at(_content(text), path)
+    content_at(_content(text), path)
     return _verified(text, splicing.removed(text, path), lambda content: _take(content, path))
 
 
 def rename(text: str, path: EntryPath, name: str) -> str:
     """Give the entry at `path` another name in the same place. Raises `EditError`."""
     content = _content(text)
-    _at(content, path)
+    content_at(content, path)
     if not path or not isinstance(path[-1], str):
         raise EditError("only an entry with a name can be renamed")
-    if name in _at(content, path[:-1]):
+    if name in content_at(content, path[:-1]):
         raise EditError(f"`{shown_path((*path[:-1], name))}` is there already")
     return _verified(text, splicing.renamed(text, path, name), lambda old: _call(old, path, name))
 
@@ -81,8 +81,8 @@ def move(text: str, path: EntryPath, *, before: str | int | None = None, after: 
     It goes to the end, or beside the sibling named; siblings of a list are named by their present index.
     """
     parent = path[:-1]
-    siblings = _at(_content(text), parent)
-    _at(siblings, path[-1:])
+    siblings = content_at(_content(text), parent)
+    content_at(siblings, path[-1:])
     here = path[-1] if isinstance(path[-1], int) else [str(key) for key in siblings].index(path[-1])
     position = _position(siblings, parent, before, after)
     position -= here < position
@@ -95,7 +95,7 @@ def move(text: str, path: EntryPath, *, before: str | int | None = None, after: 
 
 def value_at(text: str, path: EntryPath) -> Content:
     """The value of the entry at `path`, with texts that know nothing of their places. Raises `EditError`."""
-    return _at(plain(_content(text)), path)
+    return content_at(plain(_content(text)), path)
 
 
 def _replace_mapping(text: str, path: EntryPath, old: dict[str, Content], new: Mapping[str, Content]) -> str:
@@ -174,7 +174,7 @@ def plain(content: Content) -> Content:
     return str(content) if isinstance(content, str) else content
 
 
-def _at(content: Content, path: EntryPath) -> Content:
+def content_at(content: Content, path: EntryPath) -> Content:
     """The content at `path`; raises with the way there where it does not exist."""
     for depth, step in enumerate(path):
         is_there = (isinstance(content, dict) and isinstance(step, str) and step in content) or (
@@ -187,17 +187,17 @@ def _at(content: Content, path: EntryPath) -> Content:
 
 
 def _put(content: Content, path: EntryPath, value: object) -> Content:
-    _at(content, path[:-1])[path[-1]] = value
+    content_at(content, path[:-1])[path[-1]] = value
     return content
 
 
 def _take(content: Content, path: EntryPath) -> Content:
-    del _at(content, path[:-1])[path[-1]]
+    del content_at(content, path[:-1])[path[-1]]
     return content
 
 
 def _add(content: Content, parent: EntryPath, position: int, name: str | None, value: object) -> Content:
-    inside = _at(content, parent)
+    inside = content_at(content, parent)
     if name is None:
         inside.insert(position, value)
     else:
@@ -208,7 +208,7 @@ def _add(content: Content, parent: EntryPath, position: int, name: str | None, v
 
 
 def _call(content: Content, path: EntryPath, name: str) -> Content:
-    inside = _at(content, path[:-1])
+    inside = content_at(content, path[:-1])
     pairs = [(name if key == path[-1] else key, value) for key, value in inside.items()]
     inside.clear()
     inside.update(pairs)
@@ -216,7 +216,7 @@ def _call(content: Content, path: EntryPath, name: str) -> Content:
 
 
 def _shift(content: Content, parent: EntryPath, here: int, position: int) -> Content:
-    inside = _at(content, parent)
+    inside = content_at(content, parent)
     entries = list(inside.items()) if isinstance(inside, dict) else list(inside)
     entries.insert(position, entries.pop(here))
     inside.clear()

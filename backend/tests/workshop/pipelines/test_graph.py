@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from sequence_planner.analysis.document import FindingDocument
 from sequence_planner.automaton.grounding.station import ground
+from sequence_planner.model.editing import content_at
 from sequence_planner.model.loading import load_station
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import Finding, ModelError
@@ -207,9 +208,7 @@ def broken(draw: st.DrawFn) -> tuple[dict[str, str], str, str]:
     start = tuple(view.place.path)
     inside = [path for path in document.places if path[:2] == start and len(path) > 2]
     path = draw(st.sampled_from(inside))
-    was: object = document.content
-    for step in path:
-        was = was[step]  # type: ignore[index]
+    was = content_at(document.content, path)
     edit = SetEntry.model_validate({"file": view.place.file, "path": list(path), "was": was, "value": draw(JUNK)})
     try:
         return edited(files, edit), name, view.id

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Literal
 
 from sequence_planner.analysis.document import error_document
@@ -19,8 +19,7 @@ from sequence_planner.pipelines.record import FieldType, ListType, NestedType, R
 from sequence_planner.pipelines.stage import Stage
 from sequence_planner.ros.transport import QualityOfService
 from sequence_planner.workshop.pipelines.locating import Located
-from sequence_planner.workshop.pipelines.pruning import STAGES
-from sequence_planner.workshop.pipelines.reading import Sketch, pipeline_name
+from sequence_planner.workshop.pipelines.reading import Sketch
 from sequence_planner.workshop.pipelines.view import (
     DraftEdgeView,
     DraftEndView,
@@ -37,11 +36,15 @@ from sequence_planner.workshop.pipelines.view import (
     TypeKind,
     TypeView,
 )
-
-_PARTS: Mapping[tuple[str, str], Part] = {("topics", "pipeline"): Part.TOPIC, ("flows", "pipeline"): Part.FLOW}
-_OUT = frozenset({Part.REQUEST, Part.GOAL})
-Role = Literal["incoming", "outgoing", "flow"]
-Joining = Literal["branch", "interleave", "merge"]
+from sequence_planner.workshop.pipelines.written import (
+    Written,
+    at,
+    entries_of,
+    joining_of,
+    sources_of,
+    unique,
+    written_pipelines,
+)
 
 
 class Graph:
@@ -54,7 +57,7 @@ class Graph:
         stages = [finding for chain in built.chains.values() for finding in chain.wrong]
         others = [each for each in (*sketch.findings, *built.findings) if each not in set(stages)]
         self._located = Located(sketch.documents, others)
-        written = {each.id: each for each in _written(sketch)}
+        written = {each.id: each for each in written_pipelines(sketch)}
         self._ids = {each.name: each.id for each in reversed(written.values())}
         found = {id_: self._pipeline(each) for id_, each in written.items()}
         self.pipelines = dict(sorted(found.items(), key=lambda each: self._depth(each[0], found, frozenset())))
@@ -100,7 +103,7 @@ class Graph:
         behind = (each.pipeline for each in found[id_].sources if each.pipeline in found)
         return 1 + max((self._depth(str(each), found, above | {id_}) for each in behind), default=0)
 
-    def _pipeline(self, written: _Written) -> DraftPipelineView:
+    def _pipeline(self, written: Written) -> DraftPipelineView:
         document, path = written.document, written.path
         node, chain = self._built(written)
         stages = self._stages(written, chain)
@@ -114,7 +117,7 @@ class Graph:
             or chain is None
         )
         unknown = any(each.standing is Standing.UNKNOWN for each in stages) or edges[-1].fields is None
-        examples = _entries(written.content, "examples")
+        examples = entries_of(written.content, "examples")
         return DraftPipelineView(
             id=written.id,
             name=written.name,
@@ -125,7 +128,7 @@ class Graph:
             quality=None if written.part is Part.FLOW else _quality(node),
             deadline=_number(written.content, "deadline") if written.role != "outgoing" else None,
             every=_number(written.content, "every"),
-            joining=_joining(written),
+            joining=joining_of(written),
             standing=Standing.WRONG if wrong else Standing.UNKNOWN if unknown else Standing.GOOD,
             place=_there(document, path),
             stages_path=None if written.part is Part.STATUS else list(written.stages_path),
@@ -134,11 +137,11 @@ class Graph:
             stages=stages,
             edges=edges,
             ends=self._ends(node),
-            ignored=[str(each) for each in _entries(written.content, "ignore")],
+            ignored=[str(each) for each in entries_of(written.content, "ignore")],
             readers=[],
             examples=[
                 DraftExampleView(
-                    name=str(_at(each, "name") or ""),
+                    name=str(at(each, "name") or ""),
                     place=_there(document, (*path, "examples", index)),
                     written=plain(each),
                 )
@@ -149,7 +152,7 @@ class Graph:
         )
 
     def _built(
-        self, written: _Written
+        self, written: Written
     ) -> tuple[IncomingPipeline | OutgoingPipeline | Flow | None, ChainBuilding | None]:
         """What was made of it, unless another of the same name was."""
         chain = self.sketch.built.chains.get(written.name)
@@ -161,7 +164,7 @@ class Graph:
                 return group[written.name], chain
         return None, chain
 
-    def _stages(self, written: _Written, chain: ChainBuilding | None) -> list[DraftStageView]:
+    def _stages(self, written: Written, chain: ChainBuilding | None) -> list[DraftStageView]:
         made = () if chain is None else chain.stages
         count = len(made) if chain is None or written.part is Part.STATUS else max(len(made), len(written.stages))
         count = max(count, len(written.stages))
@@ -177,7 +180,7 @@ class Graph:
                 said = [*chain.wrong, *said]
             is_wrong = bool(said) or (stage is None and is_good and index == written.cut)
             kind = stage.kind if stage is not None else _stage_kind(entry)
-            id_ = _unique(f"{written.id} {kind} {_label(entry, stage)}".rstrip(), taken)
+            id_ = unique(f"{written.id} {kind} {_label(entry, stage)}".rstrip(), taken)
             found.append(
                 DraftStageView(
                     id=id_,
@@ -194,7 +197,7 @@ class Graph:
         return found
 
     def _edges(
-        self, written: _Written, stages: list[DraftStageView], chain: ChainBuilding | None
+        self, written: Written, stages: list[DraftStageView], chain: ChainBuilding | None
     ) -> list[DraftEdgeView]:
         fields = [] if chain is None else chain.fields
         ids = [f"{written.id} begins", *(f"{stage.id} gives" for stage in stages)]
@@ -203,7 +206,7 @@ class Graph:
             for index, id_ in enumerate(ids)
         ]
 
-    def _sources(self, written: _Written) -> list[SourceView]:
+    def _sources(self, written: Written) -> list[SourceView]:
         return [
             SourceView(
                 alias=alias,
@@ -216,14 +219,14 @@ class Graph:
                     if id_ is None or not each.message.startswith("there is no topic or flow")  # it is, and is wrong
                 ],
             )
-            for alias, name, path in _written_sources(written)
+            for alias, name, path in sources_of(written)
         ]
 
     def _source_id(self, resource: str, name: str) -> str | None:
         found = (self._ids.get(each) for each in (name, flow_name(resource, name)))
         return next((each for each in found if each is not None), None)
 
-    def _findings(self, written: _Written) -> list[Finding]:
+    def _findings(self, written: Written) -> list[Finding]:
         """What is wrong with the pipeline as a whole; what is said of a client is said of its first part."""
         return self._located.take(written.file, written.path)
 
@@ -253,44 +256,6 @@ class Graph:
         return name
 
 
-class _Written:
-    """A pipeline as it is written: where, and what of it can be told without knowing whether it makes sense."""
-
-    def __init__(
-        self, sketch: Sketch, resource: str, document: Document, path: EntryPath, key: str, part: Part
-    ) -> None:
-        self.resource, self.document, self.path, self.part = resource, document, path, part
-        self.file = document.file
-        self.content = _at(_at(document.content, str(path[0])), str(path[1]))
-        self.stages_path: EntryPath = (*path, key)
-        self.stages = _entries(self.content, key)
-        self.cut = sketch.cut.get((self.file, self.stages_path))
-        self.name = pipeline_name(resource, self.stages_path)
-        self.id = self.name
-        outgoing = part in _OUT or (part is Part.TOPIC and _at(self.content, "direction") == "out")
-        self.role: Role = "flow" if part is Part.FLOW else "outgoing" if outgoing else "incoming"
-        type_ = _at(self.content, "type")
-        self.message = str(type_) if part is Part.TOPIC and type_ is not None else None
-
-
-def _written(sketch: Sketch) -> Iterator[_Written]:
-    """All pipelines of all resources."""
-    seen: set[str] = set()
-    for resource, document in sketch.resources.items():
-        for section, keys in STAGES.items():
-            entries = _at(document.content, section)
-            for name in entries if isinstance(entries, dict) else ():
-                for key in (*keys, "status") if section == "actions" else keys:
-                    part = _PARTS.get((section, key)) or Part(key)
-                    each = _Written(sketch, resource, document, (section, str(name)), key, part)
-                    if each.id in seen:
-                        each.id = _unique(f"{resource} {each.name}", seen)
-                    seen.add(each.id)
-                    if part is Part.STATUS:
-                        each.stages = []
-                    yield each
-
-
 def type_view(type_: FieldType) -> TypeView:
     """What values a type has."""
     kind, values, least, most, element, length, fields = TypeKind.REAL, None, None, None, None, None, None
@@ -316,12 +281,12 @@ def _label(entry: object, stage: Stage | None) -> str:
     """What a stage is recognised by among those of its kind: what it gives, as it is written."""
     if isinstance(entry, dict) and entry:
         settings = next(iter(entry.values()))
-        named = [_at(settings, key) for key in ("variable", "name", "function")]
+        named = [at(settings, key) for key in ("variable", "name", "function")]
         named = [each for each in named if each is not None]
         if named:
             return str(named[0])
         for key in ("variables", "fields"):
-            if names := _entries(settings, key):
+            if names := entries_of(settings, key):
                 return ",".join(map(str, names))
         if isinstance(settings, dict):
             return ",".join(map(str, settings))
@@ -333,42 +298,6 @@ def _label(entry: object, stage: Stage | None) -> str:
 
 def _stage_kind(entry: object) -> str:
     return str(next(iter(entry))) if isinstance(entry, dict) and entry else "?"
-
-
-def _unique(id_: str, taken: set[str]) -> str:
-    """The id, with a number where it is taken."""
-    number, found = 2, id_
-    while found in taken:
-        number, found = number + 1, f"{id_} #{number}"
-    taken.add(found)
-    return found
-
-
-def _written_sources(written: _Written) -> Iterator[tuple[str | None, str, EntryPath]]:
-    """The sources of a flow: alias, name and path."""
-    if written.part is not Part.FLOW:
-        return
-    source, path = _at(written.content, "from"), (*written.path, "from")
-    match source:
-        case dict():
-            for alias, name in source.items():
-                yield str(alias), str(name), (*path, str(alias))
-        case list():
-            for index, name in enumerate(source):
-                yield None, str(name), (*path, index)
-        case str():
-            yield None, str(source), path
-
-
-def _joining(written: _Written) -> Joining | None:
-    if written.part is not Part.FLOW:
-        return None
-    match _at(written.content, "from"):
-        case dict():
-            return "merge"
-        case list():
-            return "interleave"
-    return "branch"
 
 
 def _first(node: OutgoingPipeline) -> list[ReadVariableView]:
@@ -418,15 +347,6 @@ def _entry(document: Document, path: EntryPath) -> EntryView | None:
     return _there(document, path) if path in document.places else None
 
 
-def _at(content: object, name: str) -> object:
-    return content.get(name) if isinstance(content, dict) else None
-
-
-def _entries(content: object, name: str) -> list[object]:
-    found = _at(content, name)
-    return found if isinstance(found, list) else []
-
-
 def _number(content: object, name: str) -> float | None:
-    found = _at(content, name)
+    found = at(content, name)
     return float(found) if isinstance(found, int | float) and not isinstance(found, bool) else None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from typing import cast
 
 from pydantic import JsonValue
 
@@ -110,7 +111,8 @@ def _station(
 ) -> dict[str, JsonValue]:
     """What the station had at the end: variables or other fields that were given, or fields of the message."""
     if isinstance(node, OutgoingPipeline):
-        return message_of(node, Record(dict(last or {})))  # type: ignore[return-value]
+        # What it puts together are values of `last`, and so JSON.
+        return cast("dict[str, JsonValue]", message_of(node, Record(dict(last or {}))))
     names = [each.field for each in node.writings]
     if not names:
         names = list(dict.fromkeys(name for stage in node.chain.stages for name in stage.gives)) or list(node.chain.end)

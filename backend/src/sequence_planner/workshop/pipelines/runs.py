@@ -9,6 +9,7 @@ from pydantic import ValidationError
 from sequence_planner.analysis.document import error_document
 from sequence_planner.control.observing import shown
 from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.model.editing import content_at
 from sequence_planner.model.flow_documents import ExampleDocument, ExampleStepDocument
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.reading import Document, EntryPath
@@ -77,7 +78,7 @@ def run_example(graph: Graph, view: DraftPipelineView, index: int) -> RunView:
     """How an example ends that is written in the draft."""
     document = graph.sketch.documents[view.place.file]
     path: EntryPath = (*view.place.path, "examples", index)
-    return run_written(graph, view, _content(document, path), document, path, view.examples[index].place)
+    return run_written(graph, view, content_at(document.content, path), document, path, view.examples[index].place)
 
 
 def run_written(
@@ -200,10 +201,3 @@ def _refused(
         steps=steps or [],
         findings=[error_document(each) for each in findings],
     )
-
-
-def _content(document: Document, path: EntryPath) -> object:
-    content: object = document.content
-    for step in path:
-        content = content[step] if isinstance(content, list) else content.get(step)  # type: ignore[index, attr-defined]
-    return content
