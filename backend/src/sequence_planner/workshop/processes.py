@@ -27,7 +27,7 @@ _CONTEXT.set_forkserver_preload(
     [f"{__package__}.{each}" for each in ("checking", "tasks", "language_worker", "pipelines.worker")]
 )
 PATIENCE = 60.0  # seconds for a task
-_NICENESS = 5  # ticks come first
+_ANSWERING, _WORKING = 5, 15  # niceness: ticks come first, then whoever waits for an answer, then checks
 _PREFIX = "sequence-planner-workshop-"  # of folders
 _NO_ANSWER = "the process has ended without an answer; is memory short?"
 
@@ -160,19 +160,19 @@ async def _told(connection: Connection) -> object:
 
 
 def _work(connection: Connection, module: str, name: str, arguments: tuple[object, ...], folder: Path) -> None:
-    work = _begun(module, name)
+    work = _begun(module, name, _WORKING)
     with contextlib.suppress(OSError):
         for each in work(*arguments, folder):
             connection.send(each)
 
 
 def _answer(connection: Connection, module: str, name: str, folder: Path) -> None:
-    _begun(module, name)(connection, folder)
+    _begun(module, name, _ANSWERING)(connection, folder)
 
 
-def _begun(module: str, name: str) -> Callable[..., Any]:
+def _begun(module: str, name: str, niceness: int) -> Callable[..., Any]:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
     end_without_parent()
-    os.nice(_NICENESS)
+    os.nice(niceness)
     found: Callable[..., Any] = getattr(importlib.import_module(module), name)
     return found
