@@ -14,9 +14,9 @@ from control.journalling import journal
 from core.actors import EVA
 from sequence_planner.control.commands import Command, CommandRefused, SetMode, TakeControl
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.starting import start_when_alone
 from sequence_planner.control.production_commands import TakeStep
 from sequence_planner.control.restart_commands import ConfirmEstimates, DecideOutputs
+from sequence_planner.control.starting import start_when_alone
 from sequence_planner.control.view import Mode, Production
 from sequence_planner.journal import run_journal
 from sequence_planner.ros.memory import MemoryNetwork

@@ -1,4 +1,4 @@
-"""The lease of the command, on a real server: at no moment do two stations hold it, and it never stays lying for ever."""
+"""The lease of the command, on a real server: no two stations ever hold it, and it never stays lying for ever."""
 
 from __future__ import annotations
 
@@ -187,5 +187,3 @@ def test_no_two_ever_hold_it(url: str) -> None:
     Rivals.url = url
     limits = settings(max_examples=25, stateful_step_count=20, deadline=None, suppress_health_check=list(HealthCheck))
     run_state_machine_as_test(Rivals, settings=limits)
-
-

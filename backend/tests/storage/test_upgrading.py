@@ -37,7 +37,9 @@ def test_the_migrations_make_the_tables_that_the_program_declares(database: Data
     for package in rooms:
         for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)
-    assert {"audit", "people", "sessions", "keys", "watches", "draft_files", "draft_changes", "command_lease"} <= set(METADATA.tables)
+    assert {"audit", "people", "sessions", "keys", "watches", "draft_files", "draft_changes", "command_lease"} <= set(
+        METADATA.tables
+    )
     with database.reading() as connection:
         assert compare_metadata(MigrationContext.configure(connection), METADATA) == []
 

@@ -45,7 +45,8 @@ def controller(
     url = database_url(model, database)
     try:
         until_interrupted(
-            lambda connect: control(Running(station, model, socket, connect, emulated, start, url, hot_standby)), network
+            lambda connect: control(Running(station, model, socket, connect, emulated, start, url, hot_standby)),
+            network,
         )
     except SynthesisEndedError as error:
         refuse(str(error))

@@ -93,11 +93,15 @@ def run(
     if demonstration and database is not None:
         refuse(f"--demonstration has a database of its own, forgotten at the end: leave --database and {DATABASE} out")
     if hot_standby is not None and (demonstration or not HOT_STANDBY.fullmatch(hot_standby)):
-        refuse("--hot-standby takes a name of up to 60 letters, digits, dots and hyphens, and is not for demonstrations")
+        refuse(
+            "--hot-standby takes a name of up to 60 letters, digits, dots and hyphens, and is not for demonstrations"
+        )
     prepare(model)
     url = None if demonstration else database_url(model, database)
     try:
-        raise typer.Exit(launch(Launch(model, endpoint, url, transport, rosbridge, emulator, start, emulator_speed, hot_standby)))
+        raise typer.Exit(
+            launch(Launch(model, endpoint, url, transport, rosbridge, emulator, start, emulator_speed, hot_standby))
+        )
     except (SettingsError, StorageError) as error:
         refuse(str(error))
 

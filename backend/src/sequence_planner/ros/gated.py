@@ -12,7 +12,7 @@ from sequence_planner.ros.transport import Endpoint, Handler, OnBatch, OnQuality
 
 @dataclass(frozen=True)
 class Gated:
-    """Says something only as long as `may_speak`, which is asked at the last moment; else it raises `TransportError`."""
+    """Speaks only as long as `may_speak`, which is asked at the last moment; else it raises `TransportError`."""
 
     transport: Transport
     may_speak: Callable[[], bool]

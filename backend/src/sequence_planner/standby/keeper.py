@@ -45,6 +45,7 @@ class Keeper:
         self._taken: asyncio.Future[None] = self._loop.create_future()
         self._lost: asyncio.Future[None] = self._loop.create_future()
         self._ending = threading.Event()
+        self._overtaken = False
         self._thread = threading.Thread(target=self._work, name="lease", daemon=True)
         self.standing = Standing(lease.name, False, None, (), None)
 
@@ -85,16 +86,14 @@ class Keeper:
                 self._step()
             except StorageError as error:
                 self._tell(str(error))
-            if self._lost_it:
+            if self._overtaken:
                 return
             self._ending.wait(EVERY)
-
-    _lost_it = False
 
     def _step(self) -> None:
         if self._lease.is_ours:
             if not self._lease.renew():
-                self._lost_it = True
+                self._overtaken = True
                 self._call(self._lost)
         elif self._lease.try_to_take():
             LOG.info("this station commands from now on", name=self._lease.name)
@@ -107,7 +106,7 @@ class Keeper:
         """Show how things are; where the database does not answer it is said that nobody knows."""
         lease = self._lease
         holder = None if lease.seen is None else lease.seen.holder
-        others = ()
+        others: tuple[str, ...] = ()
         if trouble is None:
             with contextlib.suppress(StorageError):
                 others = lease.standing_by()

@@ -1,10 +1,10 @@
 """The lease of the command over a station's devices: at any moment at most one of several stations holds it.
 
 It is a row in the database that all share. Its holder counts it up again and again; who sees the count stand still for
-longer than the lease lasts may take it, by a write that only succeeds if the count is still that one. The holder for its
-part holds it no longer than that from the moment on at which it began to count up last, less a margin. So no two hold
-it at once, whatever the clocks of the day say: each measures only how long something took, by a clock of its own that
-goes on while its process stands still (Gray and Cheriton, *Leases*, SOSP 1989, with counts for their times).
+longer than the lease lasts may take it, by a write that only succeeds if the count is still that one. The holder for
+its part holds it no longer than that from the moment on at which it began to count up last, less a margin. So no two
+hold it at once, whatever the clocks of the day say: each measures only how long something took, by a clock of its own
+that goes on while its process stands still (Gray and Cheriton, *Leases*, SOSP 1989, with counts for their times).
 """
 
 from __future__ import annotations
@@ -51,7 +51,7 @@ class Seen:
     holder: str
     model: str
     epoch: int
-    count: int
+    renewals: int
     free: bool
 
 
@@ -115,7 +115,7 @@ class Lease:
         began = self.clock()
         with self._writing() as connection:
             ours = _THE_ROW & (LEASE.c.epoch == self._epoch) & ~LEASE.c.free
-            renewed = connection.execute(update(LEASE).where(ours).values(count=LEASE.c.count + 1)).rowcount == 1
+            renewed = connection.execute(update(LEASE).where(ours).values(renewals=LEASE.c.renewals + 1)).rowcount == 1
         if renewed:
             self._hold(began)
         else:
@@ -132,10 +132,10 @@ class Lease:
 
     def stand_by(self) -> None:
         """Say that this station is there and waits."""
-        values = {"name": self.name, "model": self.model, "count": 1}
+        values = {"name": self.name, "model": self.model, "signs": 1}
         said = insert_or_not(STANDBYS).values(values)
         again = said.on_conflict_do_update(
-            index_elements=["name"], set_={"model": self.model, "count": STANDBYS.c.count + 1}
+            index_elements=["name"], set_={"model": self.model, "signs": STANDBYS.c.signs + 1}
         )
         with self._writing() as connection:
             connection.execute(again)
@@ -146,7 +146,7 @@ class Lease:
             rows = connection.execute(select(STANDBYS).where(STANDBYS.c.model == self.model)).all()
         now, before = self.clock(), self._standbys
         self._standbys = {
-            row.name: (row.count, now if before.get(row.name, (None,))[0] != row.count else before[row.name][1])
+            row.name: (row.signs, now if before.get(row.name, (None,))[0] != row.signs else before[row.name][1])
             for row in rows
             if row.name != self.name
         }
@@ -160,13 +160,15 @@ class Lease:
 
     def _take(self, seen: Seen | None) -> bool:
         began = self.clock()
-        mine = {"holder": self.name, "model": self.model, "count": 0, "free": False}
+        mine = {"holder": self.name, "model": self.model, "renewals": 0, "free": False}
         with self._writing() as connection:
             if seen is None:
                 first = insert_or_not(LEASE).values(id=1, epoch=1, **mine).on_conflict_do_nothing()
-                taken = connection.execute(first).rowcount == 1
+                taken = connection.execute(first.returning(LEASE.c.id)).first() is not None
             else:
-                as_seen = (LEASE.c.epoch == seen.epoch) & (LEASE.c.count == seen.count) & (LEASE.c.free == seen.free)
+                as_seen = (
+                    (LEASE.c.epoch == seen.epoch) & (LEASE.c.renewals == seen.renewals) & (LEASE.c.free == seen.free)
+                )
                 values = {**mine, "epoch": seen.epoch + 1}
                 taken = connection.execute(update(LEASE).where(_THE_ROW & as_seen).values(values)).rowcount == 1
         if taken:
@@ -195,8 +197,13 @@ def open_lease(url: str, name: str, model: str) -> Lease:
     place = address(url)
     if not isinstance(place, PostgresqlServer):
         raise StorageError(f"several stations cannot share {place}: a hot standby takes a database of PostgreSQL")
-    return Lease(create_engine(place.url, connect_args=_SETTINGS, poolclass=QueuePool, pool_size=1, hide_parameters=True), place, name, model)
+    return Lease(
+        create_engine(place.url, connect_args=_SETTINGS, poolclass=QueuePool, pool_size=1, hide_parameters=True),
+        place,
+        name,
+        model,
+    )
 
 
 def _seen(row: Row[tuple[object, ...]]) -> Seen:
-    return Seen(row.holder, row.model, row.epoch, row.count, row.free)
+    return Seen(row.holder, row.model, row.epoch, row.renewals, row.free)

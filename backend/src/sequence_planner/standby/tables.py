@@ -1,7 +1,8 @@
 """The tables of this room. No column holds a time: the clocks of several machines need not agree."""
 
-from sequence_planner.storage.metadata import METADATA
 from sqlalchemy import BigInteger, Boolean, Column, Integer, String, Table
+
+from sequence_planner.storage.metadata import METADATA
 
 NAME = String(100)
 NUMBER = BigInteger().with_variant(Integer, "sqlite")
@@ -13,7 +14,7 @@ LEASE = Table(
     Column("holder", NAME, nullable=False),  # who commands, or did last
     Column("model", String(64), nullable=False),  # digest of what the holder runs; empty: of what was deployed there
     Column("epoch", NUMBER, nullable=False),  # how often it was taken
-    Column("count", NUMBER, nullable=False),  # how often it was renewed since
+    Column("renewals", NUMBER, nullable=False),  # since it was taken
     Column("free", Boolean, nullable=False),  # the holder has let go of it
 )
 
@@ -22,5 +23,5 @@ STANDBYS = Table(
     METADATA,
     Column("name", NAME, primary_key=True),
     Column("model", String(64), nullable=False),
-    Column("count", NUMBER, nullable=False),  # how often it has said that it is there
+    Column("signs", NUMBER, nullable=False),  # how often it has said that it is there
 )

@@ -19,12 +19,12 @@ def upgrade() -> None:
         Column("holder", String(100), nullable=False),
         Column("model", String(64), nullable=False),
         Column("epoch", NUMBER, nullable=False),
-        Column("count", NUMBER, nullable=False),
+        Column("renewals", NUMBER, nullable=False),
         Column("free", Boolean, nullable=False),
     )
     op.create_table(
         "standbys",
         Column("name", String(100), primary_key=True),
         Column("model", String(64), nullable=False),
-        Column("count", NUMBER, nullable=False),
+        Column("signs", NUMBER, nullable=False),
     )
