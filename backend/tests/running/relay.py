@@ -35,6 +35,7 @@ class Relay:
         self.cut()
         self._loop.call_soon_threadsafe(self._loop.stop)
         self._thread.join()
+        self._loop.close()
 
     async def _mend(self) -> None:
         self._listening = await asyncio.start_unix_server(self._meet, self._own)
