@@ -29,7 +29,7 @@ from sequence_planner.ros.messages import MessageRegistry
 class ReadyStation:
     """What the controller runs, and what the emulated devices are made from. `ros_1` are the topics of ROS 1.
 
-    `goes_on_after_takeover` says that nobody needs to confirm production where a hot standby has taken over.
+    `goes_on` says that nobody needs to confirm production where a hot standby has taken over.
     """
 
     automaton: Automaton
@@ -37,7 +37,7 @@ class ReadyStation:
     registry: MessageRegistry
     ros_1: frozenset[str] = frozenset()
     examples: tuple[PipelineExample, ...] = ()
-    goes_on_after_takeover: bool = False
+    goes_on: bool = False
 
     @property
     def connections(self) -> Connections:

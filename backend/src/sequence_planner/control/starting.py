@@ -13,7 +13,6 @@ from sequence_planner.control.controller import Controller
 from sequence_planner.control.link import Handle
 from sequence_planner.control.view import Production
 from sequence_planner.emulation.node import NODE as EMULATED_DEVICES
-from sequence_planner.standby.keeper import Keeper
 
 LOG = structlog.get_logger(__name__)
 
@@ -34,14 +33,11 @@ async def start_when_alone(controller: Controller, handle: Handle, look_every: f
         await asyncio.sleep(look_every)
 
 
-async def go_on(controller: Controller, handle: Handle, keeper: Keeper, look_every: float = 0.2) -> None:
-    """Let production go on by `handle` where the command was taken over from another station, as the model allows.
+async def go_on(controller: Controller, handle: Handle, before: str, look_every: float = 0.2) -> None:
+    """Let production go on by `handle` where the command was taken over from the station `before`, as the model allows.
 
     It waits as long as a person has to decide on an output, or somebody else is still seen on the topics.
     """
-    before = keeper.taken_from
-    if before is None:
-        return
     why = f"taken over from {before}, as the model allows"
     while controller.execution.production is Production.WAITING:
         if not controller.undecided and not controller.execution.blind and not controller.devices.network.rivals:
