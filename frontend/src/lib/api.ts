@@ -5322,6 +5322,7 @@ export interface components {
             };
             /** Revision */
             revision?: number;
+            standby?: components["schemas"]["StandbyView"] | null;
             station?: components["schemas"]["StationIdentity"];
             /** Stepping */
             stepping?: boolean;
