@@ -23,7 +23,8 @@ from pathlib import Path
 
 from sequence_planner.announcement import announced, answers, first_start
 from sequence_planner.control.unix_socket import LONGEST_PATH
-from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED
+from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED, OVERTAKEN
+from sequence_planner.storage.address import PostgresqlServer
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.web.binding import check_demonstration, check_free
@@ -53,6 +54,7 @@ class Launch:
     emulator: bool
     start: bool
     emulator_speed: float
+    hot_standby: str | None = None
 
 
 class Part:
@@ -107,12 +109,14 @@ class Part:
             return 0
         if code == UNUSABLE and not self._again and not self.steady:
             return code
-        if self.steady or code == DEPLOYED:
+        if self.steady or code in (DEPLOYED, OVERTAKEN):
             self._pause = FIRST_PAUSE
         self._forget()
         self._again = True
-        if code == DEPLOYED:
-            self.deployed = True
+        if code in (DEPLOYED, OVERTAKEN):
+            self.deployed = code == DEPLOYED
+            if code == OVERTAKEN:
+                _say("another station has taken the command, and this one stands by")
             if not self._follow(now):
                 self.spawn()
             return 0
@@ -199,6 +203,8 @@ def launch(request: Launch) -> int:
             raise SettingsError(f"the path of {socket} is too long for a socket; set TMPDIR to a shorter folder")
         url = request.database or f"sqlite:///{socket.parent / DEMONSTRATION_DATABASE}"
         with contextlib.closing(Database.open(url)) as database:
+            if request.hot_standby is not None and not isinstance(database.place, PostgresqlServer):
+                raise SettingsError(f"several stations cannot share {database.place}: --hot-standby takes PostgreSQL")
             database.upgrade()
         return _Launcher(request, url, socket, stop).run()
 
@@ -212,6 +218,7 @@ class _Launcher:
         transport += ["--rosbridge", request.rosbridge] if request.rosbridge else []
         controller = [model, "--socket", str(socket), *transport]
         controller += ["--emulated"] if request.emulator else []
+        controller += ["--hot-standby", request.hot_standby] if request.hot_standby is not None else []
         speed = ["--speed", str(request.emulator_speed)]
         # Not as an argument: the URL may hold a password, and everybody on this machine may read what `ps` shows.
         database = {DATABASE: url}

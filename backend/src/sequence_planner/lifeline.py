@@ -22,6 +22,7 @@ STANDARD_INPUT = 0
 DEMONSTRATION_DATABASE = "demonstration.sqlite"  # in the launcher's folder; nothing of it is kept
 DEMONSTRATION_FILES = "demonstration.*"  # with what SQLite writes beside it, and the revisions of the model
 DEPLOYED = 75  # the exit code with which the controller makes room for one that runs another model
+OVERTAKEN = 76  # the exit code of a controller when another station has taken the command
 NEEDED = b"\n"  # what a spare reads when it is needed
 LAST_WORDS = 5.0  # seconds in which a process may end in good order
 

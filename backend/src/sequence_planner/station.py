@@ -27,13 +27,17 @@ from sequence_planner.ros.messages import MessageRegistry
 
 @dataclass(frozen=True)
 class ReadyStation:
-    """What the controller runs, and what the emulated devices are made from. `ros_1` are the topics of ROS 1."""
+    """What the controller runs, and what the emulated devices are made from. `ros_1` are the topics of ROS 1.
+
+    `goes_on` says that nobody needs to confirm production where a hot standby has taken over.
+    """
 
     automaton: Automaton
     pipelines: StationPipelines
     registry: MessageRegistry
     ros_1: frozenset[str] = frozenset()
     examples: tuple[PipelineExample, ...] = ()
+    goes_on: bool = False
 
     @property
     def connections(self) -> Connections:
@@ -88,7 +92,8 @@ def prepare_station(folder: Path) -> ReadyStation:
         for name, written in _examples(station)
         for document in written
     )
-    return ReadyStation(automaton, pipelines, registry, _of_ros_1(station), examples)
+    goes_on = station.station.takeover == "automatic"
+    return ReadyStation(automaton, pipelines, registry, _of_ros_1(station), examples, goes_on)
 
 
 def _examples(station: Station) -> Iterator[tuple[str, list[ExampleDocument]]]:

@@ -18,7 +18,7 @@ from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.commands import CommandRefused, SetMode, StartProduction
 from sequence_planner.control.controller import Controller
-from sequence_planner.control.process import start_when_alone
+from sequence_planner.control.starting import start_when_alone
 from sequence_planner.control.view import Mode, PlanStatus, Production
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.pipelines.graph import StationPipelines

@@ -9,14 +9,15 @@ from contextlib import contextmanager
 
 import pytest
 
-from control.bench import Arm, Bench, bench, until
+from control.bench import Arm, Bench, bench, cell, until
 from control.journalling import journal
 from core.actors import EVA
 from sequence_planner.control.commands import Command, CommandRefused, SetMode, TakeControl
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.process import start_when_alone
+from sequence_planner.control.process import what_is_known
 from sequence_planner.control.production_commands import TakeStep
 from sequence_planner.control.restart_commands import ConfirmEstimates, DecideOutputs
+from sequence_planner.control.starting import go_on, start_when_alone
 from sequence_planner.control.view import Mode, Production
 from sequence_planner.journal import run_journal
 from sequence_planner.ros.memory import MemoryNetwork
@@ -141,6 +142,32 @@ def test_production_does_not_start_by_itself_while_something_is_undecided() -> N
                 await on.controller.command(DecideOutputs(actor=EVA, reason="it stays", values={"arm.goto": "home"}))
                 await asyncio.wait_for(starting, 5)
                 assert len(tried) == 1
+
+    with journal() as database:
+        asyncio.run(scenario(database))
+
+
+def test_after_a_takeover_production_goes_on_by_itself_once_nobody_has_anything_to_decide() -> None:
+    async def scenario(database: Database) -> None:
+        network = MemoryNetwork()
+        arm = Arm(network)
+        await commanded_out(network, database, arm)
+        assert what_is_known(database, cell()[0].automaton).produced
+        async with bench(network, database) as on:
+            going_on = asyncio.create_task(go_on(on.controller, on.controller.command, "press-a", look_every=0.02))
+            await asyncio.sleep(0.3)
+            assert on.controller.execution.production is Production.WAITING, "the arm is not heard"
+            with arm.saying("home"):
+                await at_home(on)
+                await asyncio.sleep(0.3)
+                assert on.controller.execution.production is Production.WAITING, "it is not decided where it shall go"
+                await on.controller.command(TakeControl(actor=EVA))
+                await on.controller.command(DecideOutputs(actor=EVA, reason="it stays", values={"arm.goto": "home"}))
+                await asyncio.wait_for(going_on, 5)
+                assert on.controller.view().production == "started"
+        async with bench(network, database):
+            pass
+        assert what_is_known(database, cell()[0].automaton).produced is False, "nobody has started it in its last life"
 
     with journal() as database:
         asyncio.run(scenario(database))

@@ -35,19 +35,24 @@ STANDSTILL = 1.0  # seconds in which nothing may happen while nothing can be rec
 
 @dataclass
 class Mortal:
-    """The station in front of its operator. `seen` is what has been met."""
+    """The station in front of its operator. `seen` is what has been met.
+
+    Its database is a file in its folder, or where `url` says; with `standby` it shares that with others.
+    """
 
     folder: Path
     database: Database
     wire: Wire
     chance: random.Random
+    url: str = ""
+    standby: str | None = None
     port: int = field(default_factory=free_port)
     seen: Counter[str] = field(default_factory=Counter)
     _parts: dict[str, subprocess.Popen[bytes]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         self.kept = Kept(self.database)
-        self.url = f"sqlite:///{self.folder}/station.sqlite"
+        self.url = self.url or f"sqlite:///{self.folder}/station.sqlite"
         self.browser = signed_in(REPOSITORY / MODEL, self.port, self.url)
 
     def start(self, part: str) -> None:
@@ -55,7 +60,7 @@ class Mortal:
         socket = ("--socket", str(self.folder / "socket"))
         arguments = {
             "emulate": ("--speed", str(SPEED)),
-            "controller": (*socket, "--emulated"),
+            "controller": (*socket, "--emulated", *(("--hot-standby", self.standby) if self.standby else ())),
             "server": (*socket, "--page", str(self.folder), "--port", str(self.port)),
         }[part]
         model = ("--model", str(MODEL)) if part == "server" else (str(MODEL),)
@@ -67,6 +72,14 @@ class Mortal:
                 stdout=log,
                 stderr=log,
             )
+
+    def signal(self, part: str, number: signal.Signals) -> None:
+        """Send a signal to one of its processes."""
+        self._parts[part].send_signal(number)
+
+    def ended(self, part: str) -> int | None:
+        """The exit code of one of its processes; None while it lives."""
+        return self._parts[part].poll()
 
     def kill(self, part: str) -> None:
         """It has no time to end in good order."""

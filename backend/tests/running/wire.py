@@ -13,7 +13,7 @@ from sequence_planner.automaton.structure import Kind
 from sequence_planner.emulation.commanded import CommandReader
 from sequence_planner.expressions.types import Value
 from sequence_planner.ros.choice import open_transport
-from sequence_planner.ros.transport import Sample
+from sequence_planner.ros.transport import OnBatch, Sample
 from sequence_planner.station import ReadyStation
 
 Command = Mapping[str, Value | None]
@@ -42,14 +42,19 @@ class Wire:
 
 
 @contextmanager
-def listening(station: ReadyStation) -> Iterator[Wire]:
-    """Listen as long as the block lasts."""
+def listening(station: ReadyStation, also: OnBatch = lambda samples: None) -> Iterator[Wire]:
+    """Listen as long as the block lasts; `also` is told each message."""
+
+    def take(samples: Sequence[Sample]) -> None:
+        also(samples)
+        wire.take(samples)
+
     wire, loop = Wire(station), asyncio.new_event_loop()
     thread = threading.Thread(target=loop.run_forever)
     transport = open_transport("cyclonedds", station.registry, "listener", loop, DOMAIN)
     try:
         for name, each in station.pipelines.outgoing.items():
-            transport.subscribe(name, each.topic.type_name, each.topic.quality, wire.take)
+            transport.subscribe(name, each.topic.type_name, each.topic.quality, take)
         thread.start()
         yield wire
     finally:

@@ -197,5 +197,6 @@ def example_view(**changes: object) -> StationView:
         },
         way_back=None,
         analysis=None,
+        standby=None,
     )
     return view.model_copy(update=changes)

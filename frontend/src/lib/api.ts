@@ -5209,6 +5209,25 @@ export interface components {
             summary: string;
         };
         /**
+         * StandbyView
+         * @description Several stations share a database, and one of them commands the devices: this one if it is `active`.
+         *
+         *     `holder` commands, or did last; null if nobody ever did. `standing_by` are others that would take the command over.
+         *     `trouble` says why nobody knows how things are, or why this station would not.
+         */
+        StandbyView: {
+            /** Active */
+            active: boolean;
+            /** Holder */
+            holder: string | null;
+            /** Name */
+            name: string;
+            /** Standing By */
+            standing_by: string[];
+            /** Trouble */
+            trouble: string | null;
+        };
+        /**
          * StateAnswer
          * @description Every variable.
          */
@@ -5244,6 +5263,7 @@ export interface components {
             questions: components["schemas"]["QuestionView"][];
             /** Revision */
             revision: number;
+            standby: components["schemas"]["StandbyView"] | null;
             station: components["schemas"]["StationIdentity"];
             /** Stepping */
             stepping: boolean;
@@ -5302,6 +5322,7 @@ export interface components {
             };
             /** Revision */
             revision?: number;
+            standby?: components["schemas"]["StandbyView"] | null;
             station?: components["schemas"]["StationIdentity"];
             /** Stepping */
             stepping?: boolean;
@@ -5437,6 +5458,7 @@ export interface components {
             };
             /** Revision */
             revision: number;
+            standby: components["schemas"]["StandbyView"] | null;
             station: components["schemas"]["StationIdentity"];
             /** Stepping */
             stepping: boolean;

@@ -57,6 +57,7 @@ export type Value = NonNullable<Variable['value']>;
 export type SessionAnswer = Schemas['SessionAnswer'];
 export type Role = Schemas['Role'];
 export type Control = Schemas['ControlView'];
+export type Standby = Schemas['StandbyView'];
 
 export type Delta = Schemas['Delta'];
 export type StreamMessage = Schemas['StreamMessage'];

@@ -20,7 +20,8 @@ from sequence_planner.cli.parts import (
 )
 from sequence_planner.control.deploying import DeployedError
 from sequence_planner.control.process import Running, control
-from sequence_planner.lifeline import DEPLOYED, is_needed
+from sequence_planner.lifeline import DEPLOYED, OVERTAKEN, is_needed
+from sequence_planner.standby.keeper import LeaseLostError
 
 
 def controller(
@@ -31,6 +32,7 @@ def controller(
     emulated: Annotated[bool, typer.Option("--emulated")] = False,
     start: Annotated[bool, typer.Option("--start")] = False,
     database: DatabaseOption = None,
+    hot_standby: Annotated[str | None, typer.Option("--hot-standby")] = None,
     launched: Launched = False,
     spare: Annotated[bool, typer.Option("--spare", hidden=True, help="Wait until the launcher says so.")] = False,
 ) -> None:
@@ -43,9 +45,12 @@ def controller(
     url = database_url(model, database)
     try:
         until_interrupted(
-            lambda connect: control(Running(station, model, socket, connect, emulated, start, url)), network
+            lambda connect: control(Running(station, model, socket, connect, emulated, start, url, hot_standby)),
+            network,
         )
     except SynthesisEndedError as error:
         refuse(str(error))
     except DeployedError:
         raise typer.Exit(DEPLOYED) from None
+    except LeaseLostError:
+        raise typer.Exit(OVERTAKEN) from None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Annotated
 
@@ -40,6 +41,7 @@ Names = Annotated[
     list[str] | None,
     typer.Option("--name", metavar="HOST[:PORT]", help="A name by which people open the page; can be repeated."),
 ]
+HOT_STANDBY = re.compile(r"[A-Za-z0-9][A-Za-z0-9.-]{0,59}")
 Demonstration = Annotated[
     bool,
     typer.Option(
@@ -64,6 +66,14 @@ def run(
     start: Annotated[bool, typer.Option("--start", help="Start production at once; only with --emulator.")] = False,
     emulator_speed: Annotated[float, typer.Option(min=0.1, max=100, help="Emulated devices go so much faster.")] = 1.0,
     demonstration: Demonstration = False,
+    hot_standby: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="Share a database of PostgreSQL with other stations for the same devices, of which one commands; "
+            "NAME is what this one is called.",
+        ),
+    ] = None,
 ) -> None:
     """Run a station: controller, server and page."""
     from sequence_planner.launcher import Launch, launch  # noqa: PLC0415
@@ -82,10 +92,16 @@ def run(
         refuse("--demonstration is for emulated devices, which nobody has to sign in for: give --emulator, or leave it")
     if demonstration and database is not None:
         refuse(f"--demonstration has a database of its own, forgotten at the end: leave --database and {DATABASE} out")
+    if hot_standby is not None and (demonstration or not HOT_STANDBY.fullmatch(hot_standby)):
+        refuse(
+            "--hot-standby takes a name of up to 60 letters, digits, dots and hyphens, and is not for demonstrations"
+        )
     prepare(model)
     url = None if demonstration else database_url(model, database)
     try:
-        raise typer.Exit(launch(Launch(model, endpoint, url, transport, rosbridge, emulator, start, emulator_speed)))
+        raise typer.Exit(
+            launch(Launch(model, endpoint, url, transport, rosbridge, emulator, start, emulator_speed, hot_standby))
+        )
     except (SettingsError, StorageError) as error:
         refuse(str(error))
 

@@ -14,10 +14,11 @@ from sequence_planner.control.view import BeliefView
 class Known:
     """What came back from the journal: estimates and why they were believed, outputs, service, and alarms put aside.
 
-    `left_out` says what did not come back, and why.
+    `left_out` says what did not come back, and why; `produced` that production had been started.
     """
 
     beginning: Beginning | None = None
     aside: Mapping[str, PutAside] = field(default_factory=dict)
     beliefs: Mapping[str, BeliefView] = field(default_factory=dict)
     left_out: tuple[str, ...] = ()
+    produced: bool = False

@@ -23,6 +23,7 @@ from sequence_planner.control.view import (
     PlanStatus,
     PlanView,
     Production,
+    StandbyView,
     StationIdentity,
     StationView,
     TaskView,
@@ -88,7 +89,12 @@ class Preparation:
 
 
 def preparing_view(
-    identity: StationIdentity, now: float, began: float, analysis: AnalysisDocument | None, trouble: str | None
+    identity: StationIdentity,
+    now: float,
+    began: float,
+    analysis: AnalysisDocument | None,
+    trouble: str | None,
+    standby: StandbyView | None = None,
 ) -> StationView:
     """What is shown while the safe set is being computed; with `trouble`, there is none and the station is not run."""
     alarms = {}
@@ -152,6 +158,7 @@ def preparing_view(
         alarms=alarms,
         way_back=None,
         analysis=analysis,
+        standby=standby,
     )
 
 

@@ -12,7 +12,6 @@ from pathlib import Path
 
 import structlog
 
-from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.collection import keep_everything
@@ -21,11 +20,12 @@ from sequence_planner.control.alarming.keeping import aside_from
 from sequence_planner.control.asks import Ask
 from sequence_planner.control.belief import KIND as BELIEFS
 from sequence_planner.control.belief import beliefs_from
-from sequence_planner.control.commands import Command, CommandRefused, StartProduction
+from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.controller import Controller
-from sequence_planner.control.deploying import Deploying
+from sequence_planner.control.deploying import DeployedError, Deploying
+from sequence_planner.control.happenings import ProductionStarted
 from sequence_planner.control.known import Known
-from sequence_planner.control.link import ControllerLink, Handle
+from sequence_planner.control.link import ControllerLink
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_graph import network_steps
 from sequence_planner.control.network_view import NetworkView
@@ -33,13 +33,18 @@ from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.preparation import Preparation, analyse, preparing_view
 from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.recording import Recording
-from sequence_planner.control.view import Production, StationIdentity
+from sequence_planner.control.starting import go_on, start_when_alone
+from sequence_planner.control.view import StandbyView, StationIdentity, StationView
 from sequence_planner.control.view_part import View
-from sequence_planner.emulation.node import NODE as EMULATED_DEVICES
+from sequence_planner.history.codec import BEGUN, kind_of
 from sequence_planner.history.restoring import beginning
 from sequence_planner.journal.run_journal import last
 from sequence_planner.ros.exclusivity import require_sole_publisher
+from sequence_planner.ros.gated import gated
 from sequence_planner.ros.transport import Transport
+from sequence_planner.standby.keeper import Keeper
+from sequence_planner.standby.lease import open_lease
+from sequence_planner.standby.model import digest_of
 from sequence_planner.station import ReadyStation
 from sequence_planner.storage.database import Database
 
@@ -55,7 +60,8 @@ class Running:
 
     `start` starts production without a person, for demonstrations: as soon as emulated devices and nothing else are
     there to be commanded. These have just begun, so nothing is believed of them from before. `database` is the URL of
-    where commands are recorded, `model` the folder that the station was read from.
+    where commands are recorded, `model` the folder that the station was read from. `standby` is the name of this
+    station where several share the database and one commands; else it is None.
     """
 
     station: ReadyStation
@@ -65,46 +71,137 @@ class Running:
     emulated: bool
     start: bool
     database: str
+    standby: str | None = None
 
 
 async def control(running: Running) -> None:
     """Run the controller until cancelled. Without a supervisor it only shows why there is none.
 
     Raises `SynthesisEndedError` when that could not be computed, `TransportError` when the network cannot be joined or
-    somebody else commands the devices, `StorageError` when the database cannot be used, and `DeployedError` once
-    another model is in place.
+    somebody else commands the devices, `StorageError` when the database cannot be used, `DeployedError` once another
+    model is in place, and `LeaseLostError` when another station has taken the command.
     """
     preparation = Preparation()
     database = Database.open(running.database)
     async with contextlib.AsyncExitStack() as kept:
         kept.callback(database.close)
         database.upgrade()
+        command = await kept.enter_async_context(_command(running))
         recording = Recording(database, preparation.note_unrecorded)
         kept.push_async_callback(recording.close)
-        await _live(running, preparation, recording, database)
+        await _live(running, preparation, recording, database, command)
 
 
-async def _live(running: Running, preparation: Preparation, recording: Recording, database: Database) -> None:
+@contextlib.asynccontextmanager
+async def _command(running: Running) -> AsyncIterator[Keeper | None]:
+    """What keeps the lease of the command, where stations share it; it is let go of at the end."""
+    if running.standby is None:
+        yield None
+        return
+    lease = open_lease(running.database, running.standby, digest_of(running.model))
+    keeper, deployed = Keeper(lease), False
+    keeper.begin()
+    try:
+        yield keeper
+    except DeployedError:
+        deployed = True
+        raise
+    finally:
+        await keeper.end(deployed=deployed)
+
+
+async def _live(
+    running: Running, preparation: Preparation, recording: Recording, database: Database, keeper: Keeper | None
+) -> None:
     """Prepare the station and run it, while the network is asked whether somebody else commands its devices."""
     try:
         async with asyncio.TaskGroup() as living:
-            living.create_task(_run(running, preparation, recording, database, living))
+            living.create_task(_Life(running, preparation, recording, database, keeper, living).run())
+            if keeper is not None:
+                living.create_task(keeper.lost())
     except ExceptionGroup as failed:
         raise failed.exceptions[0] from None
 
 
-async def _run(
-    running: Running, preparation: Preparation, recording: Recording, database: Database, living: asyncio.TaskGroup
-) -> None:
-    """Prepare the station, then run it; it only listens until it is known to be alone.
+class _Life:
+    """Prepares the station, then runs it; it only listens until it is known to be alone.
 
-    What fails at finding that out, or at taking command then, ends all that is `living`.
+    What fails at finding that out, or at taking command then, ends all that is `living`. Where stations share a lease
+    who holds it is the one: of the others nobody says anything, and who else does keeps production from being started.
     """
-    alone = living.create_task(_require_sole_command(running))
-    deploying = Deploying(running.model, running.socket)
-    living.create_task(deploying.end())
 
-    async def act(command: Command) -> None:
+    def __init__(
+        self,
+        running: Running,
+        preparation: Preparation,
+        recording: Recording,
+        database: Database,
+        keeper: Keeper | None,
+        living: asyncio.TaskGroup,
+    ) -> None:
+        self._running = running
+        self._preparation = preparation
+        self._recording = recording
+        self._database = database
+        self._keeper = keeper
+        self._living = living
+        self._deploying = Deploying(running.model, running.socket)
+        self._link = ControllerLink(running.socket, self._handle, self._answer)
+
+    async def run(self) -> None:
+        """All of it."""
+        running, keeper = self._running, self._keeper
+        alone = self._living.create_task(_require_sole_command(running) if keeper is None else keeper.taken())
+        self._living.create_task(self._deploying.end())
+        analysing = analyse(running.station.automaton, self._preparation, running.socket.parent)
+        async with self._link, _beside(analysing):
+            async with _beside(self._show_preparing()):
+                supervisor = await _prepared(self._preparation)
+                if supervisor is None:
+                    LOG.error("there is no supervisor", because=self._preparation.trouble)
+                    await asyncio.Event().wait()
+                    return
+                if keeper is not None:
+                    await keeper.taken()
+            transport = running.connect(NODE)
+            try:
+                await self._run_with(supervisor, transport, alone)
+            finally:
+                transport.close()
+
+    async def _run_with(self, supervisor: Supervisor, transport: Transport, alone: asyncio.Task[None]) -> None:
+        """Run the controller on the network."""
+        running, keeper = self._running, self._keeper
+        known = Known()
+        if not running.start:
+            known = await asyncio.to_thread(what_is_known, self._database, running.station.automaton)
+        identity = _identity(running, transport.name)
+        speaking = transport if keeper is None else gated(transport, lambda: keeper.held)
+        controller = Controller(identity, running.station, supervisor, speaking, self._database, known)
+        keep_everything()  # a running station must not be held up
+        self._preparation.give(controller)
+        self._living.create_task(self._take_command(controller, known, alone))
+        async with _beside(self._show(controller)), _beside(show_network(controller.devices.network, self._link)):
+            await controller.run()
+
+    async def _take_command(self, controller: Controller, known: Known, alone: asyncio.Task[None]) -> None:
+        await asyncio.wait({alone})
+        if alone.exception() is not None:
+            return  # all of this ends
+        controller.take_command()
+        running, keeper = self._running, self._keeper
+        if running.start:
+            async with _beside(start_when_alone(controller, self._handle)):
+                await asyncio.Event().wait()
+        elif keeper is not None and keeper.taken_from is not None and known.produced and running.station.goes_on:
+            async with _beside(go_on(controller, self._handle, keeper.taken_from)):
+                await asyncio.Event().wait()
+
+    async def _act(self, command: Command) -> None:
+        """Carry out a command that is recorded. Raises `CommandRefused`."""
+        preparation, keeper = self._preparation, self._keeper
+        if keeper is not None and not keeper.held:
+            raise _stands_by(keeper)
         if preparation.controller is None or not preparation.controller.commands:
             # What has no supervisor does not run, so another model may take its place at once.
             if preparation.trouble is None or not isinstance(command, Deploy):
@@ -112,70 +209,41 @@ async def _run(
         else:
             await preparation.controller.command(command)
         if isinstance(command, Deploy):
-            await deploying.carry_out(command)
+            await self._deploying.carry_out(command)
 
-    async def handle(command: Command) -> None:
-        await recording.carry_out(command, preparation.tasks, act)
-        if preparation.controller is not None:
-            link.publish(preparation.controller.view())
+    async def _handle(self, command: Command) -> None:
+        """Record a command and carry it out. Raises `CommandRefused`."""
+        await self._recording.carry_out(command, self._preparation.tasks, self._act)
+        if self._preparation.controller is not None:
+            self._link.publish(self._seen(self._preparation.controller))
 
-    async def answer(ask: Ask) -> View:
-        if preparation.controller is None:
-            raise preparation.refusal()
-        return await preparation.controller.answer(ask)
+    async def _answer(self, ask: Ask) -> View:
+        """What is told only when somebody asks for it. Raises `CommandRefused`."""
+        if self._preparation.controller is None:
+            raise self._preparation.refusal()
+        return await self._preparation.controller.answer(ask)
 
-    async with (
-        ControllerLink(running.socket, handle, answer) as link,
-        _beside(analyse(running.station.automaton, preparation, running.socket.parent)),
-    ):
-        async with _beside(_show_preparing(running, preparation, link)):
-            supervisor = await _prepared(preparation)
-            if supervisor is None:
-                LOG.error("there is no supervisor", because=preparation.trouble)
-                await asyncio.Event().wait()
-                return
-        transport = running.connect(NODE)
-        try:
-            known = Known()
-            if not running.start:
-                known = await asyncio.to_thread(what_is_known, database, running.station.automaton)
-            identity = _identity(running, transport.name)
-            controller = Controller(identity, running.station, supervisor, transport, database, known)
-            keep_everything()  # a running station must not be held up
-            preparation.give(controller)
+    def _seen(self, controller: Controller) -> StationView:
+        view = controller.view()
+        return view if self._keeper is None else view.model_copy(update={"standby": _standby_view(self._keeper)})
 
-            async def command() -> None:
-                await asyncio.wait({alone})
-                if alone.exception() is None:  # otherwise all of this ends
-                    controller.take_command()
-                    if running.start:
-                        async with _beside(start_when_alone(controller, handle)):
-                            await asyncio.Event().wait()
+    async def _show(self, controller: Controller) -> None:
+        failed = ""
+        while True:
+            try:
+                self._link.publish(self._seen(controller))
+            except Exception as error:  # who looks on is told that nothing is heard; the station goes on
+                if failed != (failed := repr(error)):
+                    LOG.exception("the station cannot be shown")
+            await asyncio.sleep(SHOW_EVERY)
 
-            living.create_task(command())
-            async with (
-                _beside(_show(controller, link)),
-                _beside(show_network(controller.devices.network, link)),
-            ):
-                await controller.run()
-        finally:
-            transport.close()
-
-
-async def start_when_alone(controller: Controller, handle: Handle, look_every: float = 0.2) -> None:
-    """Let production be started by `handle`, without a person, once emulated devices and nobody else are there."""
-    said: list[str] = []
-    while controller.execution.production is Production.WAITING:
-        strangers = controller.devices.strangers(f"/{EMULATED_DEVICES}")
-        # What would be refused is not tried again and again, as each try is recorded.
-        strangers += [f"it is not decided what {name} shall be" for name in controller.undecided]
-        if not strangers:
-            with contextlib.suppress(CommandRefused):  # since the network was looked at, somebody has come
-                await handle(StartProduction(actor=SYSTEM, reason="started with --start"))
-        elif strangers != said:
-            said = strangers
-            LOG.info("production is not started by itself", because=strangers)
-        await asyncio.sleep(look_every)
+    async def _show_preparing(self) -> None:
+        identity, began, known = _identity(self._running, ""), time.time(), self._preparation
+        while True:
+            standby = None if self._keeper is None else _standby_view(self._keeper)
+            view = preparing_view(identity, time.time(), began, known.analysis, known.trouble, standby)
+            self._link.publish(view)
+            await asyncio.sleep(SHOW_EVERY)
 
 
 @contextlib.asynccontextmanager
@@ -219,23 +287,37 @@ def what_is_known(database: Database, automaton: Automaton) -> Known:
     with database.reading() as connection:
         restored = beginning(connection, automaton, Moment.now())
         aside, beliefs = last(connection, ASIDE), last(connection, BELIEFS)
+        begun, started = last(connection, BEGUN), last(connection, kind_of(ProductionStarted))
     return Known(
         restored.beginning if restored else None,
         {} if aside is None else aside_from(json.loads(aside.content)),
         {} if beliefs is None else beliefs_from(json.loads(beliefs.content)),
         restored.left_out if restored else (),
+        begun is not None and started is not None and started.number > begun.number,
     )
 
 
-async def _show(controller: Controller, link: ControllerLink) -> None:
-    failed = ""
-    while True:
-        try:
-            link.publish(controller.view())
-        except Exception as error:  # who looks on is told that nothing is heard; the station goes on
-            if failed != (failed := repr(error)):
-                LOG.exception("the station cannot be shown")
-        await asyncio.sleep(SHOW_EVERY)
+def _standby_view(keeper: Keeper) -> StandbyView:
+    standing = keeper.standing
+    return StandbyView(
+        name=standing.name,
+        active=standing.active,
+        holder=standing.holder,
+        standing_by=list(standing.standing_by),
+        trouble=standing.trouble,
+    )
+
+
+def _stands_by(keeper: Keeper) -> CommandRefused:
+    """Why a station that does not hold the lease carries nothing out."""
+    holder = keeper.standing.holder
+    if keeper.standing.active:
+        why = keeper.standing.trouble or "the database is slow"
+        detail = f"This station cannot renew the lease of the command: {why}. Try again in a moment."
+        return CommandRefused("lease-not-renewed", "The lease of the command is not renewed", detail, 503)
+    where = "Another station" if holder is None or holder == keeper.standing.name else holder
+    detail = f"{where} commands the devices, and this station stands by for it. Open that one's page."
+    return CommandRefused("stands-by", "This station stands by", detail, 503)
 
 
 async def show_network(network: NetworkWatch, link: ControllerLink) -> None:
@@ -256,13 +338,6 @@ async def _in_steps(steps: Generator[None, None, NetworkView]) -> NetworkView:
             view: NetworkView = done.value
             return view
         await asyncio.sleep(0)
-
-
-async def _show_preparing(running: Running, preparation: Preparation, link: ControllerLink) -> None:
-    identity, began = _identity(running, ""), time.time()
-    while True:
-        link.publish(preparing_view(identity, time.time(), began, preparation.analysis, preparation.trouble))
-        await asyncio.sleep(SHOW_EVERY)
 
 
 def _identity(running: Running, transport: str) -> StationIdentity:

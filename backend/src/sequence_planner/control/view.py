@@ -265,6 +265,20 @@ class TopicView(View):
     trouble: str | None
 
 
+class StandbyView(View):
+    """Several stations share a database, and one of them commands the devices: this one if it is `active`.
+
+    `holder` commands, or did last; null if nobody ever did. `standing_by` are others that would take the command over.
+    `trouble` says why nobody knows how things are, or why this station would not.
+    """
+
+    name: str
+    active: bool
+    holder: str | None
+    standing_by: list[str]
+    trouble: str | None
+
+
 class StationView(View):
     """The whole document."""
 
@@ -296,3 +310,4 @@ class StationView(View):
     alarms: dict[str, AlarmView]
     way_back: WayBackView | None  # null while the state is safe
     analysis: AnalysisDocument | None  # what synthesis has found of the station, as far as it has got
+    standby: StandbyView | None  # null where the station is alone

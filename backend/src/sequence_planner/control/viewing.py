@@ -158,6 +158,7 @@ class Viewing:
             alarms=alarms,
             way_back=way_back(self._execution.automaton, self._outside, self._feeding),
             analysis=self.analysis,
+            standby=None,
         )
 
     def _resources(self, moment: Moment) -> dict[str, ResourceView]:

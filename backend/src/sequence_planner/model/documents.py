@@ -244,6 +244,8 @@ class StationDocument(DocumentPart):
     """Variables of the station as a whole, which abilities of every resource may write."""
     rest: Predicate = True
     """The states to which the station can always be brought back."""
+    takeover: Literal["confirm", "automatic"] = "confirm"
+    """Where a hot standby has taken the command over: whether a person confirms that production goes on."""
 
 
 class OperationDocument(DocumentPart):

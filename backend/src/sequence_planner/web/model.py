@@ -16,6 +16,7 @@ from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
+from sequence_planner.web.controller_client import ControllerClient
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor
 from sequence_planner.web.stream import serve
@@ -37,7 +38,15 @@ router = APIRouter(prefix="/model", tags=["model"], responses=refused(409, 503))
 
 
 async def workshop(connection: HTTPConnection) -> Workshop:
-    """The workshop of the station. Raises `ProblemFound` where the server does not know its model."""
+    """The workshop of the station. Raises `ProblemFound` where the server does not know its model, or stands by.
+
+    Who stands by has a folder of its own, which may be older than the draft that all share.
+    """
+    client: ControllerClient = connection.app.state.controller
+    standby = None if client.view is None else client.view.standby
+    if standby is not None and not standby.active:
+        detail = f"The model is edited at the station that commands, {standby.holder or 'another one'}. Open its page."
+        raise ProblemFound(503, "stands-by", "This station stands by", detail)
     found: Workshop | None = connection.app.state.workshop
     if found is None:
         detail = "This server does not know where the station's model is. Start it with `sequence-planner run MODEL`."

@@ -30,6 +30,7 @@ from sequence_planner.control.view import (
     PlanView,
     Production,
     ResourceView,
+    StandbyView,
     StationIdentity,
     TaskView,
     TopicView,
@@ -67,6 +68,7 @@ class StationAnswer(Answer):
     out_of_service: list[ServiceView]
     questions: list[QuestionView]
     last_correction: LastCorrectionView | None
+    standby: StandbyView | None
 
 
 class StateAnswer(Answer):

@@ -34,6 +34,7 @@ from sequence_planner.control.view import (
     PlanView,
     Production,
     ResourceView,
+    StandbyView,
     StationIdentity,
     StationView,
     TaskView,
@@ -74,6 +75,7 @@ class StationChange(TypedDict, total=False):
     alarms: dict[str, AlarmView]
     way_back: WayBackView | None
     analysis: AnalysisDocument | None
+    standby: StandbyView | None
 
 
 class StationRemoval(TypedDict, total=False):

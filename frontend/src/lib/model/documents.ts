@@ -36,6 +36,16 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 				"help": "The states to which the station can always be brought back.",
 				"required": false,
 				"otherwise": true
+			},
+			"takeover": {
+				"kind": "choice",
+				"choices": [
+					"confirm",
+					"automatic"
+				],
+				"help": "Where a hot standby has taken the command over: whether a person confirms that production goes on.",
+				"required": false,
+				"otherwise": "confirm"
 			}
 		}
 	},

@@ -104,6 +104,7 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		way_back: null,
 		control: null,
 		analysis: null,
+		standby: null,
 		...rest
 	};
 }

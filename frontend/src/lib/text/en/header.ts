@@ -1,3 +1,5 @@
+import type { Standby } from '#lib/contract.ts';
+
 /** The header: what is said of the station as a whole, on every page. */
 export const header = {
 	pages: 'Pages',
@@ -25,6 +27,12 @@ export const header = {
 		started: 'production started'
 	},
 	preparing: 'The controller only listens, and asks the network whether somebody else commands these devices. No command is taken until that is known.',
+	/** Of several stations for the same devices: what this one does, and what keeps it from that. */
+	standby: ({ active, holder, trouble }: Standby): string => {
+		if (trouble !== null) return `This is one of several stations, and cannot take the command: ${trouble}.`;
+		if (!active) return `This station stands by: ${holder ?? 'nobody'} commands the devices.`;
+		return 'No other station stands by: nobody would take over from this one.';
+	},
 	beingComputed: (what: string): string => `Being computed: ${what}.`,
 	/** The states of PackML by the names that the standard has for them. */
 	packml: {

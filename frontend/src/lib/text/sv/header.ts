@@ -25,6 +25,11 @@ export const header: Text['header'] = {
 		started: 'produktionen är startad'
 	},
 	preparing: 'Styrningen lyssnar bara, och frågar nätet om någon annan styr samma enheter. Inga kommandon tas emot innan det är känt.',
+	standby: ({ active, holder, trouble }) => {
+		if (trouble !== null) return `Det här är en av flera stationer, och den kan inte ta befälet: ${trouble}.`;
+		if (!active) return `Den här stationen står i reserv: ${holder ?? 'ingen'} styr enheterna.`;
+		return 'Ingen annan station står i reserv: ingen skulle ta över efter den här.';
+	},
 	beingComputed: (what) => `Beräknas: ${what}.`,
 	packml: {
 		resetting: 'Resetting',

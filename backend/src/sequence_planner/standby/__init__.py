@@ -1,0 +1,1 @@
+"""Several stations on one database, of which one commands the devices and the others stand by."""

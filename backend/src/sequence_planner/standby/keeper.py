@@ -1,0 +1,124 @@
+"""A thread that takes the lease of the command as soon as it may, and holds it from then on.
+
+It has nothing else to do and waits for nothing but the lease's own short statements, so a station that is busy renews
+its lease all the same. Whoever is about to say something to a device asks `held`, which is true only as long as nobody
+else can have taken the lease.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import threading
+from dataclasses import dataclass
+
+import structlog
+
+from sequence_planner.standby.lease import EVERY, Lease
+from sequence_planner.storage.error import StorageError
+
+LOG = structlog.get_logger(__name__)
+ENDING = 3.0  # seconds
+
+
+class LeaseLostError(Exception):
+    """Another station has taken the lease: it commands from now on."""
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How things are: who holds the lease or did last, who else is there, and why this station does not take it."""
+
+    name: str
+    active: bool
+    holder: str | None
+    standing_by: tuple[str, ...]
+    trouble: str | None
+
+
+class Keeper:
+    """Keeps a lease. Used from the event loop on which it was made, but for `held`."""
+
+    def __init__(self, lease: Lease) -> None:
+        self._lease = lease
+        self._loop = asyncio.get_running_loop()
+        self._taken: asyncio.Future[None] = self._loop.create_future()
+        self._lost: asyncio.Future[None] = self._loop.create_future()
+        self._ending = threading.Event()
+        self._overtaken = False
+        self._thread = threading.Thread(target=self._work, name="lease", daemon=True)
+        self.standing = Standing(lease.name, False, None, (), None)
+
+    @property
+    def held(self) -> bool:
+        """Whether this station may say something to a device at this moment."""
+        return self._lease.held
+
+    @property
+    def taken_from(self) -> str | None:
+        """Who commanded before this station did; None if that was nobody else."""
+        return self._lease.taken_from
+
+    def begin(self) -> None:
+        """From now on it waits for the lease, or holds it."""
+        self._thread.start()
+
+    async def taken(self) -> None:
+        """Wait until the lease was taken."""
+        await asyncio.shield(self._taken)
+
+    async def lost(self) -> None:
+        """Wait until it was lost. Raises `LeaseLostError` then."""
+        await asyncio.shield(self._lost)
+        raise LeaseLostError
+
+    async def end(self, *, deployed: bool) -> None:
+        """Let go of the lease: nothing is said to a device any more. See `Lease.release` for `deployed`."""
+        self._ending.set()
+        await asyncio.to_thread(self._thread.join, ENDING)
+        with contextlib.suppress(StorageError):  # then it runs out
+            await asyncio.to_thread(self._lease.release, deployed=deployed)
+        self._lease.close()
+
+    def _work(self) -> None:
+        while not self._ending.is_set():
+            try:
+                self._step()
+            except StorageError as error:
+                self._tell(str(error))
+            if self._overtaken:
+                return
+            self._ending.wait(EVERY)
+
+    def _step(self) -> None:
+        if self._lease.is_ours:
+            if not self._lease.renew():
+                self._overtaken = True
+                self._call(self._lost)
+        elif self._lease.try_to_take():
+            LOG.info("this station commands from now on", name=self._lease.name)
+            self._call(self._taken)
+        else:
+            self._lease.stand_by()
+        self._tell(None)
+
+    def _tell(self, trouble: str | None) -> None:
+        """Show how things are; where the database does not answer it is said that nobody knows."""
+        lease = self._lease
+        holder = None if lease.seen is None else lease.seen.holder
+        others: tuple[str, ...] = ()
+        if trouble is None:
+            with contextlib.suppress(StorageError):
+                others = lease.standing_by()
+            trouble = None if lease.is_ours else lease.hindrance
+        if trouble != self.standing.trouble and trouble is not None:
+            LOG.warning("the lease of the command", trouble=trouble)
+        self.standing = Standing(lease.name, lease.is_ours, holder, others, trouble)
+
+    def _call(self, future: asyncio.Future[None]) -> None:
+        def done() -> None:
+            if not future.done():
+                future.set_result(None)
+
+        with contextlib.suppress(RuntimeError):  # the loop has ended
+            self._loop.call_soon_threadsafe(done)

@@ -1,0 +1,209 @@
+"""The lease of the command over a station's devices: at any moment at most one of several stations holds it.
+
+It is a row in the database that all share. Its holder counts it up again and again; who sees the count stand still for
+longer than the lease lasts may take it, by a write that only succeeds if the count is still that one. The holder for
+its part holds it no longer than that from the moment on at which it began to count up last, less a margin. So no two
+hold it at once, whatever the clocks of the day say: each measures only how long something took, by a clock of its own
+that goes on while its process stands still (Gray and Cheriton, *Leases*, SOSP 1989, with counts for their times).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from typing import Final
+
+from sqlalchemy import Connection, Engine, QueuePool, Row, create_engine, select, text, update
+from sqlalchemy.dialects.postgresql import insert as insert_or_not
+from sqlalchemy.exc import SQLAlchemyError
+
+from sequence_planner.standby.tables import LEASE, STANDBYS
+from sequence_planner.storage.address import PostgresqlServer, address
+from sequence_planner.storage.error import StorageError
+from sequence_planner.storage.trouble import storage_error
+
+LASTS: Final = 3.0  # seconds from a renewal
+MARGIN: Final = 0.5  # seconds by which its holder lets go of it before somebody else may take it
+EVERY: Final = 0.4  # seconds between two renewals, and between two looks of those who wait for it
+ANSWERED: Final = 1.0  # seconds in which the database has to answer
+DEPLOYED: Final = ""  # in the place of a model's digest: of the one that its last holder comes back with
+_THE_ROW: Final = LEASE.c.id == 1
+_MILLISECONDS: Final = int(ANSWERED * 1000)
+_SETTINGS: Final = {  # of libpq; a connection is made within two seconds at least
+    "client_encoding": "utf8",
+    "connect_timeout": 2,
+    "tcp_user_timeout": _MILLISECONDS,
+    "options": f"-c statement_timeout={_MILLISECONDS} -c lock_timeout={_MILLISECONDS}",
+}
+
+
+def boot_clock() -> float:
+    """Seconds of a clock that nobody sets, and that goes on while the process, or the machine, stands still."""
+    return time.clock_gettime(getattr(time, "CLOCK_BOOTTIME", time.CLOCK_MONOTONIC))
+
+
+@dataclass(frozen=True)
+class Seen:
+    """The lease as it was seen: who holds it or did, with what model, and how often it was taken and renewed."""
+
+    holder: str
+    model: str
+    epoch: int
+    renewals: int
+    free: bool
+
+
+@dataclass
+class Lease:
+    """The lease as one station sees it, which is called `name` and runs the model with this digest.
+
+    Used from one thread but for `held`. Each method raises `StorageError` when the database does not answer.
+    """
+
+    engine: Engine
+    place: PostgresqlServer
+    name: str
+    model: str
+    clock: Callable[[], float] = boot_clock
+    seen: Seen | None = None
+    """The last that was seen of it; None if nobody has ever held it."""
+    taken_from: str | None = None
+    """Who else had held it before it was taken here."""
+    _epoch: int | None = None  # in which it is ours
+    _until: float = 0.0  # on the clock
+    _still_since: float = 0.0  # nothing about it has changed since
+    _standbys: dict[str, tuple[int, float]] = field(default_factory=dict)  # by name: its count, and since when
+
+    @property
+    def held(self) -> bool:
+        """Whether it is held at this moment."""
+        return self.clock() < self._until
+
+    @property
+    def is_ours(self) -> bool:
+        """Whether it was taken, and nobody else is known to have taken it since."""
+        return self._epoch is not None
+
+    @property
+    def hindrance(self) -> str | None:
+        """Why this station must not take it, whatever becomes of its holder; None if it may."""
+        seen = self.seen
+        if seen is None or seen.model == self.model or seen.holder == self.name:
+            return None
+        if seen.model == DEPLOYED:
+            return f"another model was deployed at {seen.holder}: deploy it here too"
+        return f"{seen.holder} runs another model: deploy the same one here"
+
+    def try_to_take(self) -> bool:
+        """Look at it, and take it if its holder has let go of it, or has not renewed it for too long."""
+        with self._writing() as connection:
+            row = connection.execute(select(LEASE).where(_THE_ROW)).first()
+        now = self.clock()
+        seen = None if row is None else _seen(row)
+        if seen != self.seen or not self._still_since:
+            self.seen, self._still_since = seen, now
+        if self.hindrance is not None:
+            return False
+        if seen is not None and not seen.free and now - self._still_since < LASTS:
+            return False
+        return self._take(seen)
+
+    def renew(self) -> bool:
+        """Hold it for longer; false if somebody else has taken it."""
+        began = self.clock()
+        with self._writing() as connection:
+            ours = _THE_ROW & (LEASE.c.epoch == self._epoch) & ~LEASE.c.free
+            renewed = connection.execute(update(LEASE).where(ours).values(renewals=LEASE.c.renewals + 1)).rowcount == 1
+        if renewed:
+            self._hold(began)
+        else:
+            self._epoch, self._until = None, 0.0
+        return renewed
+
+    def release(self, *, deployed: bool = False) -> None:
+        """Let go of it, so that others need not wait; when another model was `deployed` here only those who run it."""
+        epoch, self._epoch, self._until = self._epoch, None, 0.0
+        if epoch is not None:
+            values = {"free": True, **({"model": DEPLOYED} if deployed else {})}
+            with self._writing() as connection:
+                connection.execute(update(LEASE).where(_THE_ROW & (LEASE.c.epoch == epoch)).values(values))
+
+    def stand_by(self) -> None:
+        """Say that this station is there and waits."""
+        values = {"name": self.name, "model": self.model, "signs": 1}
+        said = insert_or_not(STANDBYS).values(values)
+        again = said.on_conflict_do_update(
+            index_elements=["name"], set_={"model": self.model, "signs": STANDBYS.c.signs + 1}
+        )
+        with self._writing() as connection:
+            connection.execute(again)
+
+    def standing_by(self) -> tuple[str, ...]:
+        """Who else is there, with the same model, and could take it."""
+        with self._writing() as connection:
+            rows = connection.execute(select(STANDBYS).where(STANDBYS.c.model == self.model)).all()
+        now, before = self.clock(), self._standbys
+        self._standbys = {
+            row.name: (row.signs, now if before.get(row.name, (None,))[0] != row.signs else before[row.name][1])
+            for row in rows
+            if row.name != self.name
+        }
+        # What was read for the first time may be old.
+        fresh = (name for name, (_, since) in self._standbys.items() if name in before and now - since < LASTS)
+        return tuple(sorted(fresh))
+
+    def close(self) -> None:
+        """End all connections."""
+        self.engine.dispose()
+
+    def _take(self, seen: Seen | None) -> bool:
+        began = self.clock()
+        mine = {"holder": self.name, "model": self.model, "renewals": 0, "free": False}
+        with self._writing() as connection:
+            if seen is None:
+                first = insert_or_not(LEASE).values(id=1, epoch=1, **mine).on_conflict_do_nothing()
+                taken = connection.execute(first.returning(LEASE.c.id)).first() is not None
+            else:
+                as_seen = (
+                    (LEASE.c.epoch == seen.epoch) & (LEASE.c.renewals == seen.renewals) & (LEASE.c.free == seen.free)
+                )
+                values = {**mine, "epoch": seen.epoch + 1}
+                taken = connection.execute(update(LEASE).where(_THE_ROW & as_seen).values(values)).rowcount == 1
+        if taken:
+            self.taken_from = None if seen is None or seen.holder == self.name else seen.holder
+            self._epoch = 1 if seen is None else seen.epoch + 1
+            self.seen = Seen(self.name, self.model, self._epoch, 0, free=False)
+            self._hold(began)
+        return taken
+
+    def _hold(self, began: float) -> None:
+        self._until = began + LASTS - MARGIN
+
+    @contextmanager
+    def _writing(self) -> Iterator[Connection]:
+        """A short transaction, durable when it has ended, which waits for nobody who writes something else."""
+        try:
+            with self.engine.connect() as connection, connection.begin():
+                connection.execute(text("SET LOCAL synchronous_commit = on"))
+                yield connection
+        except SQLAlchemyError as error:
+            raise storage_error(self.place, error) from error
+
+
+def open_lease(url: str, name: str, model: str) -> Lease:
+    """The lease in the database that a URL names. Raises `StorageError` for one that several machines cannot share."""
+    place = address(url)
+    if not isinstance(place, PostgresqlServer):
+        raise StorageError(f"several stations cannot share {place}: a hot standby takes a database of PostgreSQL")
+    return Lease(
+        create_engine(place.url, connect_args=_SETTINGS, poolclass=QueuePool, pool_size=1, hide_parameters=True),
+        place,
+        name,
+        model,
+    )
+
+
+def _seen(row: Row[tuple[object, ...]]) -> Seen:
+    return Seen(row.holder, row.model, row.epoch, row.renewals, row.free)

@@ -1,0 +1,189 @@
+"""The lease of the command, on a real server: no two stations ever hold it, and it never stays lying for ever."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import pytest
+from hypothesis import HealthCheck, settings
+from hypothesis import strategies as st
+from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
+from sqlalchemy import delete, event
+
+from sequence_planner.standby.lease import EVERY, LASTS, MARGIN, Lease, open_lease
+from sequence_planner.standby.tables import LEASE, STANDBYS
+from sequence_planner.storage.database import Database
+from sequence_planner.storage.error import StorageError
+from storage.servers import Server
+
+MODEL, OTHER = "1" * 64, "2" * 64
+NAMES = ("press-a", "press-b", "press-c")
+SLOW = st.floats(0.0, 2 * LASTS)
+
+
+class Now:
+    """A clock that stands still unless somebody lets time pass."""
+
+    def __init__(self) -> None:
+        self.seconds = 1000.0
+
+    def __call__(self) -> float:
+        return self.seconds
+
+
+@pytest.fixture
+def url(postgresql: Server) -> str:
+    made = postgresql.new_database()
+    database = Database.open(made)
+    database.upgrade()
+    database.close()
+    return made
+
+
+@contextmanager
+def stations(url: str, models: dict[str, str], now: Now) -> Iterator[dict[str, Lease]]:
+    opened = {name: open_lease(url, name, model) for name, model in models.items()}
+    for each in opened.values():
+        each.clock = now
+    try:
+        yield opened
+    finally:
+        for each in opened.values():
+            each.close()
+
+
+def test_who_comes_first_holds_it_and_the_next_takes_it_once_it_was_not_renewed(url: str) -> None:
+    now = Now()
+    with stations(url, dict.fromkeys(NAMES[:2], MODEL), now) as opened:
+        first, second = opened.values()
+        assert first.try_to_take() and first.held
+        assert not second.try_to_take()
+        now.seconds += LASTS - MARGIN
+        assert not first.held, "it may be taken soon"
+        assert first.renew() and first.held
+        assert not second.try_to_take(), "it was renewed meanwhile"
+        now.seconds += LASTS
+        assert second.try_to_take() and second.held and not first.held
+        assert not first.renew() and not first.is_ours
+
+
+def test_who_lets_go_of_it_keeps_nobody_waiting(url: str) -> None:
+    with stations(url, dict.fromkeys(NAMES[:2], MODEL), Now()) as opened:
+        first, second = opened.values()
+        assert first.try_to_take()
+        assert not second.try_to_take()
+        first.release()
+        assert not first.held
+        assert second.try_to_take()
+
+
+def test_another_model_takes_nothing_over_and_says_why(url: str) -> None:
+    now = Now()
+    with stations(url, {"press-a": MODEL, "press-b": OTHER}, now) as opened:
+        first, second = opened.values()
+        assert first.try_to_take()
+        assert not second.try_to_take()
+        now.seconds += 10 * LASTS
+        assert not second.try_to_take()
+        assert second.hindrance == "press-a runs another model: deploy the same one here"
+
+
+def test_after_a_deployment_the_station_where_that_was_comes_back_first(url: str) -> None:
+    now = Now()
+    models = {"press-a": MODEL, "press-b": MODEL}
+    with stations(url, models, now) as opened, stations(url, {"press-a": OTHER}, now) as later:
+        first, second = opened.values()
+        assert first.try_to_take()
+        first.release(deployed=True)
+        assert not second.try_to_take()
+        assert second.hindrance == "another model was deployed at press-a: deploy it here too"
+        assert later["press-a"].try_to_take()
+        assert not second.try_to_take()
+        assert second.hindrance == "press-a runs another model: deploy the same one here"
+
+
+def test_who_stands_by_is_known_as_long_as_it_says_so(url: str) -> None:
+    now = Now()
+    with stations(url, {"press-a": MODEL, "press-b": MODEL, "press-c": OTHER}, now) as opened:
+        first, second, third = opened.values()
+        assert first.try_to_take()
+        for _ in range(3):
+            second.stand_by()
+            third.stand_by()
+            now.seconds += EVERY
+            standing_by = first.standing_by()
+        assert standing_by == ("press-b",), "who has another model would not take over"
+        now.seconds += LASTS
+        assert first.standing_by() == ()
+
+
+def test_it_takes_a_database_that_several_machines_can_share(url: str) -> None:
+    with pytest.raises(StorageError, match="a hot standby takes a database of PostgreSQL"):
+        open_lease("sqlite:////tmp/station.sqlite", "press-a", MODEL)
+
+
+def test_a_database_that_is_away_is_told(tmp_path: object) -> None:
+    lease = open_lease(f"postgresql://nobody@/nothing?host={tmp_path}", "press-a", MODEL)
+    with pytest.raises(StorageError, match="cannot be reached"):
+        lease.try_to_take()
+    assert not lease.held
+
+
+class Rivals(RuleBasedStateMachine):
+    """Three stations, each of which may stand still at any statement for longer than a lease lasts."""
+
+    url: str
+
+    @initialize()
+    def begin(self) -> None:
+        self.now = Now()
+        self.delays: list[float] = []
+        self.context = stations(self.url, dict.fromkeys(NAMES, MODEL), self.now)
+        self.opened = self.context.__enter__()
+        for each in self.opened.values():
+            event.listen(each.engine, "before_cursor_execute", self._late)
+        with next(iter(self.opened.values())).engine.begin() as connection:
+            connection.execute(delete(LEASE))
+            connection.execute(delete(STANDBYS))
+
+    def _late(self, *_: object) -> None:
+        if self.delays:
+            self.now.seconds += self.delays.pop()
+
+    @rule(name=st.sampled_from(NAMES), delays=st.lists(SLOW, max_size=4))
+    def step(self, name: str, delays: list[float]) -> None:
+        """What its keeper does again and again."""
+        lease, self.delays = self.opened[name], delays
+        if lease.is_ours:
+            lease.renew()
+        else:
+            lease.try_to_take()
+        self.delays = []
+
+    @rule(name=st.sampled_from(NAMES))
+    def let_go(self, name: str) -> None:
+        self.opened[name].release()
+
+    @rule(seconds=SLOW)
+    def wait(self, seconds: float) -> None:
+        self.now.seconds += seconds
+
+    @invariant()
+    def at_most_one_holds_it(self) -> None:
+        if hasattr(self, "opened"):
+            assert sum(each.held for each in self.opened.values()) <= 1
+
+    def teardown(self) -> None:
+        if hasattr(self, "opened"):
+            for each in self.opened.values():
+                each.release()
+            self.now.seconds += 2 * LASTS
+            assert any(each.try_to_take() for each in self.opened.values()), "it must not stay lying for ever"
+            self.context.__exit__(None, None, None)
+
+
+def test_no_two_ever_hold_it(url: str) -> None:
+    Rivals.url = url
+    limits = settings(max_examples=25, stateful_step_count=20, deadline=None, suppress_health_check=list(HealthCheck))
+    run_state_machine_as_test(Rivals, settings=limits)
