@@ -5,7 +5,7 @@ from __future__ import annotations
 from alembic import op
 from sqlalchemy import BigInteger, Boolean, Column, Integer, String
 
-revision = "0009"
+revision = "0004"
 down_revision = "0003"
 
 NUMBER = BigInteger().with_variant(Integer, "sqlite")
