@@ -77,7 +77,7 @@ class _Known:
         self._last = record.time
         self._found: dict[str, Any] = json.loads(record.content)
         self._unconfirmed = set(self._found["unconfirmed"])
-        self._jobs: dict[str, Any] = dict(self._found.get("jobs", {}))  # null is one that was forgotten
+        self._jobs: dict[str, Any] = dict(self._found.get("jobs", {}))
 
     def take(self, record: RunRecord) -> None:
         content = json.loads(record.content)
@@ -86,7 +86,11 @@ class _Known:
         changes = content.get("changes", {})
         self._found["values"] |= changes
         self._found |= {name: content[name] for name in _CONDUCT if name in content}
-        self._jobs |= content.get("jobs", {})
+        for job, document in content.get("jobs", {}).items():
+            if document is None:  # it was forgotten
+                self._jobs.pop(job, None)
+            else:
+                self._jobs[job] = document
         what = content.get("what", {})
         seen = what.get("names", ()) if record.kind == _CONFIRMED else what.get("values", {})
         self._unconfirmed.difference_update(changes, seen)
@@ -107,9 +111,8 @@ class _Known:
         return Restored(beginning, tuple(left_out))
 
     def _restored_jobs(self, automaton: Automaton, left_out: list[str], now: Moment) -> Jobs:
-        taken = {name: document for name, document in self._jobs.items() if document is not None}
         by_order, waits = bool(self._found.get("by_order", False)), self._found.get("waits", [])
-        return restored_jobs(automaton, by_order, taken, waits, left_out, now)
+        return restored_jobs(automaton, by_order, self._jobs, waits, left_out, now)
 
     def _values(self, automaton: Automaton, left_out: list[str]) -> dict[str, Value]:
         fitting: dict[str, Value] = {}
