@@ -82,13 +82,17 @@ class Orders(RuleBasedStateMachine):
     @precondition(lambda self: self.jobs.under_way)
     @rule(pairs=st.lists(st.tuples(NUMBERS, NUMBERS), min_size=1, max_size=2))
     def sequence(self, pairs: list[tuple[int, int]]) -> None:
-        """Between jobs, and within one."""
-        with contextlib.suppress(CommandRefused):
-            self.on.take(f"job-{self.ordered + 1}", "box")
+        """What is not active yet waits for what is not completed yet, of another job or the same."""
+        if "box" in self.possible:
             self.ordered += 1
-        steps = [f"{job.id}/{name}" for job in self.jobs.under_way for name in MASTERS[job.work_master].operations]
-        with contextlib.suppress(CommandRefused):
-            self.on.sequence(*((picked(steps, one), picked(steps, other)) for one, other in pairs))
+            self.on.take(f"job-{self.ordered}", "box")
+        steps = [(job, name) for job in self.jobs.under_way for name in MASTERS[job.work_master].operations]
+        later = [f"{job.id}/{name}" for job, name in steps if name not in {*job.started, *job.completed}]
+        sooner = [f"{job.id}/{name}" for job, name in steps if name not in job.completed]
+        if later:
+            with contextlib.suppress(CommandRefused):
+                self.on.sequence(*((picked(later, one), picked(sooner, other)) for one, other in pairs))
+            self._tick({})
 
     @precondition(lambda self: self.over)
     @rule(number=NUMBERS)

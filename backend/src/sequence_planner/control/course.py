@@ -297,10 +297,12 @@ class Course:
         if errand is None or errand.ability is not None or not holds(errand.goal, self._run.values):
             return
         if errand.operation is not None:
-            self.active -= {errand.operation}
-            self._operations = self._operations.without((errand.operation,))
             jobs = self.conduct.jobs.reopened(errand.operation, self.automaton)
             self._change(done=self.conduct.done - {errand.operation}, jobs=jobs)
+            # What comes after it in a job has to wait for it again.
+            withdrawn = {errand.operation} | (self.active & self.conduct.idle_operations(self.automaton))
+            self.active -= withdrawn
+            self._operations = self._operations.without(withdrawn)
             self._run.record_activity(self.active)
         self._end_errand("", now, done=True)
 
