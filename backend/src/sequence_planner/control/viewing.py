@@ -13,6 +13,7 @@ from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.heard import TickOutcome
+from sequence_planner.control.jobs import Jobs
 from sequence_planner.control.live_plan import Replacement
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
@@ -52,6 +53,7 @@ from sequence_planner.control.viewing_conduct import (
     packml,
     service_views,
 )
+from sequence_planner.control.viewing_jobs import job_views
 from sequence_planner.control.viewing_outside import way_back
 from sequence_planner.control.waiting import waits_for
 from sequence_planner.expressions.printing import print_expression
@@ -125,9 +127,10 @@ class Viewing:
         alarms: dict[str, AlarmView],
         control: ControlView | None,
         doubts: Doubts,
+        jobs: Jobs,
         moment: Moment,
     ) -> StationView:
-        """The whole document."""
+        """The whole document, with the `jobs` as far as they are durable."""
         execution, conduct = self._execution, self._execution.conduct
         return StationView(
             station=self._identity,
@@ -145,6 +148,8 @@ class Viewing:
             variables=self._variables(),
             abilities=self._abilities(),
             operations=self._operations(),
+            by_order=jobs.by_order,
+            jobs=job_views(execution, jobs),
             plan=self._plan(),
             errand=errand_view(execution),
             last_errand=last_errand_view(conduct),
@@ -208,6 +213,8 @@ class Viewing:
     def _operations(self) -> dict[str, OperationView]:
         execution = self._execution
         left_out = set(execution.plan.answer.left_out) if execution.plan.answer else set()
+        jobs, automaton = execution.conduct.jobs, execution.automaton
+        asking = {name: job.id for job in jobs.under_way for name in automaton.work_masters[job.work_master].operations}
         return {
             operation.name: OperationView(
                 title=operation.title,
@@ -218,8 +225,10 @@ class Viewing:
                 precondition=print_expression(operation.precondition),
                 left_out=operation.name in left_out & execution.active,
                 repeat=operation.repeat,
+                for_jobs=operation.name in automaton.job_operations,
+                job=asking.get(operation.name),
             )
-            for operation in execution.automaton.operations.values()
+            for operation in automaton.operations.values()
         }
 
     def _plan(self) -> PlanView:
