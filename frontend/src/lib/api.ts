@@ -2882,7 +2882,8 @@ export interface components {
          * @description Something that has to be otherwise. `involved` alone keep it from being true, and none of them could be spared.
          *
          *     `kind` is station (how the station executes), service (what does not take part), written (in the model),
-         *     unpublished (a command has to leave first), supervisor (what synthesis has added) or plan (nothing wants it yet).
+         *     unpublished (a command has to leave first), supervisor (what synthesis has added), plan (nothing wants it yet) or
+         *     order (no job asks for it yet).
          */
         ConditionView: {
             /** Involved */
@@ -3898,6 +3899,62 @@ export interface components {
             /** Time */
             time: number;
         };
+        /**
+         * JobState
+         * @description Where a job stands.
+         * @enum {string}
+         */
+        JobState: "waiting" | "running" | "paused" | "ended" | "stopped" | "aborted";
+        /**
+         * JobStepState
+         * @description Where an operation of a job stands.
+         * @enum {string}
+         */
+        JobStepState: "waiting" | "eligible" | "active" | "completed";
+        /**
+         * JobStepView
+         * @description An operation of a job: when it was active first, and when it was completed.
+         *
+         *     One whose goal held already is completed without having been active. It `waits_for` operations of its job, or of
+         *     another, written `job/operation`.
+         */
+        JobStepView: {
+            /** Ended */
+            ended: number | null;
+            /** Started */
+            started: number | null;
+            state: components["schemas"]["JobStepState"];
+            /** Waits For */
+            waits_for: string[];
+        };
+        /**
+         * JobView
+         * @description A job, with its operations in the order of its work master.
+         *
+         *     `begun` is when what its product brings was there. With `stopping` no further operation begins, and it is `stopped`
+         *     as soon as those that were active then are completed. `waits_for` says in words what keeps it from going on.
+         */
+        JobView: {
+            /** Begun */
+            begun: number | null;
+            /** Ended */
+            ended: number | null;
+            state: components["schemas"]["JobState"];
+            /** Steps */
+            steps: {
+                [key: string]: components["schemas"]["JobStepView"];
+            };
+            /** Stopping */
+            stopping: boolean;
+            /** Taken */
+            taken: number;
+            /** Title */
+            title: string;
+            /** Waits For */
+            waits_for: string[];
+            /** Work Master */
+            work_master: string;
+        };
         JsonValue: unknown;
         /**
          * KeyAnswer
@@ -4370,6 +4427,9 @@ export interface components {
         /**
          * OperationView
          * @description An operation: active until its goal holds.
+         *
+         *     With `for_jobs` a work master has it: while the station works by order it is active only for a job under way. `job`
+         *     is the one that has it, whether it is its turn or not.
          */
         OperationView: {
             /** Active */
@@ -4378,8 +4438,12 @@ export interface components {
             active_since: number | null;
             /** Completed */
             completed: number;
+            /** For Jobs */
+            for_jobs: boolean;
             /** Goal */
             goal: string;
+            /** Job */
+            job: string | null;
             /** Left Out */
             left_out: boolean;
             /** Precondition */
@@ -4646,10 +4710,16 @@ export interface components {
         PastView: {
             /** Active */
             active: string[];
+            /** By Order */
+            by_order: boolean;
             errand: components["schemas"]["ErrandView"] | null;
             /** Forces */
             forces: {
                 [key: string]: components["schemas"]["ForceView"];
+            };
+            /** Jobs */
+            jobs: {
+                [key: string]: components["schemas"]["JobView"];
             };
             mode: components["schemas"]["Mode"];
             /** Out Of Service */
@@ -5680,6 +5750,8 @@ export interface components {
          * @description What is running, and how; and all that people have asked of it, or that it asks of them.
          */
         StationAnswer: {
+            /** By Order */
+            by_order: boolean;
             control: components["schemas"]["ControlView"] | null;
             errand: components["schemas"]["ErrandView"] | null;
             /** Forces */
@@ -5725,11 +5797,17 @@ export interface components {
                 [key: string]: components["schemas"]["AlarmView"];
             };
             analysis?: components["schemas"]["AnalysisDocument"] | null;
+            /** By Order */
+            by_order?: boolean;
             control?: components["schemas"]["ControlView"] | null;
             errand?: components["schemas"]["ErrandView"] | null;
             /** Forces */
             forces?: {
                 [key: string]: components["schemas"]["ForceView"];
+            };
+            /** Jobs */
+            jobs?: {
+                [key: string]: components["schemas"]["JobView"];
             };
             last_correction?: components["schemas"]["LastCorrectionView"] | null;
             last_errand?: components["schemas"]["LastErrandView"] | null;
@@ -5809,6 +5887,8 @@ export interface components {
             alarms?: string[];
             /** Forces */
             forces?: string[];
+            /** Jobs */
+            jobs?: string[];
             /** Operations */
             operations?: string[];
             /** Overrides */
@@ -5860,11 +5940,17 @@ export interface components {
                 [key: string]: components["schemas"]["AlarmView"];
             };
             analysis: components["schemas"]["AnalysisDocument"] | null;
+            /** By Order */
+            by_order: boolean;
             control: components["schemas"]["ControlView"] | null;
             errand: components["schemas"]["ErrandView"] | null;
             /** Forces */
             forces: {
                 [key: string]: components["schemas"]["ForceView"];
+            };
+            /** Jobs */
+            jobs: {
+                [key: string]: components["schemas"]["JobView"];
             };
             last_correction: components["schemas"]["LastCorrectionView"] | null;
             last_errand: components["schemas"]["LastErrandView"] | null;

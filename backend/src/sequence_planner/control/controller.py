@@ -36,6 +36,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.forcing import Forcing
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.involving import Surroundings
+from sequence_planner.control.job_desk import JobDesk
 from sequence_planner.control.known import Known
 from sequence_planner.control.mode_desk import ModeDesk
 from sequence_planner.control.moment import Moment
@@ -115,6 +116,7 @@ class Controller:
             offers=offers,
             trials=trials,
             forcing=Forcing(self.execution),
+            jobs=JobDesk(self.execution),
             alarms=self._alarms,
             start_production=self._start_production,
             real_devices=self.devices.real_devices,
