@@ -37,6 +37,7 @@ LOOK_EVERY = 0.25  # seconds
 ASK_EVERY = 5.0  # seconds after which it is asked again what jobs consist of
 READ_EVERY = 5.0  # seconds after which orders are read again though nobody has changed one here
 TRY_AGAIN = 10.0  # seconds after which an order that the station has refused is given to it again
+SAY_AGAIN = 1.0  # seconds after which a view knows of what was said, as far as that is durable
 UNCERTAIN = REPLY_DEADLINE + 1.0  # seconds in which a job that nobody answered for may still be taken
 
 
@@ -53,7 +54,8 @@ class OrderDesk:
         self._orders: list[JobOrder] = []
         self._queue = Queue()
         self._refused: dict[str, tuple[str, float]] = {}  # why the station has not taken an order, and when
-        self._said: dict[str, float] = {}  # when something was said of a job last; older views do not know of it
+        # What was wished for when something was said of a job last, and when: older views do not know of it.
+        self._said: dict[str, tuple[Wish | None, float]] = {}
         self._trouble = ""
 
     async def run(self) -> None:
@@ -134,7 +136,8 @@ class OrderDesk:
             at_station = [each for each in self._orders if each.is_at_station]
         if view is not None and view.production is not Production.PREPARING:
             for order in at_station:
-                if heard > self._said.get(order.id, float("-inf")):
+                wish, said = self._said.get(order.id, (None, float("-inf")))
+                if wish is not order.wish or heard > said + SAY_AGAIN:
                     await self._look_after(order, view.jobs.get(order.id))
             await self._forget(view)
         self._queue = queue(self._orders, view, masters, self._office.now())
@@ -151,7 +154,7 @@ class OrderDesk:
             self._orders = await self._office.read(orders.open_orders)
             self._read = now
             known = {each.id for each in self._orders}
-            self._said = {id_: at for id_, at in self._said.items() if id_ in known}
+            self._said = {id_: said for id_, said in self._said.items() if id_ in known}
             self._refused = {id_: why for id_, why in self._refused.items() if id_ in known}
 
     async def _follow(self, masters: WorkMastersView) -> bool:
@@ -194,7 +197,7 @@ class OrderDesk:
                 await self._take_back(order)
             return
         self._refused.pop(order.id, None)
-        self._said[order.id] = time.monotonic()
+        self._said[order.id] = order.wish, time.monotonic()
 
     async def _take_back(self, order: JobOrder) -> None:
         now = self._office.now()
@@ -243,11 +246,12 @@ class OrderDesk:
             if refused.slug not in ("job-ended", "unknown-job"):
                 raise
             return False
-        self._said[order.id] = time.monotonic()
+        self._said[order.id] = order.wish, time.monotonic()
         return True
 
     async def _grant(self, order: JobOrder) -> None:
         now = self._office.now()
+        self._said[order.id] = None, time.monotonic()
 
         def write() -> None:
             with self._office.database.writing() as connection:
