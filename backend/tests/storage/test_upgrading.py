@@ -12,10 +12,7 @@ from alembic.autogenerate import compare_metadata
 from alembic.runtime.migration import MigrationContext
 from sqlalchemy import text
 
-import sequence_planner.identity
-import sequence_planner.journal
-import sequence_planner.standby
-import sequence_planner.workshop
+from sequence_planner import identity, journal, mes, standby, workshop
 from sequence_planner.storage.database import Database, StorageError
 from sequence_planner.storage.metadata import METADATA
 from sequence_planner.storage.upgrading import NEWEST
@@ -33,13 +30,11 @@ database.check()
 
 
 def test_the_migrations_make_the_tables_that_the_program_declares(database: Database) -> None:
-    rooms = (sequence_planner.identity, sequence_planner.journal, sequence_planner.standby, sequence_planner.workshop)
+    rooms = (identity, journal, mes, standby, workshop)
     for package in rooms:
         for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)
-    assert {"audit", "people", "sessions", "keys", "watches", "draft_files", "draft_changes", "command_lease"} <= set(
-        METADATA.tables
-    )
+    assert {"audit", "people", "keys", "watches", "draft_files", "job_orders", "command_lease"} <= set(METADATA.tables)
     with database.reading() as connection:
         assert compare_metadata(MigrationContext.configure(connection), METADATA) == []
 

@@ -52,6 +52,7 @@ from sequence_planner.control.view import Production, StationIdentity, StationVi
 from sequence_planner.control.view_part import View
 from sequence_planner.control.viewing import Doubts, Viewing
 from sequence_planner.control.why_not import WhyNot
+from sequence_planner.control.work_masters import work_masters_view
 from sequence_planner.expressions.types import Value
 from sequence_planner.history.model_digest import model_digest
 from sequence_planner.history.recorder import RunRecorder
@@ -126,6 +127,7 @@ class Controller:
             pipelines=partial(pipelines_view, station.pipelines),
             flows=self.devices.flows,
             record=self.devices.record,
+            work_masters=partial(work_masters_view, automaton),
             corrections=self._corrections,
             offers=offers,
             why_not=WhyNot(self.execution, around, self._adviser),

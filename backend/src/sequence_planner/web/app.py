@@ -26,12 +26,16 @@ from sequence_planner.web import (
     alarms,
     attachments,
     audit,
+    capabilities,
     control_routes,
     corrections,
     draft_pipelines,
     errands,
+    events,
     health,
     history,
+    job_orders,
+    job_responses,
     keys,
     language,
     model,
@@ -59,6 +63,7 @@ from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.looking import FlowsShow, NetworkShow
 from sequence_planner.web.openapi_document import describe
 from sequence_planner.web.openapi_refusals import PROBLEM_RESPONSES
+from sequence_planner.web.order_desk import OrderDesk
 from sequence_planner.web.problems import LastResort
 from sequence_planner.web.security_headers import SecurityHeaders
 from sequence_planner.web.settings import Settings
@@ -95,6 +100,11 @@ PARTS = (
     watch_stream.router,
     audit.router,
     history.router,
+    job_orders.router,
+    job_orders.bodiless,
+    job_responses.router,
+    events.router,
+    capabilities.router,
     model.router,
     language.router,
     draft_pipelines.router,
@@ -132,10 +142,11 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         office = await run_in_threadpool(IdentityOffice.open, settings.database, demonstration=settings.demonstration)
         app.state.identity = office
+        app.state.order_desk = desk = OrderDesk(office, controller)
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
-        parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller))
+        parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller), desk)
         running = [asyncio.create_task(each.run()) for each in parts]
         if shop is not None:
             running.append(asyncio.create_task(shop.read_ahead()))
