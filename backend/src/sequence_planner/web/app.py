@@ -24,6 +24,7 @@ from sequence_planner.web import (
     abilities,
     actions,
     alarms,
+    approvals,
     attachments,
     audit,
     control_routes,
@@ -40,6 +41,7 @@ from sequence_planner.web import (
     people,
     pipelines,
     problems,
+    provider,
     revisions,
     ros,
     session,
@@ -71,6 +73,7 @@ PREFIX = "/api/v1"
 LONG = 10_000  # bytes; such answers are compressed for who takes them so
 PARTS = (
     session.router,
+    provider.router,
     station.router,
     modes.router,
     modes.bodiless,
@@ -79,6 +82,7 @@ PARTS = (
     alarms.router,
     control_routes.router,
     corrections.router,
+    approvals.router,
     errands.advice_router,
     errands.router,
     why_not.router,
@@ -130,7 +134,12 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        office = await run_in_threadpool(IdentityOffice.open, settings.database, demonstration=settings.demonstration)
+        office = await run_in_threadpool(
+            IdentityOffice.open,
+            settings.database,
+            demonstration=settings.demonstration,
+            provider=settings.provider,
+        )
         app.state.identity = office
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
