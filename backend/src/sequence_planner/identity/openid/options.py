@@ -46,7 +46,7 @@ class ProviderOptions:
             return None
         if not self.client:
             raise ProviderOptionError("--oidc-client is missing: the id by which the provider knows this station")
-        roles = tuple(_role(each) for each in self.roles)
+        issuer, roles = _issuer(self.issuer), tuple(_role(each) for each in self.roles)
         others = _others(self.others)
         if not roles and others is None:
             raise ProviderOptionError(
@@ -54,10 +54,10 @@ class ProviderOptions:
                 "--oidc-role operator=station-operators, or let all look on with --oidc-others viewer"
             )
         return ProviderSettings(
-            issuer=_issuer(self.issuer),
+            issuer=issuer,
             client=self.client,
             secret=self._secret(environment),
-            title=self.title or urlsplit(self.issuer).hostname or self.issuer,
+            title=self.title or urlsplit(issuer).hostname or issuer,
             scopes=tuple(dict.fromkeys((OPENID, *(self.scopes or ("profile",))))),
             groups=self.groups,
             roles=roles,
