@@ -48,7 +48,7 @@ typecheck: install-test
 
 pytest: pytest-light pytest-heavy
 
-pytest-light: install-test postgresql
+pytest-light: install-test postgresql e2e/node_modules/done.stamp
 	cd backend && .venv/bin/pytest -m 'not heavy' -n auto --dist worksteal --junitxml=../.ci/results/pytest.xml
 
 pytest-heavy: install-test foreign postgresql

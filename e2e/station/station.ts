@@ -60,6 +60,8 @@ export interface Options {
 	readonly model?: string;
 	/** The name of a model of which the station has a copy, which may be changed. */
 	readonly copied?: string | null;
+	/** Further variables of the environment in which it is started. */
+	readonly environment?: Readonly<Record<string, string>>;
 	/** A program that is started beside the station, on its network. */
 	readonly beside?: readonly [command: string, args: readonly string[]];
 }
@@ -122,7 +124,7 @@ export class Station {
 	) {
 		this.#domain = domain;
 		const database = options.byItself ? {} : { SEQUENCE_PLANNER_DATABASE: `sqlite:///${this.#folder}/station.sqlite` };
-		this.#env = { ...process.env, ROS_DOMAIN_ID: String(domain.number), ...database };
+		this.#env = { ...process.env, ROS_DOMAIN_ID: String(domain.number), ...database, ...options.environment };
 		this.#logs = options.logs;
 		this.#demonstration = options.byItself;
 		this.model = options.copied ? this.#copy(options.copied) : (options.model ?? MODEL);
@@ -281,7 +283,7 @@ export class Station {
 	}
 }
 
-async function freePort(): Promise<number> {
+export async function freePort(): Promise<number> {
 	const probe = createServer();
 	await new Promise<void>((resolve) => probe.listen(0, '127.0.0.1', resolve));
 	const address = probe.address();

@@ -18,11 +18,12 @@ import tempfile
 import threading
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from sequence_planner.announcement import announced, answers, first_start
 from sequence_planner.control.unix_socket import LONGEST_PATH
+from sequence_planner.identity.openid.options import ProviderOptions
 from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED, OVERTAKEN
 from sequence_planner.storage.address import PostgresqlServer
 from sequence_planner.storage.database import Database
@@ -55,6 +56,7 @@ class Launch:
     start: bool
     emulator_speed: float
     hot_standby: str | None = None
+    provider: ProviderOptions = field(default_factory=ProviderOptions)
 
 
 class Part:
@@ -225,6 +227,7 @@ class _Launcher:
         self._controller = Part("controller", _command("controller", *controller), database, has_spare=True)
         server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
         server += ["--demonstration"] if request.database is None else []
+        server += request.provider.arguments()
         self._server = Part("server", _command("server", *server, *_options(request.endpoint)), database)
         self._emulator = Part("emulated devices", _command("emulate", model, *speed, *transport))
 

@@ -139,10 +139,32 @@ class Access(RuleBasedStateMachine):
         self.keys[secret] = Credential(self.now + days * DAY, key.id)
 
     @precondition(lambda self: self.keys)
+    @rule(which=WHICH, overlap=st.sampled_from([0, 1, 720]), days=st.sampled_from([None, 1, 730]))
+    def a_key_gets_another_secret(self, which: int, overlap: int, days: int | None) -> None:
+        id = list(self.keys.values())[which % len(self.keys)].id
+        secrets = [secret for secret in self.keys.values() if secret.id == id]  # the last is that of today
+        try:
+            with self.database.writing() as connection:
+                secret, key = keys.rotate_key(connection, id, overlap, days, ADA, self.now)
+        except IdentityRefused as refused:
+            assert refused.slug in ("key-over", "no-key")
+            assert secrets[-1].ends <= self.now
+            return
+        assert secrets[-1].ends > self.now
+        self.keys[secret] = Credential(secrets[-1].ends if days is None else self.now + days * DAY, id)
+        assert key.expires == self.keys[secret].ends
+        for before in secrets[:-1]:
+            before.ends = min(before.ends, self.now)
+        secrets[-1].ends = min(secrets[-1].ends, self.now + overlap * HOUR, key.expires)
+
+    @precondition(lambda self: self.keys)
     @rule(which=WHICH)
     def a_key_is_revoked(self, which: int) -> None:
-        key = list(self.keys.values())[which % len(self.keys)]
-        self._revoke(key, keys.revoke_key, "no-key")
+        id = list(self.keys.values())[which % len(self.keys)].id
+        secrets = [secret for secret in self.keys.values() if secret.id == id]
+        self._revoke(secrets[-1], keys.revoke_key, "no-key")
+        for secret in secrets:
+            secret.ends = min(secret.ends, self.now)
 
     @rule(which=WHICH)
     def a_place_for_a_watch_is_offered(self, which: int) -> None:

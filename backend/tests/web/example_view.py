@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
+from sequence_planner.control.approval_commands import CorrectionAct
+from sequence_planner.control.approval_view import ApprovalState, ApprovalView
 from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
 from sequence_planner.control.override_view import OverrideFieldView, OverrideView
 from sequence_planner.control.restart_view import ForceView, UndecidedOutputView
@@ -91,6 +93,7 @@ def example_view(**changes: object) -> StationView:
                 kind=VariableKind.MEASURED,
                 value="home",
                 domain=["home", "above_engine", "unknown"],
+                dual_approval=False,
                 since=999.0,
                 awaits=None,
                 belief=None,
@@ -100,6 +103,7 @@ def example_view(**changes: object) -> StationView:
                 kind=VariableKind.ESTIMATED,
                 value="empty",
                 domain=["empty", "placed", "tightened"],
+                dual_approval=True,
                 since=None,
                 awaits=None,
                 belief=BeliefView(writer="the beginning", at=900.0, evidence=[], unconfirmed_since=None),
@@ -160,6 +164,20 @@ def example_view(**changes: object) -> StationView:
         out_of_service=[],
         questions=[],
         last_correction=None,
+        approvals={
+            "a-1": ApprovalView(
+                act=CorrectionAct(values={"bolts[bolt_pair_1]": "placed"}),
+                revision=1,
+                person="eva",
+                by="Eva",
+                why="seen with my own eyes",
+                since=1000.0,
+                until=1120.0,
+                state=ApprovalState.WAITING,
+                answered_by=None,
+                answer=None,
+            )
+        },
         tasks={
             "7": TaskView(
                 revision=3,

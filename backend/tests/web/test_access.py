@@ -40,6 +40,8 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/session": ("public", None),
     "POST /api/v1/session": ("public", None),
     "POST /api/v1/session/demonstration": ("public", None),
+    "POST /api/v1/session/provider": ("public", None),
+    "POST /api/v1/session/provider/answer": ("public", None),
     "POST /api/v1/first-administrator": ("public", None),
     "POST /api/v1/watches/pairing": ("public", None),
     "GET /api/v1/watches/self": ("watch", None),
@@ -120,6 +122,11 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "POST /api/v1/corrections/undo": ("operator", None),
     "POST /api/v1/corrections/confirm": ("operator", None),
     "PUT /api/v1/outputs": ("operator", None),
+    "POST /api/v1/approvals/corrections": ("operator", None),
+    "POST /api/v1/approvals/outputs": ("operator", None),
+    "POST /api/v1/approvals/forces": ("engineer", None),
+    "POST /api/v1/approvals/{request}/approve": ("operator", None),
+    "POST /api/v1/approvals/{request}/decline": ("operator", None),
     "PUT /api/v1/control": ("operator", None),
     "DELETE /api/v1/control": ("operator", None),
     "GET /api/v1/watches": ("operator", None),
@@ -158,6 +165,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "DELETE /api/v1/people/{person}/sessions": ("administrator", None),
     "GET /api/v1/keys": ("administrator", None),
     "POST /api/v1/keys": ("administrator", None),
+    "POST /api/v1/keys/{key}/rotation": ("administrator", None),
     "DELETE /api/v1/keys/{key}": ("administrator", None),
 }
 FOR_WATCHES = {

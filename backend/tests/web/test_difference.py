@@ -51,6 +51,7 @@ def entries(name: str) -> st.SearchStrategy[dict[str, Any]]:
         "tasks": st.fixed_dictionaries({"revision": st.integers(0, 2)}),
         "topics": st.fixed_dictionaries({"messages": st.integers(0, 2), "last": st.none() | TIMES}),
         "overrides": st.fixed_dictionaries({"fields": st.dictionaries(NAMES, FIELDS, max_size=2)}),
+        "approvals": st.fixed_dictionaries({"why": st.text(max_size=3), "until": TIMES}),
         "forces": st.fixed_dictionaries({"value": VALUES, "until": TIMES}),
         "undecided": st.fixed_dictionaries({"value": VALUES, "quiet": st.lists(VALUES, max_size=2)}),
         "alarms": st.fixed_dictionaries({"text": NAMES}),

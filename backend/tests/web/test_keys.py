@@ -124,3 +124,53 @@ def test_a_wrong_key_is_told_where_it_is_wrong(administrator: httpx.Client) -> N
 def test_a_key_that_is_not_there_is_not_revoked(administrator: httpx.Client) -> None:
     for key in ("0123456789abcdef", "no one", "%00", "Ä"):
         problem(administrator.delete(f"{KEYS}/{key}"), 404, "no-key")
+
+
+def rotate(administrator: httpx.Client, key: object, **body: object) -> httpx.Response:
+    return administrator.post(f"{KEYS}/{key}/rotation", json={"overlap": 24, **body})
+
+
+def test_a_key_gets_another_secret_and_the_one_before_ends_by_itself(
+    server: Server, administrator: httpx.Client
+) -> None:
+    before, key = make(administrator, days=2)
+    answer = rotate(administrator, key["id"])
+    assert answer.status_code == 201
+    after, rotated = answer.json()["secret"], answer.json()["key"]
+    assert after != before
+    assert {**rotated, "former_until": None} == key
+    assert rotated["former_until"] == pytest.approx(time.time() + DAY, abs=30)
+    assert [ask(server, each).status_code for each in (before, after)] == [200, 200]
+    server.identity.now = lambda: time.time() + DAY + 1
+    problem(ask(server, before), 401, "signed-out")
+    assert ask(server, after).status_code == 200
+    server.identity.now = lambda: time.time() + 2 * DAY
+    problem(ask(server, after), 401, "signed-out")
+    [entry] = [each.entry for each in records(server) if each.entry.action == "key-rotated"]
+    assert entry.details["former_until"] == rotated["former_until"]
+    assert before not in entry.model_dump_json()
+    assert after not in entry.model_dump_json()
+
+
+def test_a_stream_of_the_secret_before_ends_with_it(server: Server, administrator: httpx.Client) -> None:
+    before, key = make(administrator)
+    with connect(server.stream, additional_headers=bearing(before)) as stream:
+        stream.recv(2)
+        assert rotate(administrator, key["id"], overlap=0, days=10).status_code == 201
+        assert closing_code(stream) == 4401
+    problem(ask(server, before), 401, "signed-out")
+
+
+def test_a_rotation_ends_the_secret_before_the_present_one_and_revoking_ends_all(
+    server: Server, administrator: httpx.Client
+) -> None:
+    first, key = make(administrator)
+    second = rotate(administrator, key["id"]).json()["secret"]
+    third = rotate(administrator, key["id"]).json()["secret"]
+    assert [ask(server, each).status_code for each in (first, second, third)] == [401, 200, 200]
+    administrator.delete(f"{KEYS}/{key['id']}")
+    assert [ask(server, each).status_code for each in (first, second, third)] == [401, 401, 401]
+    problem(rotate(administrator, key["id"]), 409, "key-over")
+    problem(rotate(administrator, "0123456789abcdef"), 404, "no-key")
+    for wrong in ({"overlap": -1}, {"overlap": 721}, {"overlap": 0.5}, {"days": 0}, {"days": 731}):
+        problem(rotate(administrator, key["id"], **wrong), 422, "invalid-request")

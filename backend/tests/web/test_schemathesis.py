@@ -21,6 +21,8 @@ NOT_GUESSED = {
     "POST /api/v1/first-administrator",
     "POST /api/v1/session",
     "POST /api/v1/session/demonstration",
+    "POST /api/v1/session/provider",
+    "POST /api/v1/session/provider/answer",
     "PUT /api/v1/session/password",
     "POST /api/v1/ros/attachments",
     "POST /api/v1/watches/pairing",

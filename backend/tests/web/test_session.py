@@ -58,7 +58,7 @@ def test_who_knows_the_password_is_signed_in(server: Server, browser: httpx.Clie
     answer = sign_in(browser, " ADA ")
     told = answer.json()
     assert answer.status_code == 200
-    assert told["person"] == {"id": person.id, "name": "Ada", "role": "operator"}
+    assert told["person"] == {"id": person.id, "name": "Ada", "role": "operator", "issuer": None}
     assert (told["state"], told["kind"], told["must_change_password"]) == ("signed-in", "person", False)
     assert 11 * 3600 < told["expires"] - time.time() <= 12 * 3600
     cookie = answer.headers["set-cookie"]

@@ -206,6 +206,110 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/approvals/corrections": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Ask For Correction
+         * @description Ask a second person to approve a correction, within two minutes and in this state. It takes control.
+         *
+         *     409 `no-approval-needed` where none of its variables asks for that.
+         */
+        post: operations["ask_for_correction_api_v1_approvals_corrections_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/approvals/forces": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Ask For Force
+         * @description Ask a second person to approve a force, as a correction.
+         */
+        post: operations["ask_for_force_api_v1_approvals_forces_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/approvals/outputs": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Ask For Outputs
+         * @description Ask a second person to approve a decision on outputs, as a correction.
+         */
+        post: operations["ask_for_outputs_api_v1_approvals_outputs_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/approvals/{request}/approve": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Approve
+         * @description Approve what another person has asked for: it is done at once, in the names of both.
+         *
+         *     403 `same-person` for who has asked, 409 `request-gone` when it was answered, overtaken or took too long.
+         */
+        post: operations["approve_api_v1_approvals__request__approve_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/approvals/{request}/decline": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Decline
+         * @description Decline what another person has asked for, or withdraw what one has asked for oneself.
+         */
+        post: operations["decline_api_v1_approvals__request__decline_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/audit": {
         parameters: {
             query?: never;
@@ -811,6 +915,28 @@ export interface paths {
          * @description Revoke a key: whoever bears it is refused from now on.
          */
         delete: operations["revoke_api_v1_keys__key__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/keys/{key}/rotation": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Rotate
+         * @description Give a key another secret, answered this once. The present one works for some hours more; one before it ends.
+         *
+         *     409 `key-over` when the key works no more.
+         */
+        post: operations["rotate_api_v1_keys__key__rotation_post"];
+        delete?: never;
         options?: never;
         head?: never;
         patch?: never;
@@ -1496,7 +1622,7 @@ export interface paths {
          * @description Change the role, or whether the person may sign in; either ends all of that person's sessions.
          *
          *     428 without `If-Match`; 412 `person-changed` when another has changed the person meanwhile; 409
-         *     `last-administrator` when nobody would be left to administer.
+         *     `last-administrator` when nobody would be left to administer, or `role-from-provider` where that is not for here.
          */
         patch: operations["change_api_v1_people__person__patch"];
         trace?: never;
@@ -1512,6 +1638,8 @@ export interface paths {
         /**
          * Give Password
          * @description Give a temporary password; it ends all of that person's sessions.
+         *
+         *     409 `no-password-here` where the person signs in with a provider.
          */
         put: operations["give_password_api_v1_people__person__password_put"];
         post?: never;
@@ -1808,6 +1936,51 @@ export interface paths {
          */
         put: operations["change_password_api_v1_session_password_put"];
         post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/session/provider": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Begin
+         * @description Begin to sign in with the provider, which has ten minutes to answer.
+         *
+         *     404 `no-provider` where the station has none, 503 `provider-unavailable` while it is away.
+         */
+        post: operations["begin_api_v1_session_provider_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/session/provider/answer": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Finish
+         * @description Finish what this browser has begun; the session that it had ends.
+         *
+         *     403 `sign-in-not-begun` where it has begun none, `provider-refused`, `provider-answer-unfit`, `no-role` or
+         *     `disabled`; 503 `provider-unavailable`.
+         */
+        post: operations["finish_api_v1_session_provider_answer_post"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2544,6 +2717,52 @@ export interface components {
             supervised_states: number | null;
         };
         /**
+         * ApprovalBody
+         * @description What the second person has looked at and wants too, and the revision of the state in which that was.
+         */
+        ApprovalBody: {
+            /** Act */
+            act: components["schemas"]["CorrectionAct"] | components["schemas"]["OutputsAct"] | components["schemas"]["ForceAct"];
+            /** Reason */
+            reason?: string | null;
+            /** Revision */
+            revision: number;
+        };
+        /**
+         * ApprovalState
+         * @description How far a request has come.
+         * @enum {string}
+         */
+        ApprovalState: "waiting" | "approved" | "declined" | "withdrawn" | "expired" | "overtaken";
+        /**
+         * ApprovalView
+         * @description A request of `person`, called `by`, for an act that needs a second person; it waits `until` then at most.
+         *
+         *     It was looked at in the state of `revision`, and can be approved in no other. `answered_by` has approved or declined
+         *     it. One that is over is shown for a minute more.
+         */
+        ApprovalView: {
+            /** Act */
+            act: components["schemas"]["CorrectionAct"] | components["schemas"]["OutputsAct"] | components["schemas"]["ForceAct"];
+            /** Answer */
+            answer: string | null;
+            /** Answered By */
+            answered_by: string | null;
+            /** By */
+            by: string;
+            /** Person */
+            person: string;
+            /** Revision */
+            revision: number;
+            /** Since */
+            since: number;
+            state: components["schemas"]["ApprovalState"];
+            /** Until */
+            until: number;
+            /** Why */
+            why: string;
+        };
+        /**
          * AttachmentAnswer
          * @description What was changed in the draft, as `diff -u` shows it, or would be; and what `check` finds then.
          *
@@ -2645,6 +2864,25 @@ export interface components {
             timeouts: components["schemas"]["TimeoutsView"];
             /** Title */
             title: string;
+        };
+        /**
+         * BeginBody
+         * @description The page of this server that is opened in the end.
+         */
+        BeginBody: {
+            /**
+             * To
+             * @default /
+             */
+            to: string;
+        };
+        /**
+         * BegunAnswer
+         * @description Where the browser is to go.
+         */
+        BegunAnswer: {
+            /** Location */
+            location: string;
         };
         /**
          * BehaviourDifference
@@ -2996,6 +3234,21 @@ export interface components {
             then: boolean | number | string;
         };
         /**
+         * CorrectionAct
+         * @description Estimates get other values.
+         */
+        CorrectionAct: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "correction";
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+        };
+        /**
          * CorrectionBody
          * @description The values, the revision of the state that the person saw, and why.
          */
@@ -3068,6 +3321,17 @@ export interface components {
             startable: string[];
             /** Violates */
             violates: components["schemas"]["SpecificationView"][];
+        };
+        /**
+         * CorrectionRequestBody
+         * @description A correction, the revision of the state in which its preview was looked at, and why.
+         */
+        CorrectionRequestBody: {
+            act: components["schemas"]["CorrectionAct"];
+            /** Reason */
+            reason: string;
+            /** Revision */
+            revision: number;
         };
         /**
          * DecisionBody
@@ -3726,6 +3990,23 @@ export interface components {
             time: number;
         };
         /**
+         * ForceAct
+         * @description A measured variable or an output has a value for so many seconds.
+         */
+        ForceAct: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "force";
+            /** Name */
+            name: string;
+            /** Seconds */
+            seconds: number;
+            /** Value */
+            value: boolean | number | string;
+        };
+        /**
          * ForceBody
          * @description The value that the variable is to have, for how many seconds, and why.
          */
@@ -3736,6 +4017,17 @@ export interface components {
             seconds: number;
             /** Value */
             value: boolean | number | string;
+        };
+        /**
+         * ForceRequestBody
+         * @description A force, the revision of the state that was seen, and why.
+         */
+        ForceRequestBody: {
+            act: components["schemas"]["ForceAct"];
+            /** Reason */
+            reason: string;
+            /** Revision */
+            revision: number;
         };
         /**
          * ForceView
@@ -3991,6 +4283,8 @@ export interface components {
         /**
          * KeyAnswer
          * @description A key without its secret. Times are in seconds since the epoch; `created_by` is the person's name.
+         *
+         *     `former_until` is when the secret before the last rotation works no more; null without a rotation.
          */
         KeyAnswer: {
             /** Created */
@@ -3999,6 +4293,8 @@ export interface components {
             created_by: string;
             /** Expires */
             expires: number;
+            /** Former Until */
+            former_until: number | null;
             /** Id */
             id: string;
             /** Last Used */
@@ -4598,6 +4894,32 @@ export interface components {
             next: number | null;
         };
         /**
+         * OutputsAct
+         * @description Outputs that came back from the journal get these values.
+         */
+        OutputsAct: {
+            /**
+             * @description discriminator enum property added by openapi-typescript
+             * @enum {string}
+             */
+            kind: "outputs";
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+        };
+        /**
+         * OutputsRequestBody
+         * @description A decision on outputs that came back, the revision of the state that was seen, and why.
+         */
+        OutputsRequestBody: {
+            act: components["schemas"]["OutputsAct"];
+            /** Reason */
+            reason: string;
+            /** Revision */
+            revision: number;
+        };
+        /**
          * OverrideBody
          * @description The values of the fields that are to be set; others are as they come.
          */
@@ -4784,7 +5106,8 @@ export interface components {
          * PersonAnswer
          * @description A person. `created` is in seconds since the epoch; `sessions` counts those that are open now.
          *
-         *     `revision` is what a change has to name in `If-Match`, in double quotes.
+         *     `revision` is what a change has to name in `If-Match`, in double quotes. `issuer` is the provider with which the
+         *     person signs in, and which says the role; null where the person has a password here.
          */
         PersonAnswer: {
             /** Created */
@@ -4793,6 +5116,8 @@ export interface components {
             disabled: boolean;
             /** Id */
             id: string;
+            /** Issuer */
+            issuer: string | null;
             /** Must Change Password */
             must_change_password: boolean;
             /** Name */
@@ -5138,6 +5463,29 @@ export interface components {
          */
         Production: "preparing" | "waiting" | "started";
         /**
+         * ProviderAnswerBody
+         * @description What the provider has sent back with the browser: `state` and either a `code` or an `error`; `iss` is itself.
+         */
+        ProviderAnswerBody: {
+            /** Code */
+            code?: string | null;
+            /** Error */
+            error?: string | null;
+            /** Iss */
+            iss?: string | null;
+            /** State */
+            state: string;
+        };
+        /**
+         * ProviderSessionAnswer
+         * @description The session that was opened, and the page of this server to go to.
+         */
+        ProviderSessionAnswer: {
+            session: components["schemas"]["SessionAnswer"];
+            /** To */
+            to: string;
+        };
+        /**
          * QualityView
          * @description What an endpoint offers or wants, in ROS 2's words; `deadline` and `liveliness` are seconds, or null for none.
          */
@@ -5266,6 +5614,16 @@ export interface components {
             /** Number */
             number: number;
             run: components["schemas"]["RunView"];
+        };
+        /**
+         * RefusalBody
+         * @description What is declined or withdrawn.
+         */
+        RefusalBody: {
+            /** Act */
+            act: components["schemas"]["CorrectionAct"] | components["schemas"]["OutputsAct"] | components["schemas"]["ForceAct"];
+            /** Reason */
+            reason?: string | null;
         };
         /**
          * RemoveEntry
@@ -5424,6 +5782,16 @@ export interface components {
          */
         Role: "viewer" | "operator" | "engineer" | "administrator";
         /**
+         * RotationBody
+         * @description For how many hours the present secret works on, and for how many days the key does; null: as long as now.
+         */
+        RotationBody: {
+            /** Days */
+            days?: number | null;
+            /** Overlap */
+            overlap: number;
+        };
+        /**
          * Run
          * @description A run of an ability, in seconds from the beginning; `ended` is null where it was under way at the end.
          */
@@ -5578,6 +5946,7 @@ export interface components {
             /** Must Change Password */
             must_change_password: boolean;
             person: components["schemas"]["SessionPerson"] | null;
+            provider: components["schemas"]["SessionProvider"] | null;
             /** Session */
             session: string | null;
             /**
@@ -5589,14 +5958,28 @@ export interface components {
         };
         /**
          * SessionPerson
-         * @description Who is signed in.
+         * @description Who is signed in; `issuer` is the provider that vouches for the person, who has no password here then.
          */
         SessionPerson: {
             /** Id */
             id: string;
+            /** Issuer */
+            issuer: string | null;
             /** Name */
             name: string;
             role: components["schemas"]["Role"];
+        };
+        /**
+         * SessionProvider
+         * @description The provider with which people may sign in too.
+         *
+         *     `sign_out` is where one signs out of it as well; null where that is not known.
+         */
+        SessionProvider: {
+            /** Sign Out */
+            sign_out: string | null;
+            /** Title */
+            title: string;
         };
         /**
          * SessionWatch
@@ -5801,6 +6184,10 @@ export interface components {
          * @description What is running, and how; and all that people have asked of it, or that it asks of them.
          */
         StationAnswer: {
+            /** Approvals */
+            approvals: {
+                [key: string]: components["schemas"]["ApprovalView"];
+            };
             /** By Order */
             by_order: boolean;
             control: components["schemas"]["ControlView"] | null;
@@ -5849,6 +6236,10 @@ export interface components {
                 [key: string]: components["schemas"]["AlarmView"];
             };
             analysis?: components["schemas"]["AnalysisDocument"] | null;
+            /** Approvals */
+            approvals?: {
+                [key: string]: components["schemas"]["ApprovalView"];
+            };
             /** By Order */
             by_order?: boolean;
             control?: components["schemas"]["ControlView"] | null;
@@ -5938,6 +6329,8 @@ export interface components {
             abilities?: string[];
             /** Alarms */
             alarms?: string[];
+            /** Approvals */
+            approvals?: string[];
             /** Forces */
             forces?: string[];
             /** Jobs */
@@ -5993,6 +6386,10 @@ export interface components {
                 [key: string]: components["schemas"]["AlarmView"];
             };
             analysis: components["schemas"]["AnalysisDocument"] | null;
+            /** Approvals */
+            approvals: {
+                [key: string]: components["schemas"]["ApprovalView"];
+            };
             /** By Order */
             by_order: boolean;
             control: components["schemas"]["ControlView"] | null;
@@ -6676,6 +7073,8 @@ export interface components {
             belief: components["schemas"]["BeliefView"] | null;
             /** Domain */
             domain: (boolean | number | string)[];
+            /** Dual Approval */
+            dual_approval: boolean;
             kind: components["schemas"]["VariableKind"];
             /** Resource */
             resource: string | null;
@@ -7523,6 +7922,220 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    ask_for_correction_api_v1_approvals_corrections_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CorrectionRequestBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    ask_for_force_api_v1_approvals_forces_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ForceRequestBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    ask_for_outputs_api_v1_approvals_outputs_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OutputsRequestBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    approve_api_v1_approvals__request__approve_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                request: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ApprovalBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    decline_api_v1_approvals__request__decline_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                request: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RefusalBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
             /** @description A problem */
             default: {
                 headers: {
@@ -8827,6 +9440,51 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    rotate_api_v1_keys__key__rotation_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                key: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["RotationBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NewKeyAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
@@ -10288,6 +10946,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
@@ -10886,6 +11545,89 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             429: components["responses"]["Problem429"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    begin_api_v1_session_provider_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["BeginBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BegunAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            429: components["responses"]["Problem429"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    finish_api_v1_session_provider_answer_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ProviderAnswerBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ProviderSessionAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {

@@ -46,6 +46,8 @@ export type OutOfService = Schemas['ServiceView'];
 export type Errand = Schemas['ErrandView'];
 export type LastErrand = Schemas['LastErrandView'];
 export type Question = Schemas['QuestionView'];
+export type Approval = Schemas['ApprovalView'];
+export type ApprovedAct = Approval['act'];
 export type LastCorrection = Schemas['LastCorrectionView'];
 export type CorrectionPreview = Schemas['CorrectionPreview'];
 export type PlanPreview = Schemas['PlanPreviewView'];
@@ -56,6 +58,8 @@ export type WayOffer = Schemas['OfferView'];
 export type Value = NonNullable<Variable['value']>;
 
 export type SessionAnswer = Schemas['SessionAnswer'];
+export type ProviderBegun = Schemas['BegunAnswer'];
+export type ProviderSession = Schemas['ProviderSessionAnswer'];
 export type Role = Schemas['Role'];
 export type Control = Schemas['ControlView'];
 export type Standby = Schemas['StandbyView'];
@@ -141,6 +145,7 @@ const MERGED: Record<keyof Schemas['StationRemoval'], true> = {
 	overrides: true,
 	forces: true,
 	undecided: true,
+	approvals: true,
 	alarms: true
 };
 

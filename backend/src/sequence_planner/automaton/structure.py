@@ -26,13 +26,17 @@ class Kind(StrEnum):
 
 
 class VariableDeclaration(Immutable):
-    """A variable by its full name; `resource` is None for those of the station."""
+    """A variable by its full name; `resource` is None for those of the station.
+
+    With `dual_approval` a correction or force of it needs a second person.
+    """
 
     name: str
     type: Type
     kind: Kind
     initial: Value
     resource: str | None
+    dual_approval: bool = False
 
 
 class Effect(Immutable):

@@ -47,6 +47,7 @@ def list_people(model: ItsModel = None, database: DatabaseOption = None, json: A
             for holds, remark in (
                 (person.disabled, "disabled"),
                 (person.must_change_password, "has to set a password of their own"),
+                (person.issuer is not None, f"signs in with {person.issuer}"),
             )
             if holds
         ]

@@ -46,7 +46,7 @@ class PeopleAtHand:
             raise IdentityRefused("no-person", "No such person", detail, 404)
         hashed = _hash(ask(), person.name)
         with self.database.writing() as connection:
-            set_password(connection, person.id, hashed, self.by, time.time(), temporary=True)
+            set_password(connection, person.id, hashed, self.by, time.time(), temporary=True, recovery=True)
             return known(connection, person.id)
 
     def link_token(self) -> str:

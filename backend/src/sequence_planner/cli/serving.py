@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from pathlib import Path
 from typing import Annotated
@@ -17,6 +18,9 @@ from sequence_planner.cli.parts import (
     begin,
     prepare,
 )
+from sequence_planner.cli.provider_options import Client, Groups, Issuer, Others, Roles, Scopes, SecretFile, Title
+from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
+from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
@@ -74,6 +78,14 @@ def run(
             "NAME is what this one is called.",
         ),
     ] = None,
+    oidc_issuer: Issuer = None,
+    oidc_client: Client = None,
+    oidc_client_secret_file: SecretFile = None,
+    oidc_title: Title = None,
+    oidc_scope: Scopes = None,
+    oidc_groups_claim: Groups = "groups",
+    oidc_role: Roles = None,
+    oidc_others: Others = NO_OTHERS,
 ) -> None:
     """Run a station: controller, server and page."""
     from sequence_planner.launcher import Launch, launch  # noqa: PLC0415
@@ -96,12 +108,23 @@ def run(
         refuse(
             "--hot-standby takes a name of up to 60 letters, digits, dots and hyphens, and is not for demonstrations"
         )
+    provider = ProviderOptions(
+        issuer=oidc_issuer,
+        client=oidc_client,
+        secret_file=oidc_client_secret_file,
+        title=oidc_title,
+        scopes=tuple(oidc_scope or ()),
+        groups=oidc_groups_claim,
+        roles=tuple(oidc_role or ()),
+        others=oidc_others,
+    )
+    if _provider(provider) is not None and demonstration:
+        refuse("--demonstration is for whoever sits here, and nobody signs in: leave --oidc-issuer out, or it")
     prepare(model)
     url = None if demonstration else database_url(model, database)
+    request = Launch(model, endpoint, url, transport, rosbridge, emulator, start, emulator_speed, hot_standby, provider)
     try:
-        raise typer.Exit(
-            launch(Launch(model, endpoint, url, transport, rosbridge, emulator, start, emulator_speed, hot_standby))
-        )
+        raise typer.Exit(launch(request))
     except (SettingsError, StorageError) as error:
         refuse(str(error))
 
@@ -119,6 +142,14 @@ def server(
     name: Names = None,
     database: DatabaseOption = None,
     demonstration: Demonstration = False,
+    oidc_issuer: Issuer = None,
+    oidc_client: Client = None,
+    oidc_client_secret_file: SecretFile = None,
+    oidc_title: Title = None,
+    oidc_scope: Scopes = None,
+    oidc_groups_claim: Groups = "groups",
+    oidc_role: Roles = None,
+    oidc_others: Others = NO_OTHERS,
     launched: Launched = False,
 ) -> None:
     """Run the server alone; `run` does this."""
@@ -139,5 +170,25 @@ def server(
             model=model,
             transport=transport,
             demonstration=demonstration,
+            provider=_provider(
+                ProviderOptions(
+                    issuer=oidc_issuer,
+                    client=oidc_client,
+                    secret_file=oidc_client_secret_file,
+                    title=oidc_title,
+                    scopes=tuple(oidc_scope or ()),
+                    groups=oidc_groups_claim,
+                    roles=tuple(oidc_role or ()),
+                    others=oidc_others,
+                )
+            ),
         )
     )
+
+
+def _provider(options: ProviderOptions) -> ProviderSettings | None:
+    """The provider that is named, if one is; what cannot be used is refused."""
+    try:
+        return options.settings(os.environ)
+    except ProviderOptionError as error:
+        refuse(str(error))

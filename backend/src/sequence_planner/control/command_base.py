@@ -28,6 +28,11 @@ class CommandBase(BaseModel):
         return self.for_control
 
     @property
+    def overtaken_by_pause(self) -> bool:
+        """Whether it is void where somebody pauses the station while it waits for its record."""
+        return self.needs_control
+
+    @property
     def harmless(self) -> bool:
         """Whether it can only bring devices to rest."""
         return False

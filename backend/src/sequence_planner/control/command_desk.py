@@ -11,6 +11,13 @@ from dataclasses import dataclass, field
 from sequence_planner.actor import ActorKind
 from sequence_planner.control.alarm_commands import AlarmCommand
 from sequence_planner.control.alarming.alarms import Alarms
+from sequence_planner.control.approval_commands import (
+    ApprovedCommand,
+    ApproveRequest,
+    DeclineRequest,
+    RequestApproval,
+)
+from sequence_planner.control.approvals import Approvals
 from sequence_planner.control.commands import (
     ClearOverride,
     Command,
@@ -58,6 +65,7 @@ class CommandDesk:
     trials: Trials
     forcing: Forcing
     jobs: JobDesk
+    approvals: Approvals
     alarms: Alarms
     start_production: Callable[[], None]
     real_devices: Callable[[], Sequence[str]]
@@ -83,13 +91,30 @@ class CommandDesk:
                 self.in_control.release(actor)
             case WithdrawControl(session=session):
                 self.in_control.withdraw(session)
-            case CorrectEstimates() | UndoCorrection() | ConfirmEstimates() | DecideOutputs():
+            case RequestApproval():
+                self._check_act(command.act.command(command.actor, command.reason, command.revision))
+                self.approvals.ask(command, moment)
+            case ApproveRequest():
+                self._act(self.approvals.approved(command, moment), moment)
+                self.approvals.note_approved(command, moment)
+            case DeclineRequest():
+                self.approvals.decline(command, moment)
+            case CorrectEstimates() | DecideOutputs():
+                self.approvals.require_none(command.values)
+                self.corrections.carry_out(command, moment)
+            case UndoCorrection() | ConfirmEstimates():
+                if isinstance(command, UndoCorrection) and (last := self.corrections.last) is not None:
+                    self.approvals.require_none(last.values)
                 self.corrections.carry_out(command, moment)
             case TakeErrand():
+                self.approvals.require_none(command.corrections)
                 self.offers.take(command, moment)
             case TryAbility():
                 self.trials.carry_out(command, moment)
-            case ForceVariable() | ReleaseForce():
+            case ForceVariable():
+                self.approvals.require_none((command.name,))
+                self.forcing.carry_out(command, moment)
+            case ReleaseForce():
                 self.forcing.carry_out(command, moment)
             case TakeJob() | SequenceJobs() | CommandJob() | ForgetJob() | SetByOrder():
                 self.jobs.carry_out(command, moment)
@@ -97,6 +122,20 @@ class CommandDesk:
                 self.alarms.carry_out(command, moment)
             case _:
                 self.modes.carry_out(command, moment)
+
+    def _act(self, command: ApprovedCommand, moment: Moment) -> None:
+        """Do what two people want."""
+        if isinstance(command, ForceVariable):
+            self.forcing.carry_out(command, moment)
+        else:
+            self.corrections.carry_out(command, moment)
+
+    def _check_act(self, command: ApprovedCommand) -> None:
+        """Raises `CommandRefused` when it could not be done now, whoever wants it."""
+        if isinstance(command, ForceVariable):
+            self.forcing.check(command)
+        else:
+            self.corrections.check(command)
 
     def _check(self, command: Command) -> None:
         actor = command.actor

@@ -13,6 +13,7 @@ from sequence_planner.control.alarm_commands import (
     SuppressAlarm,
     UnshelveAlarm,
 )
+from sequence_planner.control.approval_commands import ApproveRequest, DeclineRequest, RequestApproval
 from sequence_planner.control.command_base import CommandBase, CommandRefused
 from sequence_planner.control.job_commands import CommandJob, ForgetJob, SequenceJobs, SetByOrder, TakeJob
 from sequence_planner.control.override_view import FieldValue
@@ -111,6 +112,9 @@ Command = Annotated[
     | StopErrand
     | ForceVariable
     | ReleaseForce
+    | RequestApproval
+    | ApproveRequest
+    | DeclineRequest
     | AcknowledgeAlarm
     | ShelveAlarm
     | UnshelveAlarm

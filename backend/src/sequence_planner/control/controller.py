@@ -22,6 +22,7 @@ from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.adviser import Adviser
 from sequence_planner.control.alarming.alarms import Alarms
+from sequence_planner.control.approvals import Approvals
 from sequence_planner.control.asking import Asking
 from sequence_planner.control.asks import Ask
 from sequence_planner.control.belief import KIND as BELIEFS
@@ -35,6 +36,7 @@ from sequence_planner.control.doubting import Doubting
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.forcing import Forcing
 from sequence_planner.control.heard import TickOutcome
+from sequence_planner.control.in_control import InControl
 from sequence_planner.control.involving import Surroundings
 from sequence_planner.control.job_desk import JobDesk
 from sequence_planner.control.kept_jobs import KeptJobs
@@ -110,6 +112,7 @@ class Controller:
         offers = Offers(self.execution, self._adviser, self._corrections, self._doubting.impossible)
         around = Surroundings(feeds.heard_on, self._viewing.since, self._beliefs, lambda: self._viewing.guards)
         trials = Trials(self.execution, around, self.devices.real_devices)
+        in_control = InControl()
         self._orders = CommandDesk(
             modes=ModeDesk(self.execution, self._outside),
             tasks=self.desk,
@@ -119,9 +122,11 @@ class Controller:
             trials=trials,
             forcing=Forcing(self.execution),
             jobs=JobDesk(self.execution),
+            approvals=Approvals(self.execution, in_control),
             alarms=self._alarms,
             start_production=self._start_production,
             real_devices=self.devices.real_devices,
+            in_control=in_control,
         )
         self._asking = Asking(
             pipelines=partial(pipelines_view, station.pipelines),
@@ -185,8 +190,13 @@ class Controller:
         moment = Moment.now()
         alarms = self._alarms.current(self._questions.trouble, moment)
         overrides, control = self.devices.overrides.view(moment), self._orders.in_control.view()
-        doubts = Doubts(self._doubting.undecided, list(self._doubting.questions), self._corrections.last)
         jobs = self._jobs.up_to(self._writer.durable)
+        doubts = Doubts(
+            self._doubting.undecided,
+            list(self._doubting.questions),
+            self._corrections.last,
+            self._orders.approvals.view(moment),
+        )
         return self._viewing.view(self.desk, self.devices.commander, overrides, alarms, control, doubts, jobs, moment)
 
     async def answer(self, ask: Ask) -> View:

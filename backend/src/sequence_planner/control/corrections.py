@@ -70,12 +70,23 @@ class Corrections:
             case DecideOutputs():
                 self._decide(command, moment)
 
-    def _correct(self, command: CorrectEstimates, moment: Moment) -> None:
-        execution = self._execution
+    def check(self, command: CorrectEstimates | DecideOutputs) -> None:
+        """Raises `CommandRefused` when it could not be carried out now."""
+        if isinstance(command, CorrectEstimates):
+            self._correctable(command)
+        else:
+            self._decidable(command)
+
+    def _correctable(self, command: CorrectEstimates) -> dict[str, Value]:
         values = self._estimates(command.values)
         self._require_allowed()
-        if command.revision != execution.revision:
+        if command.revision != self._execution.revision:
             raise _moved()
+        return values
+
+    def _correct(self, command: CorrectEstimates, moment: Moment) -> None:
+        execution = self._execution
+        values = self._correctable(command)
         before = {name: now for name in values if (now := execution.state[name]) is not None}
         execution.correct(values, command.actor.name, command.reason, moment)
         self._stayed = True
@@ -110,6 +121,10 @@ class Corrections:
         self._execution.confirm(frozenset(values), command.actor.name, moment)
 
     def _decide(self, command: DecideOutputs, moment: Moment) -> None:
+        values = self._decidable(command)
+        self._execution.correct(values, command.actor.name, command.reason, moment)
+
+    def _decidable(self, command: DecideOutputs) -> dict[str, Value]:
         execution = self._execution
         values = self._checked(command.values, Kind.OUTPUT)
         if execution.production is Production.STARTED:
@@ -125,7 +140,7 @@ class Corrections:
                 "With these values the station would be outside its safe states. Choose others, or several at once."
             )
             raise CommandRefused("output-unsafe", "That is not safe", detail)
-        execution.correct(values, command.actor.name, command.reason, moment)
+        return values
 
     def _hear(self, heard: Heard) -> None:
         """A value that was another one in between is not the one that was corrected, though it may be the same."""

@@ -36,7 +36,8 @@ class Forcing:
                 if name in self._execution.conduct.forces:
                     self._execution.release(name)
 
-    def _force(self, command: ForceVariable, moment: Moment) -> None:
+    def check(self, command: ForceVariable) -> None:
+        """Raises `CommandRefused` when it could not be carried out now."""
         self._require_known(command.name)
         variable = self._execution.automaton.variables[command.name]
         if variable.kind not in _FORCED:
@@ -48,6 +49,9 @@ class Forcing:
             detail = f"`{variable.name}` is one of {variable.type}, and {print_value(command.value)} is none of these."
             raise CommandRefused("not-in-domain", "No such value", detail, 422)
         self._require_safety(command)
+
+    def _force(self, command: ForceVariable, moment: Moment) -> None:
+        self.check(command)
         until = Moment(moment.epoch + command.seconds, moment.monotonic + command.seconds)
         self._execution.force(command.name, command.value, until, command.actor.name, command.reason)
 

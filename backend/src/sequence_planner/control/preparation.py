@@ -154,6 +154,7 @@ def preparing_view(
         out_of_service=[],
         questions=[],
         last_correction=None,
+        approvals={},
         tasks={},
         topics={},
         overrides={},

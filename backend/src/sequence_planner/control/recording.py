@@ -63,7 +63,7 @@ class Recording:
             detail = "What cannot be recorded is not done. See the alarms for the cause; pausing is possible."
             raise CommandRefused("not-recorded", "The command cannot be recorded", detail, 503)
         try:
-            if command.needs_control and self._pauses != pauses:
+            if command.overtaken_by_pause and self._pauses != pauses:
                 raise _overtaken()
             await act(command)
         except CommandRefused as refused:

@@ -11,6 +11,7 @@ from enum import StrEnum
 
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.alarm_view import AlarmView
+from sequence_planner.control.approval_view import ApprovalView
 from sequence_planner.control.job_view import JobView
 from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import (
@@ -134,6 +135,7 @@ class VariableView(View):
     kind: VariableKind
     value: Value | None
     domain: list[Value]
+    dual_approval: bool  # a second person has to approve each correction and force of it
     since: float | None
     awaits: str | None
     belief: BeliefView | None  # of an estimated one
@@ -313,6 +315,7 @@ class StationView(View):
     out_of_service: list[ServiceView]
     questions: list[QuestionView]
     last_correction: LastCorrectionView | None
+    approvals: dict[str, ApprovalView]  # what waits for a second person
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
     overrides: dict[str, OverrideView]  # by resource and name, as in `ur10.speed`

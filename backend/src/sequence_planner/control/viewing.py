@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.structure import Kind
 from sequence_planner.control.alarm_view import AlarmView
+from sequence_planner.control.approval_view import ApprovalView
 from sequence_planner.control.belief import Beliefs
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution
@@ -67,11 +68,12 @@ _NEXT_MOVES = 2
 
 @dataclass(frozen=True)
 class Doubts:
-    """What a person has to decide or to look at, and the last correction."""
+    """What a person has to decide or to look at, the last correction, and what waits for a second person."""
 
     undecided: dict[str, UndecidedOutputView]
     questions: list[QuestionView]
     last_correction: LastCorrectionView | None
+    approvals: dict[str, ApprovalView]
 
 
 class Viewing:
@@ -157,6 +159,7 @@ class Viewing:
             out_of_service=service_views(execution.automaton, conduct),
             questions=doubts.questions,
             last_correction=doubts.last_correction,
+            approvals=doubts.approvals,
             tasks=self._tasks(desk),
             topics=self._topics(commander, moment),
             overrides=overrides,
@@ -187,6 +190,7 @@ class Viewing:
                 kind=VariableKind(variable.kind),
                 value=value,
                 domain=list(variable.type.domain),
+                dual_approval=variable.dual_approval,
                 since=since[1] if since else None,
                 awaits=self._feeding.get(name) if value is None else None,
                 belief=self._beliefs.of(name) if variable.kind is Kind.ESTIMATED else None,

@@ -34,9 +34,10 @@ class Kind(StrEnum):
     ADDRESS = "address"
     PAIRING_ADDRESS = "pairing-address"
     PAIRING = "pairing"
+    PROVIDER = "provider"
 
 
-MOST_IN_WINDOW = {Kind.ADDRESS: 10, Kind.PAIRING_ADDRESS: 5, Kind.PAIRING: 30}
+MOST_IN_WINDOW = {Kind.ADDRESS: 10, Kind.PAIRING_ADDRESS: 5, Kind.PAIRING: 30, Kind.PROVIDER: 20}
 
 
 @dataclass(frozen=True)

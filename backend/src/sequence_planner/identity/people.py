@@ -19,7 +19,8 @@ class Person(BaseModel):
     """Somebody who may sign in, unless `disabled`.
 
     `revision` counts the changes, so that two who change a person at once notice. With `must_change_password` somebody
-    else has set the password, and nothing may be done before the person has set another one.
+    else has set the password, and nothing may be done before the person has set another one. `issuer` is the provider
+    that vouches for the person, who then has no password here; null where there is one.
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
@@ -30,6 +31,7 @@ class Person(BaseModel):
     disabled: bool
     must_change_password: bool
     revision: int
+    issuer: str | None = None
 
 
 DEMONSTRATOR = Person(
@@ -120,7 +122,7 @@ def change(
     """Change a person as of `revision`. Sessions of a person whose role changes, or who is disabled, end.
 
     Raises `IdentityRefused`: `no-person` (404), `person-changed` (412) since that revision, `last-administrator` (409)
-    when nobody would be left who can manage people.
+    when nobody would be left who can manage people, `role-from-provider` (409) where a provider says who has which.
     """
     person = known(connection, id)
     if person.revision != revision:
@@ -130,6 +132,9 @@ def change(
     changes = {key: value for key, value in wanted.items() if value is not None and value != getattr(person, key)}
     if not changes:
         return person
+    if "role" in changes and person.issuer is not None:
+        detail = f"The role of {person.name} is what {person.issuer} says at each sign-in: change it there."
+        raise IdentityRefused("role-from-provider", "The provider decides", detail)
     changed = person.model_copy(update={**changes, "revision": revision + 1})
     if _administers(person) and not _administers(changed) and not administrator_exists(connection, but=id):
         detail = f"{person.name} is the last administrator: make somebody else administrator first."
@@ -142,16 +147,32 @@ def change(
 
 
 def set_password(
-    connection: Connection, id: str, password_hash: str, by: Actor, now: float, *, temporary: bool
+    connection: Connection,
+    id: str,
+    password_hash: str,
+    by: Actor,
+    now: float,
+    *,
+    temporary: bool,
+    recovery: bool = False,
 ) -> None:
     """Give a person another password. All sessions of the person end, and wrong attempts so far are forgotten.
 
-    Raises `IdentityRefused` (`no-person`, 404).
+    For whom a provider vouches has none, but an administrator in a `recovery`, until the provider signs that one in
+    again. Raises `IdentityRefused`: `no-person` (404), `no-password-here` (409).
     """
     person = known(connection, id)
+    check_has_password(person, recovery=recovery)
     replace_password(connection, person, password_hash, temporary=temporary)
     forget(connection, person.name)
     record(connection, by, "password-reset", _subject(person), now, id=id, temporary_password=temporary)
+
+
+def check_has_password(person: Person, *, recovery: bool = False) -> None:
+    """Raises `IdentityRefused` (`no-password-here`, 409) where `set_password` would."""
+    if person.issuer is not None and not (recovery and person.role is Role.ADMINISTRATOR):
+        detail = f"{person.name} signs in with the provider {person.issuer}, and has no password here."
+        raise IdentityRefused("no-password-here", "No password here", detail)
 
 
 def replace_password(connection: Connection, person: Person, password_hash: str, *, temporary: bool) -> Person:

@@ -99,7 +99,7 @@ class SignIn:
         """A new password for the person of a session; all sessions of the person end, and a new one is opened.
 
         Raises `IdentityRefused`: `weak-password` (422), `wrong-password` (403) for the old one, which counts as an
-        attempt, `no-password` (403) in a demonstration, `signed-out` (401) when the session has ended meanwhile,
+        attempt, `no-password` (403) where there is none, `signed-out` (401) when the session has ended meanwhile,
         `too-many-attempts` (429), `busy` (503).
         """
         person = signed_in.person
@@ -114,6 +114,9 @@ class SignIn:
             known = await asyncio.to_thread(self._admit, attempt)
             right = await self._passwords.verify_in_place(known.password_hash if known else None, old)
             hashed = await self._passwords.hash_in_place(new) if right else None
+        if known is not None and not known.password_hash:
+            detail = "You sign in with a provider, and have no password here."
+            raise IdentityRefused("no-password", "No password", detail, 403)
         if known is None or hashed is None:
             await asyncio.to_thread(self._record, attempt, known)
             raise IdentityRefused("wrong-password", "Wrong password", "The old password is wrong.", 403)

@@ -4,7 +4,7 @@ A session, a link or an offer that has ended is a row that is gone; keys and wat
 was done is in the journal, which forgets nothing.
 """
 
-from sqlalchemy import Boolean, Column, Double, ForeignKey, Integer, String, Table
+from sqlalchemy import Boolean, Column, Double, ForeignKey, Index, Integer, String, Table
 
 from sequence_planner.storage.metadata import METADATA
 
@@ -13,6 +13,7 @@ HASH = String(64)  # SHA-256 in hexadecimal digits
 NAME = String(100)
 TEXT = String(200)
 LONGEST_KEY = 400  # characters of what a name is found by
+LONGEST_ISSUER = 400  # characters of the address of a provider
 
 PEOPLE = Table(
     "people",
@@ -27,6 +28,9 @@ PEOPLE = Table(
     Column("must_change_password", Boolean, nullable=False),
     Column("password_hash", String(300), nullable=False),  # argon2id with its parameters and salt
     Column("revision", Integer, nullable=False),
+    Column("issuer", String(LONGEST_ISSUER), nullable=True),  # the provider that vouches; none: a password here
+    Column("subject", String(255), nullable=True),  # who it is for the provider
+    Index("ix_people_issuer_subject", "issuer", "subject", unique=True),
 )
 
 SESSIONS = Table(
@@ -72,6 +76,16 @@ KEYS = Table(
     Column("expires", Double, nullable=False),
     Column("last_used", Double, nullable=True),
     Column("revoked", Double, nullable=True),
+    Column("former_hash", HASH, nullable=True),  # of the secret before the last rotation
+    Column("former_until", Double, nullable=True),  # when that one works no more
+)
+
+PROVIDER_FLOWS = Table(
+    "provider_flows",
+    METADATA,
+    Column("token_hash", HASH, primary_key=True),
+    Column("page", String(2000), nullable=False),  # of this server, where the sign-in leads
+    Column("expires", Double, nullable=False, index=True),
 )
 
 PAIRING_OFFERS = Table(

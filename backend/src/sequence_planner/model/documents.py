@@ -51,6 +51,8 @@ class VariableDocument(DocumentPart):
     """The first value; without it the first of the type."""
     each: Parameters = Field(default_factory=dict, alias="for")
     """One variable per value of an enumeration: `{where: side}` makes `name[left]` and `name[right]`."""
+    approval: Literal["single", "dual"] = "single"
+    """`dual`: each correction and force of it needs a second person (four-eyes principle)."""
 
 
 class StartDocument(DocumentPart):

@@ -24,6 +24,7 @@ from sequence_planner.web import (
     abilities,
     actions,
     alarms,
+    approvals,
     attachments,
     audit,
     capabilities,
@@ -44,6 +45,7 @@ from sequence_planner.web import (
     people,
     pipelines,
     problems,
+    provider,
     revisions,
     ros,
     session,
@@ -76,6 +78,7 @@ PREFIX = "/api/v1"
 LONG = 10_000  # bytes; such answers are compressed for who takes them so
 PARTS = (
     session.router,
+    provider.router,
     station.router,
     modes.router,
     modes.bodiless,
@@ -84,6 +87,7 @@ PARTS = (
     alarms.router,
     control_routes.router,
     corrections.router,
+    approvals.router,
     errands.advice_router,
     errands.router,
     why_not.router,
@@ -140,7 +144,12 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
 
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
-        office = await run_in_threadpool(IdentityOffice.open, settings.database, demonstration=settings.demonstration)
+        office = await run_in_threadpool(
+            IdentityOffice.open,
+            settings.database,
+            demonstration=settings.demonstration,
+            provider=settings.provider,
+        )
         app.state.identity = office
         app.state.order_desk = desk = OrderDesk(office, controller)
         folder = settings.model

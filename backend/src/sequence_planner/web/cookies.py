@@ -16,6 +16,7 @@ from sequence_planner.web.settings import Settings
 
 NAME = "sequence-planner"
 SESSION_COOKIE, WATCH_COOKIE = f"__Host-{NAME}", f"__Host-{NAME}-watch"
+FLOW_COOKIE = f"__Host-{NAME}-sign-in"
 LONGEST = 256  # characters of a credential; what is longer is none of ours
 
 
@@ -38,6 +39,16 @@ def watch_cookie(settings: Settings) -> str:
     return WATCH_COOKIE if settings.https else f"{NAME}-watch-{settings.port}"
 
 
+def flow_cookie(settings: Settings) -> str:
+    """The name of the cookie that holds the token of a sign-in that was begun with a provider."""
+    return FLOW_COOKIE if settings.https else f"{NAME}-sign-in-{settings.port}"
+
+
+def flow_token(connection: HTTPConnection) -> str | None:
+    """The token of the sign-in that this browser has begun; it is not known to be right."""
+    return _short(connection.cookies.get(flow_cookie(connection.app.state.settings)))
+
+
 def credentials(connection: HTTPConnection) -> Credentials:
     """What `connection` shows. A key is shown as `Authorization: Bearer sp_…`; other schemes are not ours."""
     settings: Settings = connection.app.state.settings
@@ -58,6 +69,16 @@ def keep_session(response: Response, settings: Settings, token: str) -> None:
 def keep_watch(response: Response, settings: Settings, token: str, seconds: int) -> None:
     """Have the browser keep a watch's token for `seconds`."""
     _keep(response, watch_cookie(settings), token, settings, seconds)
+
+
+def keep_flow(response: Response, settings: Settings, token: str, seconds: int) -> None:
+    """Have the browser keep the token of a sign-in for `seconds`."""
+    _keep(response, flow_cookie(settings), token, settings, seconds)
+
+
+def forget_flow(response: Response, settings: Settings) -> None:
+    """Have the browser forget the sign-in that it has begun."""
+    _keep(response, flow_cookie(settings), "", settings, 0)
 
 
 def forget_session(response: Response, settings: Settings) -> None:

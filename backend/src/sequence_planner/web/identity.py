@@ -18,7 +18,10 @@ from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.actor import Actor
 from sequence_planner.identity import keys, sessions, watches
+from sequence_planner.identity.openid.provider import Provider
+from sequence_planner.identity.openid.settings import ProviderSettings
 from sequence_planner.identity.passwords import Passwords
+from sequence_planner.identity.provider_sign_in import ProviderSignIn
 from sequence_planner.identity.sign_in import SignIn
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
@@ -33,7 +36,7 @@ ASK_AGAIN = 2.0  # seconds after which a database that did not answer is asked a
 class IdentityOffice:
     """All that the server asks of `identity`, with the clock that it goes by (seconds since the epoch).
 
-    With `demonstration` the sessions of a demonstration are known too.
+    With `demonstration` the sessions of a demonstration are known too; with `provider` people may sign in there.
     """
 
     def __init__(
@@ -42,11 +45,13 @@ class IdentityOffice:
         passwords: Passwords,
         *,
         demonstration: bool = False,
+        provider: ProviderSignIn | None = None,
         now: Callable[[], float] = time.time,
     ) -> None:
         self.database = database
         self.passwords = passwords
         self.sign_in = SignIn(database, passwords)
+        self.provider = provider
         self.now = now
         self._demonstration = demonstration
         self._memory = BearerMemory()
@@ -54,7 +59,7 @@ class IdentityOffice:
         self._seen: dict[str, Callable[[Connection, float], None]] = {}  # what is to be written, by whose id
 
     @classmethod
-    def open(cls, url: str, *, demonstration: bool = False) -> IdentityOffice:
+    def open(cls, url: str, *, demonstration: bool = False, provider: ProviderSettings | None = None) -> IdentityOffice:
         """The office over the database at `url`, brought up to date. Raises `StorageError`."""
         database = Database.open(url)
         try:
@@ -62,7 +67,8 @@ class IdentityOffice:
         except StorageError:
             database.close()
             raise
-        return cls(database, Passwords(), demonstration=demonstration)
+        sign_in = None if provider is None else ProviderSignIn(database, Provider(provider))
+        return cls(database, Passwords(), demonstration=demonstration, provider=sign_in)
 
     def close(self) -> None:
         """Let go of the database and of the thread that hashes."""

@@ -1,4 +1,4 @@
-"""Keys, with which other systems read the station. A secret is answered once, when the key is made."""
+"""Keys, with which other systems read the station. A secret is answered once, when it is made."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from fastapi import APIRouter
 from pydantic import BaseModel, Field, StrictInt
 
 from sequence_planner.identity import keys
-from sequence_planner.identity.keys import LONGEST_LIFE, Key
+from sequence_planner.identity.keys import LONGEST_LIFE, LONGEST_OVERLAP, Key
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Identifier, Name
@@ -21,7 +21,10 @@ router = APIRouter(prefix="/keys", tags=["keys"], dependencies=[ADMINISTRATOR, J
 
 
 class KeyAnswer(BaseModel):
-    """A key without its secret. Times are in seconds since the epoch; `created_by` is the person's name."""
+    """A key without its secret. Times are in seconds since the epoch; `created_by` is the person's name.
+
+    `former_until` is when the secret before the last rotation works no more; null without a rotation.
+    """
 
     id: str
     name: str
@@ -31,6 +34,7 @@ class KeyAnswer(BaseModel):
     expires: float
     last_used: float | None
     revoked: float | None
+    former_until: float | None
 
 
 class KeysAnswer(BaseModel):
@@ -45,6 +49,13 @@ class KeyBody(Body):
     name: Name
     scopes: Annotated[list[Scope], Field(min_length=1)]
     days: Annotated[StrictInt, Field(ge=1, le=LONGEST_LIFE)]
+
+
+class RotationBody(Body):
+    """For how many hours the present secret works on, and for how many days the key does; null: as long as now."""
+
+    overlap: Annotated[StrictInt, Field(ge=0, le=LONGEST_OVERLAP)]
+    days: Annotated[StrictInt, Field(ge=1, le=LONGEST_LIFE)] | None = None
 
 
 class NewKeyAnswer(BaseModel):
@@ -69,6 +80,19 @@ async def make(body: KeyBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
         by=actor,
     )
     return NewKeyAnswer(key=_answered(key), secret=secret)
+
+
+@router.post("/{key}/rotation", status_code=201, responses=refused(404, 409))
+async def rotate(key: Identifier, body: RotationBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
+    """Give a key another secret, answered this once. The present one works for some hours more; one before it ends.
+
+    409 `key-over` when the key works no more.
+    """
+    now = identity.now()
+    secret, rotated = await identity.write(
+        lambda connection: keys.rotate_key(connection, key, body.overlap, body.days, actor, now), by=actor
+    )
+    return NewKeyAnswer(key=_answered(rotated), secret=secret)
 
 
 @bodiless.delete("/{key}", status_code=204, responses=refused(404))

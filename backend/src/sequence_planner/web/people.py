@@ -44,7 +44,8 @@ Condition = Annotated[str | None, Header(pattern=r'^"[0-9]{1,9}"$')]
 class PersonAnswer(BaseModel):
     """A person. `created` is in seconds since the epoch; `sessions` counts those that are open now.
 
-    `revision` is what a change has to name in `If-Match`, in double quotes.
+    `revision` is what a change has to name in `If-Match`, in double quotes. `issuer` is the provider with which the
+    person signs in, and which says the role; null where the person has a password here.
     """
 
     id: str
@@ -54,6 +55,7 @@ class PersonAnswer(BaseModel):
     disabled: bool
     must_change_password: bool
     revision: int
+    issuer: str | None
     sessions: int
 
 
@@ -132,7 +134,7 @@ async def change(
     """Change the role, or whether the person may sign in; either ends all of that person's sessions.
 
     428 without `If-Match`; 412 `person-changed` when another has changed the person meanwhile; 409
-    `last-administrator` when nobody would be left to administer.
+    `last-administrator` when nobody would be left to administer, or `role-from-provider` where that is not for here.
     """
     if if_match is None:
         detail = "Name the revision that you saw in the header If-Match, in double quotes."
@@ -146,10 +148,14 @@ async def change(
     return _with_tag(response, await identity.write(write, by=actor))
 
 
-@router.put("/{person}/password", status_code=204, responses=refused(404))
+@router.put("/{person}/password", status_code=204, responses=refused(404, 409))
 async def give_password(person: Identifier, body: TemporaryPasswordBody, identity: Identity, actor: Actor) -> None:
-    """Give a temporary password; it ends all of that person's sessions."""
+    """Give a temporary password; it ends all of that person's sessions.
+
+    409 `no-password-here` where the person signs in with a provider.
+    """
     found = await identity.read(lambda connection: people.known(connection, person))
+    people.check_has_password(found)
     check_password(body.password, found.name)
     hashed = await identity.passwords.hash(body.password)
     now = identity.now()

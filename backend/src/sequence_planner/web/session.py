@@ -7,29 +7,28 @@ browser had before is never taken over: its session ends.
 from __future__ import annotations
 
 import contextlib
-from typing import Annotated, Literal
+from typing import Annotated
 
 from fastapi import APIRouter, Request, Response
-from pydantic import BaseModel, Field
+from pydantic import Field
 from sqlalchemy import Connection
 
 from sequence_planner.actor import ActorKind
 from sequence_planner.control.commands import CommandRefused
-from sequence_planner.identity import first_start, people, sessions
+from sequence_planner.identity import first_start, sessions
 from sequence_planner.identity.passwords import check_password
 from sequence_planner.identity.people import DEMONSTRATOR
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.sessions import SignedIn
-from sequence_planner.identity.watches import WatchState
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry
 from sequence_planner.web.access import allowed, bearer_of
 from sequence_planner.web.body import Body, Name
-from sequence_planner.web.cookies import Credentials, credentials, forget_session, keep_session
+from sequence_planner.web.cookies import Credentials, credentials, forget_session
 from sequence_planner.web.demonstration import may_open_demonstration
-from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Address, Agent, Controller, Identity, Session
+from sequence_planner.web.session_answer import SessionAnswer, answered, begin_session
 from sequence_planner.web.sweeper import withdraw_control
 
 EVERYBODY = allowed(None)
@@ -38,41 +37,6 @@ LONGEST = 1000  # characters of what somebody typed; what may be a password is a
 
 router = APIRouter(tags=["session"])
 Typed = Annotated[str, Field(min_length=1, max_length=LONGEST)]
-
-
-class SessionPerson(BaseModel):
-    """Who is signed in."""
-
-    id: str
-    name: str
-    role: Role
-
-
-class SessionWatch(BaseModel):
-    """The watch that this device is, apart from who is signed in."""
-
-    id: str
-    name: str
-    resource: str
-    state: WatchState
-
-
-class SessionAnswer(BaseModel):
-    """Who the browser is for this server.
-
-    `first-start`: nobody is signed in, and there is no administrator yet. `session` is the id that holds control where
-    this session does; `expires` is when it ends at the latest, in seconds since the epoch. `demonstration` says that
-    one may be opened here.
-    """
-
-    state: Literal["signed-out", "signed-in", "first-start"]
-    person: SessionPerson | None
-    session: str | None
-    kind: Literal["person", "demonstration"] | None
-    must_change_password: bool
-    expires: float | None
-    demonstration: bool
-    watch: SessionWatch | None
 
 
 class SignInBody(Body):
@@ -106,7 +70,7 @@ async def session(request: Request) -> SessionAnswer:
     """Who is signed in here; nobody is an answer too."""
     shown = credentials(request)
     bearer = await bearer_of(request, Credentials(session=shown.session))
-    return await _answer(request, bearer.signed_in)
+    return await answered(request, bearer.signed_in)
 
 
 @router.post("/session", dependencies=[EVERYBODY, JSON_ONLY], responses=refused(401, 429, 503))
@@ -118,7 +82,7 @@ async def sign_in(
     token, signed_in = await identity.sign_in.sign_in(
         body.name, body.password, now=identity.now(), address=address, agent=agent, before=before
     )
-    return await _begin(request, response, token, signed_in)
+    return await begin_session(request, response, token, signed_in)
 
 
 @router.post("/session/demonstration", dependencies=[EVERYBODY, JSON_ONLY], responses=refused(503))
@@ -146,7 +110,7 @@ async def open_demonstration(
         return token, opened
 
     token, opened = await identity.write(write)
-    return await _begin(request, response, token, opened)
+    return await begin_session(request, response, token, opened)
 
 
 @router.delete("/session", status_code=204, dependencies=[ONESELF])
@@ -175,7 +139,7 @@ async def change_password(
     token, again = await identity.sign_in.change_password(
         signed_in, body.old, body.new, now=identity.now(), address=address, agent=agent
     )
-    return await _begin(request, response, token, again)
+    return await begin_session(request, response, token, again)
 
 
 @router.post("/first-administrator", status_code=201, dependencies=[EVERYBODY, JSON_ONLY], responses=refused(409, 503))
@@ -206,43 +170,4 @@ async def first_administrator(
         return sessions.open_session(connection, person, now, kind=kind, address=address, agent=agent)
 
     token, signed_in = await identity.write(write)
-    return await _begin(request, response, token, signed_in)
-
-
-async def _begin(request: Request, response: Response, token: str, signed_in: SignedIn) -> SessionAnswer:
-    office: IdentityOffice = request.app.state.identity
-    office.forget()  # whatever session was there before has ended
-    keep_session(response, request.app.state.settings, token)
-    return await _answer(request, signed_in)
-
-
-async def _answer(request: Request, signed_in: SignedIn | None) -> SessionAnswer:
-    """What the browser is told where `signed_in` is its session."""
-    state = request.app.state
-    watch = (await bearer_of(request, Credentials(watch=credentials(request).watch))).watch
-    answer = SessionAnswer(
-        state="signed-out",
-        person=None,
-        session=None,
-        kind=None,
-        must_change_password=False,
-        expires=None,
-        demonstration=may_open_demonstration(request, state.settings, state.controller),
-        watch=None if watch is None else SessionWatch.model_validate(watch, from_attributes=True),
-    )
-    if signed_in is not None:
-        return answer.model_copy(update=_said_of(signed_in))
-    office: IdentityOffice = state.identity
-    has_administrator = await office.read(people.administrator_exists)
-    return answer if has_administrator else answer.model_copy(update={"state": "first-start"})
-
-
-def _said_of(signed_in: SignedIn) -> dict[str, object]:
-    return {
-        "state": "signed-in",
-        "person": SessionPerson.model_validate(signed_in.person, from_attributes=True),
-        "session": signed_in.session,
-        "kind": "demonstration" if signed_in.kind is ActorKind.DEMONSTRATION else "person",
-        "must_change_password": signed_in.person.must_change_password,
-        "expires": signed_in.expires,
-    }
+    return await begin_session(request, response, token, signed_in)

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 
+from sequence_planner.identity.openid.settings import ProviderSettings
+
 LOCALHOST = "localhost"
 LOOPBACK_NAMES = ("127.0.0.1", LOCALHOST, "[::1]")
 NAME = re.compile(
@@ -100,7 +102,8 @@ class Settings(Endpoint):
     """All that the server needs to know; `page` is the folder of the built page, `model` that of the running station.
 
     With `transport` the network is joined for what a person wants to attach, as the controller joins it. `database`
-    is the URL of where identity and journal are kept. With `demonstration` one may be opened without signing in.
+    is the URL of where identity and journal are kept. With `demonstration` one may be opened without signing in, with
+    `provider` people may sign in there.
     """
 
     controller_socket: Path
@@ -109,6 +112,7 @@ class Settings(Endpoint):
     model: Path | None = None
     transport: str = "auto"
     demonstration: bool = False
+    provider: ProviderSettings | None = None
     stream: StreamLimits = field(default_factory=StreamLimits)
 
 

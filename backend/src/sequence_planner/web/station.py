@@ -11,6 +11,7 @@ from pydantic import BaseModel
 
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.alarm_view import AlarmView
+from sequence_planner.control.approval_view import ApprovalView
 from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import (
     ErrandView,
@@ -70,6 +71,7 @@ class StationAnswer(Answer):
     questions: list[QuestionView]
     last_correction: LastCorrectionView | None
     standby: StandbyView | None
+    approvals: dict[str, ApprovalView]
 
 
 class StateAnswer(Answer):

@@ -15,6 +15,7 @@ from typing_extensions import TypedDict
 
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.alarm_view import AlarmView
+from sequence_planner.control.approval_view import ApprovalView
 from sequence_planner.control.job_view import JobView
 from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import (
@@ -72,6 +73,7 @@ class StationChange(TypedDict, total=False):
     out_of_service: list[ServiceView]
     questions: list[QuestionView]
     last_correction: LastCorrectionView | None
+    approvals: dict[str, ApprovalView]  # whole, too
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
     overrides: dict[str, OverrideView]
@@ -94,6 +96,7 @@ class StationRemoval(TypedDict, total=False):
     overrides: list[str]
     forces: list[str]
     undecided: list[str]
+    approvals: list[str]
     alarms: list[str]
 
 

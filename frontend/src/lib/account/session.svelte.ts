@@ -7,7 +7,7 @@
 import { createContext, flushSync } from 'svelte';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { request, whenSignedOut, type Answer } from '#lib/rest/request.ts';
-import type { Role, SessionAnswer } from '#lib/contract.ts';
+import type { ProviderBegun, ProviderSession, Role, SessionAnswer } from '#lib/contract.ts';
 import { includes } from './roles.ts';
 import { ASKING, after, type Event, type Standing } from './standing.ts';
 
@@ -17,6 +17,8 @@ const CHANNEL = 'sequence-planner-session';
 const LEFT = 'signed-out';
 /** Milliseconds to wait for a password to be checked: on a small machine, behind others. */
 const HASHING = 20_000;
+/** Milliseconds to wait for what the server asks a provider: three questions at most. */
+const PROVIDER = 30_000;
 /** Milliseconds after which a server that did not answer is asked again, or whether a demonstration can begin by now. */
 const ASK_AGAIN = 2000;
 
@@ -25,7 +27,7 @@ type News = 'signed-in' | 'signed-out';
 export class Session {
 	#standing = $state.raw<Standing>(ASKING);
 	/** Somebody signed out on purpose: a demonstration does not begin again by itself in this tab. */
-	#left = sessionStorage.getItem(LEFT) !== null;
+	#left = $state(sessionStorage.getItem(LEFT) !== null);
 	/** Something that opens a session is under way. */
 	#changing = false;
 	/** Numbers what was asked, so that an answer that was overtaken is not taken for news. */
@@ -44,8 +46,15 @@ export class Session {
 	readonly mustChangePassword: boolean = $derived(this.answer?.must_change_password ?? false);
 	/** Whether a demonstration may be opened here. */
 	readonly demonstration: boolean = $derived(this.answer?.demonstration ?? false);
+	/** The provider with which one may sign in too; null where there is none. */
+	readonly provider = $derived(this.answer?.provider ?? null);
 	/** The watch whose credential this browser has. */
 	readonly watch = $derived(this.answer?.watch ?? null);
+
+	/** Whether somebody signed out on purpose in this tab. */
+	get left(): boolean {
+		return this.#left;
+	}
 
 	/** When this page changed the password (milliseconds): a new session began with it, and all of the page with that. */
 	passwordChanged: number | null = $state(null);
@@ -124,6 +133,28 @@ export class Session {
 	signIn(name: string, password: string): Promise<Refusal | null> {
 		this.passwordChanged = null;
 		return this.#change('POST', ADDRESS, { name, password });
+	}
+
+	/** Asks where the provider signs people in, to come to the page `to` in the end; the browser is to go there. */
+	beginWithProvider(to: string): Promise<Answer<ProviderBegun>> {
+		return request('POST', `${ADDRESS}/provider`, { body: { to }, patience: PROVIDER });
+	}
+
+	/** Hands over what the provider has sent back; the answer has the page to go to. */
+	async finishWithProvider(brought: object): Promise<Answer<ProviderSession>> {
+		this.passwordChanged = null;
+		this.#asked += 1;
+		this.#changing = true;
+		const answer: Answer<ProviderSession> = await request('POST', `${ADDRESS}/provider/answer`, {
+			body: brought,
+			patience: PROVIDER
+		});
+		this.#changing = false;
+		if (answer.ok) {
+			this.#take({ kind: 'answered', answer: answer.value.session });
+			this.#tell('signed-in');
+		}
+		return answer;
 	}
 
 	/** Changes the password of who is signed in; all other sessions of that person end. */

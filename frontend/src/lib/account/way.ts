@@ -8,6 +8,8 @@ import type { SessionAnswer } from '#lib/contract.ts';
 
 export const HOME = '/';
 export const SIGN_IN = '/sign-in';
+/** Where a provider sends the browser back to. */
+export const FROM_PROVIDER = '/sign-in/provider';
 export const FIRST_START = '/first-start';
 export const ACCOUNT = '/account';
 /** The watch has a credential of its own, and pairs itself where it has none. */
@@ -33,7 +35,7 @@ export function returnAddress(to: string | null): string {
 	}
 	// Dots are taken out of a path as it is resolved, so that `/.//name` is only now seen to be `//name`.
 	if (url.origin !== HERE || url.pathname.startsWith('//')) return HOME;
-	return [SIGN_IN, FIRST_START].includes(url.pathname) ? HOME : url.pathname + url.search;
+	return [SIGN_IN, FROM_PROVIDER, FIRST_START].includes(url.pathname) ? HOME : url.pathname + url.search;
 }
 
 /** The sign-in that leads back to `page` (path and query). */
@@ -54,9 +56,9 @@ export function leadsTo(answer: SessionAnswer, url: Asked): string | null {
 	const elsewhere = (page: string): string | null => (at(page) ? null : page);
 	switch (answer.state) {
 		case 'first-start':
-			return at(WATCH) ? null : elsewhere(FIRST_START);
+			return at(WATCH) || at(FROM_PROVIDER) ? null : elsewhere(FIRST_START);
 		case 'signed-out':
-			return at(SIGN_IN) || at(FIRST_START) || at(WATCH) ? null : signInAddress(url.pathname + url.search);
+			return at(SIGN_IN) || at(FROM_PROVIDER) || at(FIRST_START) || at(WATCH) ? null : signInAddress(url.pathname + url.search);
 		case 'signed-in':
 			if (answer.must_change_password) return elsewhere(ACCOUNT);
 			if (at(FIRST_START)) return HOME;

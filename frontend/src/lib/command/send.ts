@@ -4,7 +4,7 @@
  * A command succeeds or is refused; a refusal carries words for the person. What a command did is never taken from its
  * answer: it shows in the stream.
  */
-import type { Alarm, CorrectionPreview, Mode, OutOfService, Value, WayOffer, WhyNot } from '#lib/contract.ts';
+import type { Alarm, ApprovedAct, CorrectionPreview, Mode, OutOfService, Value, WayOffer, WhyNot } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { command, request, type Answer } from '#lib/rest/request.ts';
 
@@ -138,6 +138,23 @@ export function undoCorrection(revision: number, reason: string): Promise<Refusa
 /** Lets a measured variable or an output have a value for so many seconds. */
 export function forceVariable(name: string, value: Value, seconds: number, reason: string): Promise<Refusal | null> {
 	return command('PUT', `/api/v1/forces/${encodeURIComponent(name)}`, { body: { value, seconds, reason } });
+}
+
+const ASKED: Record<ApprovedAct['kind'], string> = { correction: 'corrections', outputs: 'outputs', force: 'forces' };
+
+/** Asks a second person to approve what was looked at in the state of `revision`. */
+export function askForApproval(act: ApprovedAct, revision: number, reason: string): Promise<Refusal | null> {
+	return command('POST', `/api/v1/approvals/${ASKED[act.kind]}`, { body: { act, revision, reason } });
+}
+
+/** Approves what somebody else has asked for, as it was looked at in the state of `revision`: it is done at once. */
+export function approveRequest(id: string, act: ApprovedAct, revision: number): Promise<Refusal | null> {
+	return command('POST', `/api/v1/approvals/${encodeURIComponent(id)}/approve`, { body: { act, revision } });
+}
+
+/** Declines what somebody else has asked for, or withdraws what one has asked for oneself. */
+export function declineRequest(id: string, act: ApprovedAct): Promise<Refusal | null> {
+	return command('POST', `/api/v1/approvals/${encodeURIComponent(id)}/decline`, { body: { act } });
 }
 
 /** Lets a forced variable be as it comes. */

@@ -4,7 +4,7 @@
  * First values are chosen, then the station says what would follow, on which revision of the state; only on that the
  * correction is made. What is chosen stays whatever happens; what was looked at does not hold once the state has moved.
  */
-import { correctEstimates, previewCorrection, undoCorrection } from '#lib/command/send.ts';
+import { askForApproval, correctEstimates, previewCorrection, undoCorrection } from '#lib/command/send.ts';
 import type { CorrectionPreview, LastCorrection, StationView, Value } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import type { Station } from '#lib/stream/station.svelte.ts';
@@ -38,6 +38,11 @@ export class Correction {
 		return Object.fromEntries(Object.entries(this.#chosen).filter(differs));
 	});
 	readonly changes: boolean = $derived(Object.keys(this.values).length > 0);
+	/** A second person has to approve it. */
+	readonly dual: boolean = $derived.by(() => {
+		const variables = this.#station.view?.variables ?? {};
+		return this.undoes === null && Object.keys(this.values).some((name) => variables[name]?.dual_approval === true);
+	});
 	/** The state is another than the one that was looked at. */
 	readonly moved: boolean = $derived.by(
 		() => this.preview !== null && (this.#overtaken || (this.#station.view?.revision ?? 0) > this.preview.revision)
@@ -93,7 +98,9 @@ export class Correction {
 		this.sending = true;
 		this.refusal = this.undoes
 			? await undoCorrection(this.undoes.revision, reason)
-			: await correctEstimates(this.values, preview.revision, reason);
+			: this.dual
+				? await askForApproval({ kind: 'correction', values: this.values }, preview.revision, reason)
+				: await correctEstimates(this.values, preview.revision, reason);
 		this.sending = false;
 		if (this.refusal === null) return true;
 		this.asked = false;

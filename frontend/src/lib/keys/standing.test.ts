@@ -10,7 +10,8 @@ const KEY: Key = {
 	created_by: 'Eva',
 	expires: 100,
 	last_used: null,
-	revoked: null
+	revoked: null,
+	former_until: null
 };
 
 test('a key is of use until it expires or is revoked', () => {

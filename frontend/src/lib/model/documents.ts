@@ -66,6 +66,16 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 				"kind": "names",
 				"help": "One variable per value of an enumeration: `{where: side}` makes `name[left]` and `name[right]`.",
 				"required": false
+			},
+			"approval": {
+				"kind": "choice",
+				"choices": [
+					"single",
+					"dual"
+				],
+				"help": "`dual`: each correction and force of it needs a second person (four-eyes principle).",
+				"required": false,
+				"otherwise": "single"
 			}
 		}
 	},

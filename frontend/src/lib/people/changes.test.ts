@@ -10,6 +10,7 @@ const EVA: Person = {
 	created: 0,
 	disabled: false,
 	must_change_password: false,
+	issuer: null,
 	revision: 3,
 	sessions: 1
 };

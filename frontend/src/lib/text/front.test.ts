@@ -6,10 +6,12 @@ import { front } from './en-front.ts';
 const SOURCE = join(import.meta.dirname, '../..');
 const ENTRIES = ['routes/+layout.svelte', 'routes/+error.svelte', 'routes/watch', 'routes/sign-in', 'routes/first-start'];
 
-/** The files behind `entry`: itself, or all of a folder. */
+/** The files behind `entry`: itself, or all of a folder and of those in it. */
 function filesOf(entry: string): string[] {
 	const path = join(SOURCE, entry);
-	return /\.\w+$/.test(entry) ? [path] : readdirSync(path).map((name) => join(path, name));
+	if (/\.\w+$/.test(entry)) return [path];
+	const files = readdirSync(path, { recursive: true, withFileTypes: true }).filter((each) => each.isFile());
+	return files.map(({ parentPath, name }) => join(parentPath, name));
 }
 
 /** Everything that is read with `entries`, without what is imported for its types or only later. */

@@ -162,9 +162,10 @@ class Declarations:
             self.broken.add(full)
             return
         initial = self.initial_of(name, full, document.initial, type_)
+        dual = document.approval == "dual"
         for binding in bindings:
             ground_name = instance_name(full, binding, indexed=True)
-            self.variables[ground_name] = VariableDeclaration(ground_name, type_, kind, initial, resource)
+            self.variables[ground_name] = VariableDeclaration(ground_name, type_, kind, initial, resource, dual)
             self.types[ground_name] = type_
             self.places[ground_name] = name.place
 

@@ -16,6 +16,17 @@ export const door = {
 		help: 'No name yet, or the password forgotten? An administrator of this station can help.',
 		pair: 'Pair a watch'
 	},
+	provider: {
+		or: 'or',
+		title: (provider: string): string => `Sign in with ${provider}`,
+		under: (provider: string): string => `Going to ${provider}`,
+		finishing: (provider: string): string => `${provider} has answered. Signing in`,
+		finishingAny: 'The provider has answered. Signing in',
+		back: 'Back to sign-in',
+		signOut: (provider: string): string => `Sign out of ${provider} as well`,
+		stillThere: (provider: string): string =>
+			`You are signed out here. At ${provider} you may still be signed in: on a device that others use, sign out there too.`
+	},
 	name: { label: 'Name', missing: 'Enter your name.' },
 	password: {
 		label: 'Password',

@@ -17,6 +17,17 @@ export const door: Text['door'] = {
 		help: 'Inget namn än, eller glömt lösenordet? En administratör för stationen kan hjälpa.',
 		pair: 'Para ihop en klocka'
 	},
+	provider: {
+		or: 'eller',
+		title: (provider) => `Logga in med ${provider}`,
+		under: (provider) => `Går till ${provider}`,
+		finishing: (provider) => `${provider} har svarat. Loggar in`,
+		finishingAny: 'Leverantören har svarat. Loggar in',
+		back: 'Tillbaka till inloggningen',
+		signOut: (provider) => `Logga ut från ${provider} också`,
+		stillThere: (provider) =>
+			`Du är utloggad här. Hos ${provider} kan du fortfarande vara inloggad: logga ut även där om andra använder enheten.`
+	},
 	name: { label: 'Namn', missing: 'Skriv ditt namn.' },
 	password: {
 		label: 'Lösenord',
