@@ -94,7 +94,7 @@ def _unready(server: Server) -> dict[str, Bearer]:
 
 def _keys(server: Server) -> dict[str, Bearer]:
     found = {}
-    for scopes in ((Scope.READ,), (Scope.AUDIT,), (Scope.READ, Scope.AUDIT)):
+    for scopes in ((Scope.READ,), (Scope.AUDIT,), (Scope.METRICS,), (Scope.READ, Scope.AUDIT)):
         secret, _ = key(server, *scopes)
         found[f"key to {' and '.join(scopes)}"] = Bearer(_bearing(secret), scopes=scopes)
     secret, revoked = key(server, Scope.READ, Scope.AUDIT)

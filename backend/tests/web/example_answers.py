@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from sequence_planner.control.asks import Ask, AskAdvice, AskCorrection, AskDefinition, AskGoal, AskReset, AskWhyNot
+from sequence_planner.control.asks import (
+    Ask,
+    AskAdvice,
+    AskCorrection,
+    AskDefinition,
+    AskFigures,
+    AskGoal,
+    AskReset,
+    AskWhyNot,
+)
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.correction_view import CorrectedView, CorrectionPreview
 from sequence_planner.control.definition_view import (
@@ -18,6 +27,12 @@ from sequence_planner.control.definition_view import (
     TriedReactionView,
     WrittenPlaceView,
 )
+from sequence_planner.control.figures_view import (
+    DistributionView,
+    FiguresView,
+    JournalFiguresView,
+    PlannerFiguresView,
+)
 from sequence_planner.control.offer_view import (
     AdviceView,
     ChangeView,
@@ -30,6 +45,7 @@ from sequence_planner.control.view import BeliefView
 from sequence_planner.control.view_part import View
 from sequence_planner.control.way_back_view import SpecificationView
 from sequence_planner.control.why_not_view import ChangerView, ConditionView, InvolvedView, WhyNotView
+from sequence_planner.distribution import Distribution
 
 STEP = PreviewStepView(tick=1, ability="robot.move", title="Move", resource="robot", human=False, restart=True)
 PLAN = PlanPreviewView(ticks=2, steps=[STEP], minimal_ticks=True, minimal_starts=False)
@@ -152,6 +168,25 @@ DEFINITION = AbilityDefinitionView(
 )
 
 
+def example_figures(*, behind: bool = False) -> FiguresView:
+    """Of four ticks, three records and two plans."""
+    ticks, latency = Distribution((0.001, 0.1)), Distribution((0.01,))
+    for seconds in (0.0005, 0.001, 0.05, 2.0):
+        ticks.note(seconds)
+    for seconds in (0.002, 0.004, 0.02):
+        latency.note(seconds)
+    plans = Distribution((0.1,))
+    plans.note(0.05)
+    plans.note(0.2)
+    return FiguresView(
+        began=1_700_000_000.0,
+        ticks=DistributionView.of(ticks),
+        journal=JournalFiguresView(waiting=2, latency=DistributionView.of(latency), behind=behind),
+        planner=[PlannerFiguresView(question="plan", outcome="found", took=DistributionView.of(plans))],
+        replaced={"planner": 1, "adviser": 0},
+    )
+
+
 def example_answer(ask: Ask) -> View:
     """An answer of the kind that is asked for. Raises `CommandRefused` for what the station does not have."""
     match ask:
@@ -159,6 +194,8 @@ def example_answer(ask: Ask) -> View:
             return ADVICE
         case AskCorrection():
             return CORRECTION
+        case AskFigures():
+            return example_figures()
         case AskGoal() | AskReset():
             return OFFER
         case AskDefinition(ability=name):

@@ -59,6 +59,11 @@ COMMANDS = (
     ),
     PutOff("run", "serving:run", "Run a station: controller, server and page."),
     PutOff(
+        "configuration",
+        "configuration:configuration",
+        "Look at what `run` is told by a configuration file and by the environment.",
+    ),
+    PutOff(
         "messages",
         "messages:messages",
         "Write the station's message definitions as packages that colcon builds, for ROS 2 with rclpy.",

@@ -12,6 +12,7 @@ from sequence_planner.control.asks import (
     AskAdvice,
     AskCorrection,
     AskDefinition,
+    AskFigures,
     AskGoal,
     AskRecord,
     AskReset,
@@ -19,6 +20,7 @@ from sequence_planner.control.asks import (
 )
 from sequence_planner.control.corrections import Corrections
 from sequence_planner.control.definitions import Definitions
+from sequence_planner.control.figures_view import FiguresView
 from sequence_planner.control.offers import Offers
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView, RecordView
 from sequence_planner.control.view_part import View
@@ -32,6 +34,7 @@ class Asking:
     pipelines: Callable[[], PipelinesView]
     flows: Callable[[Container[str] | None], FlowsView]
     record: Callable[[str], RecordView]
+    figures: Callable[[], FiguresView]
     corrections: Corrections
     offers: Offers
     why_not: WhyNot
@@ -46,6 +49,8 @@ class Asking:
                 return self.flows(among)
             case AskRecord(pipeline=pipeline):
                 return self.record(pipeline)
+            case AskFigures():
+                return self.figures()
             case AskCorrection(values=values):
                 return await self.corrections.preview(values)
             case AskAdvice():

@@ -24,3 +24,4 @@ class Scope(StrEnum):
 
     READ = "read"  # the station as a viewer sees it
     AUDIT = "audit"  # the record of who did what
+    METRICS = "metrics"  # figures of the system's own, for those who watch over it

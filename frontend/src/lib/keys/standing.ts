@@ -14,6 +14,6 @@ export function standingOf(key: Key, now: number): Standing {
  * is not one of its arguments, which everybody on the machine may read.
  */
 export function example(scopes: readonly KeyScope[], origin: string): string {
-	const address = scopes.includes('read') ? 'station' : 'audit';
-	return `curl --header @- ${origin}/api/v1/${address} <<< "Authorization: Bearer $KEY"`;
+	const address = scopes.includes('read') ? '/api/v1/station' : scopes.includes('audit') ? '/api/v1/audit' : '/metrics';
+	return `curl --header @- ${origin}${address} <<< "Authorization: Bearer $KEY"`;
 }

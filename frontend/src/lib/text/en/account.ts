@@ -130,7 +130,7 @@ export const account = {
 		by: (day: string, name: string): string => `${day} by ${name}`,
 		on: (standing: string, day: string): string => `${standing} on ${day}`,
 		standings: { valid: 'valid', revoked: 'revoked', expired: 'expired' },
-		scopes: { read: 'reads the station, as a viewer does', audit: 'reads the journal' },
+		scopes: { read: 'reads the station, as a viewer does', audit: 'reads the journal', metrics: 'reads figures for monitoring' },
 		make: 'Make',
 		makeTitle: 'Make a key',
 		wasMade: (name: string): string => `The key ${name} was made. Keep its secret now: it is not shown again.`,
