@@ -87,6 +87,16 @@ COMMANDS = (
         "journal:journal",
         "Who did what, and what has happened. Without a command it is list, as in: journal MODEL --verify",
     ),
+    PutOff(
+        "backup",
+        "backing_up:backup",
+        "Write a station's database, revisions and model to one file, while it runs or not.",
+    ),
+    PutOff(
+        "restore",
+        "backing_up:restore",
+        "Put a backup in place where there is no database yet, verify it, and sign everybody out.",
+    ),
     PutOff("controller", "controlling:controller", hidden=True),
     PutOff("server", "serving:server", hidden=True),
 )
