@@ -69,6 +69,11 @@ COMMANDS = (
         "Write the station's message definitions as packages that colcon builds, for ROS 2 with rclpy.",
     ),
     PutOff(
+        "security",
+        "security:security",
+        "Write what each node of a station may do on a secured ROS 2 network, as a policy of SROS 2.",
+    ),
+    PutOff(
         "topics",
         "topics:topics",
         "Show who and what is on the ROS network: topics with their types, who publishes and subscribes, and services.",
