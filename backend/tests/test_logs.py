@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
@@ -50,6 +51,18 @@ try:
     raise RuntimeError(typed)
 except RuntimeError:
     log.exception("a request failed", path=typed)
+"""
+
+
+LIBRARY = """
+import logging
+logging.getLogger("uvicorn.error").warning("a library %s", "speaks")
+"""
+ENDING = """
+from sequence_planner.logs import configure_logs
+
+configure_logs()
+raise RuntimeError("an end")
 """
 
 
@@ -104,3 +117,32 @@ def test_what_somebody_typed_steers_no_terminal() -> None:
     assert all(each.isprintable() for each in told.replace("\n", ""))
     assert "12:00:00_forged" in told
     assert not any(line.startswith("12:00:00_forged") for line in told.splitlines())
+
+
+def logged(program: str, form: str, code: int = 0) -> str:
+    """What a program that ends with `code` writes to its log in this format."""
+    environment = {**os.environ, "SEQUENCE_PLANNER_LOG_FORMAT": form}
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=30, check=False, env=environment)
+    assert done.returncode == code
+    return done.stderr
+
+
+def test_each_event_is_one_line_of_json() -> None:
+    lines = [json.loads(line) for line in logged(TYPED + LIBRARY, "json").splitlines()]
+    assert [line["event"] for line in lines] == ["command", "a request failed", "a library speaks"]
+    assert [line["level"] for line in lines] == ["info", "error", "warning"]
+    assert all(line["time"].endswith("Z") for line in lines)
+    assert "RuntimeError" in lines[1]["exception"]
+    assert lines[2]["logger"] == "uvicorn.error"
+
+
+def test_a_fault_in_json_does_not_tell_what_people_sent() -> None:
+    (line,) = logged(FAULT, "json").splitlines()
+    assert "in sign_in" in json.loads(line)["exception"]
+    assert "a long enough one" not in line
+
+
+def test_what_ends_a_process_is_an_event_too() -> None:
+    (line,) = logged(ENDING, "json", code=1).splitlines()
+    assert json.loads(line)["level"] == "critical"

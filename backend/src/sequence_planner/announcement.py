@@ -18,8 +18,11 @@ PATIENCE = 1.0  # seconds for an answer
 TO_ITSELF = {"0.0.0.0": "127.0.0.1", "::": "::1"}  # how this machine reaches what listens on all its addresses
 
 
-def answers(endpoint: Endpoint) -> bool:
-    """Whether somebody answers at `endpoint`, whatever the answer: it may be for its proxy only.
+UNWELL = 503  # what /healthz answers while the controller is not heard
+
+
+def health(endpoint: Endpoint) -> int | None:
+    """With which status `endpoint` answers whether it is alive: it may be for its proxy only. None without an answer.
 
     Over HTTPS it must be the endpoint's own certificate; nobody else needs to trust that here.
     """
@@ -33,10 +36,9 @@ def answers(endpoint: Endpoint) -> bool:
     with contextlib.closing(asking):
         try:
             asking.request("GET", "/healthz")
-            asking.getresponse()
+            return asking.getresponse().status
         except (OSError, http.client.HTTPException):
-            return False
-    return True
+            return None
 
 
 def announced(endpoint: Endpoint, model: Path) -> str:

@@ -21,19 +21,26 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from sequence_planner.announcement import announced, answers, first_start
+import structlog
+
+from sequence_planner.announcement import UNWELL, announced, first_start, health
 from sequence_planner.control.unix_socket import LONGEST_PATH
 from sequence_planner.identity.openid.options import ProviderOptions
 from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED, OVERTAKEN
+from sequence_planner.logs import FORMAT, LogFormat, configure_logs
+from sequence_planner.parts_file import write_restarts
+from sequence_planner.service_manager import ServiceManager
 from sequence_planner.storage.address import PostgresqlServer
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.web.binding import check_demonstration, check_free
 from sequence_planner.web.settings import Endpoint, SettingsError
 
-# The page as the build leaves it, beside the backend in the repository.
-PAGE = Path(__file__).resolve().parents[3] / "frontend" / "build"
+# The page as the build leaves it: in the package where that was installed, or beside the backend in the repository.
+PACKAGED = Path(__file__).resolve().parent / "page"
+PAGE = PACKAGED if PACKAGED.is_dir() else Path(__file__).resolve().parents[3] / "frontend" / "build"
 
+LOG = structlog.get_logger(__name__)
 UNUSABLE = 2  # the exit code with which a process says that it cannot be run as asked
 FIRST_PAUSE = 0.5  # seconds before a process is started again; doubled each time, up to the longest
 LONGEST_PAUSE = 10.0
@@ -57,6 +64,7 @@ class Launch:
     emulator_speed: float
     hot_standby: str | None = None
     provider: ProviderOptions = field(default_factory=ProviderOptions)
+    log_format: LogFormat = LogFormat.TEXT
 
 
 class Part:
@@ -80,6 +88,7 @@ class Part:
         self._begun = 0.0
         self._again = False
         self.deployed = False  # it has made room for another model
+        self.restarts = 0  # how often it has died and was started again
 
     @property
     def steady(self) -> bool:
@@ -122,6 +131,7 @@ class Part:
             if not self._follow(now):
                 self.spawn()
             return 0
+        self.restarts += 1
         if self._follow(now):
             _say(f"the {self.name} ended with code {code}, and its spare goes on")
             return 0
@@ -192,6 +202,9 @@ def launch(request: Launch) -> int:
     Raises `SettingsError` when host, port or certificate cannot be used, or the folder for temporary files has too long
     a name, and `StorageError` when the database cannot be used.
     """
+    os.environ[FORMAT] = request.log_format  # of all parts, and what these start
+    if request.log_format is LogFormat.JSON:
+        configure_logs()
     check_free(request.endpoint)
     if request.database is None:
         check_demonstration(request.endpoint)
@@ -216,6 +229,8 @@ class _Launcher:
         self._request = request
         self._url = url
         self._stop = stop
+        self._folder = socket.parent
+        self._manager = ServiceManager()  # before there are parts, which are not to inherit what it goes by
         model, transport = str(request.model), ["--transport", request.transport]
         transport += ["--rosbridge", request.rosbridge] if request.rosbridge else []
         controller = [model, "--socket", str(socket), *transport]
@@ -239,7 +254,11 @@ class _Launcher:
             self._controller.spawn(*(["--start"] if self._request.start else []))
             self._server.spawn()
             threading.Thread(target=self._announce, daemon=True).start()
+            told: dict[str, int] = {}
             while not self._stop.wait(0.2):
+                if told != (restarts := {each.name: each.restarts for each in (self._controller, self._server)}):
+                    write_restarts(self._folder, restarts)
+                    told = restarts
                 code = self._notice_emulator() or self._controller.look_after() or self._server.look_after()
                 if code:
                     return code
@@ -249,6 +268,7 @@ class _Launcher:
             return 0
         finally:
             self._stop.set()
+            self._manager.stopping()
             parts = (self._server, self._controller, self._emulator)
             for part in parts:
                 part.terminate()
@@ -277,12 +297,24 @@ class _Launcher:
     def _announce(self) -> None:
         """Print the address as soon as somebody answers there, and how to begin where there are no people yet."""
         endpoint, model = self._request.endpoint, self._request.model
-        while not answers(endpoint):
+        while health(endpoint) is None:
             if self._stop.wait(0.1):
                 return
+        self._manager.ready()
         _say(announced(endpoint, model))
         if self._request.database is not None and (how := first_start(self._url, endpoint, model)):
             _say(how)
+        self._watch()
+
+    def _watch(self) -> None:
+        """Tell whoever watches over this that the station is alive, as long as it is.
+
+        A process that hangs does not end, so nothing here would start it again: then all of it begins anew.
+        """
+        patience = self._manager.patience
+        while patience is not None and not self._stop.wait(patience / 4):
+            if health(self._request.endpoint) not in (None, UNWELL):
+                self._manager.alive()
 
 
 def _options(endpoint: Endpoint) -> list[str]:
@@ -305,5 +337,9 @@ def _close(process: subprocess.Popen[bytes]) -> None:
 
 
 def _say(text: str) -> None:
+    """On standard output, or as an event where no person reads that: a secret is only told at a terminal."""
+    if os.environ.get(FORMAT) == LogFormat.JSON and not sys.stdout.isatty():
+        LOG.info(text)
+        return
     sys.stdout.write(f"{text}\n")
     sys.stdout.flush()

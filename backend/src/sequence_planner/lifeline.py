@@ -18,9 +18,12 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from sequence_planner import parts_file
+
 STANDARD_INPUT = 0
 DEMONSTRATION_DATABASE = "demonstration.sqlite"  # in the launcher's folder; nothing of it is kept
-DEMONSTRATION_FILES = "demonstration.*"  # with what SQLite writes beside it, and the revisions of the model
+# With what SQLite writes beside it, the revisions of the model, and what the launcher tells.
+LEFT_BEHIND = ("demonstration.*", f"{parts_file.NAME}*")
 DEPLOYED = 75  # the exit code with which the controller makes room for one that runs another model
 OVERTAKEN = 76  # the exit code of a controller when another station has taken the command
 NEEDED = b"\n"  # what a spare reads when it is needed
@@ -30,13 +33,14 @@ LAST_WORDS = 5.0  # seconds in which a process may end in good order
 def end_with_launcher(folder: Path | None = None) -> None:
     """End this process like SIGTERM does as soon as its standard input, a pipe from the launcher, is closed.
 
-    `folder` is the launcher's; it is removed then, if it is empty but for what a demonstration keeps.
+    `folder` is the launcher's; it is removed then, if it is empty but for what a demonstration keeps and what the
+    launcher tells.
     """
 
     def remove() -> None:
         if folder is not None:
             with contextlib.suppress(OSError):
-                for left in folder.glob(DEMONSTRATION_FILES):
+                for left in (each for pattern in LEFT_BEHIND for each in folder.glob(pattern)):
                     if left.is_dir():
                         shutil.rmtree(left, ignore_errors=True)
                     else:

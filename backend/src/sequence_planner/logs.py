@@ -1,4 +1,4 @@
-"""Logs: one line an event, on standard error.
+"""Logs: one line an event, on standard error, as text for people or as JSON for programs.
 
 Whoever reads the log may stand still: a terminal that was stopped with Ctrl-S, a pipe that nobody empties, a disk that
 is full. No tick waits for that. Lines go to a queue and a thread writes them; of those for which there is no room the
@@ -10,18 +10,34 @@ from __future__ import annotations
 import atexit
 import contextlib
 import io
+import logging
 import os
 import sys
 import threading
+from enum import StrEnum
 from queue import Full, Queue
+from types import TracebackType
 from typing import TextIO, cast
 
 import structlog
-from structlog.typing import EventDict, ExcInfo
+from structlog.typing import EventDict, ExcInfo, Processor
 
+FORMAT = "SEQUENCE_PLANNER_LOG_FORMAT"  # the variable of the environment that names the format, for all processes
 STANDARD_ERROR = 2
 MOST_WAITING = 10_000  # lines
 LAST_LINES = 1.0  # seconds in which the lines that wait at the end are still written
+
+
+class LogFormat(StrEnum):
+    """How events are written."""
+
+    TEXT = "text"
+    JSON = "json"
+
+
+def log_format() -> LogFormat:
+    """The format that the environment names. Raises `ValueError` where it names none that there is."""
+    return LogFormat(os.environ.get(FORMAT) or LogFormat.TEXT)
 
 
 class LineQueue:
@@ -78,16 +94,45 @@ def _escaped(text: str) -> str:
     return "".join(each if each.isprintable() else each.encode("unicode_escape").decode("ascii") for each in text)
 
 
+class _Events(logging.Handler):
+    """Takes what libraries log by Python's own means as events like all others."""
+
+    def emit(self, record: logging.LogRecord) -> None:
+        """Write it."""
+        with contextlib.suppress(Exception):  # a record that cannot be formatted ends nothing
+            structlog.get_logger().log(
+                record.levelno, record.getMessage(), logger=record.name, exc_info=record.exc_info or None
+            )
+
+
 def configure_logs() -> None:
-    """Write events as time, level, text and its values."""
+    """Write events as time, level, text and its values, in the format that the environment names."""
     lines = LineQueue(STANDARD_ERROR)
     atexit.register(lines.drain)
     structlog.configure(
-        processors=[
-            structlog.processors.TimeStamper(fmt="%H:%M:%S", utc=False),
-            structlog.processors.add_log_level,
-            _escape_values,
-            structlog.dev.ConsoleRenderer(colors=sys.stderr.isatty(), exception_formatter=_write_traceback),
-        ],
+        processors=[structlog.contextvars.merge_contextvars, structlog.processors.add_log_level, *_written()],
         logger_factory=structlog.WriteLoggerFactory(cast(TextIO, lines)),
     )
+    root = logging.getLogger()
+    root.handlers = [_Events()]
+    root.setLevel(logging.WARNING)
+
+
+def _written() -> list[Processor]:
+    if log_format() is LogFormat.JSON:
+        sys.excepthook = _end_with_an_event
+        return [
+            structlog.processors.TimeStamper(fmt="iso", utc=True, key="time"),
+            structlog.processors.format_exc_info,
+            structlog.processors.JSONRenderer(default=str),
+        ]
+    return [
+        structlog.processors.TimeStamper(fmt="%H:%M:%S", utc=False),
+        _escape_values,
+        structlog.dev.ConsoleRenderer(colors=sys.stderr.isatty(), exception_formatter=_write_traceback),
+    ]
+
+
+def _end_with_an_event(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
+    """What ends the process is an event too."""
+    structlog.get_logger().critical("the process failed", exc_info=(kind, error, trace))

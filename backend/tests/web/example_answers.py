@@ -8,6 +8,7 @@ from sequence_planner.control.asks import (
     AskAdvice,
     AskCorrection,
     AskDefinition,
+    AskFigures,
     AskGoal,
     AskReset,
     AskWhyNot,
@@ -27,6 +28,12 @@ from sequence_planner.control.definition_view import (
     TriedReactionView,
     WrittenPlaceView,
 )
+from sequence_planner.control.figures_view import (
+    DistributionView,
+    FiguresView,
+    JournalFiguresView,
+    PlannerFiguresView,
+)
 from sequence_planner.control.offer_view import (
     AdviceView,
     ChangeView,
@@ -45,6 +52,7 @@ from sequence_planner.control.work_master_view import (
     WorkMasterView,
     WorkOperationView,
 )
+from sequence_planner.distribution import Distribution
 
 WORK_MASTERS = WorkMastersView(
     work_masters={
@@ -178,6 +186,25 @@ DEFINITION = AbilityDefinitionView(
 )
 
 
+def example_figures(*, behind: bool = False) -> FiguresView:
+    """Of four ticks, three records and two plans."""
+    ticks, latency = Distribution((0.001, 0.1)), Distribution((0.01,))
+    for seconds in (0.0005, 0.001, 0.05, 2.0):
+        ticks.note(seconds)
+    for seconds in (0.002, 0.004, 0.02):
+        latency.note(seconds)
+    plans = Distribution((0.1,))
+    plans.note(0.05)
+    plans.note(0.2)
+    return FiguresView(
+        began=1_700_000_000.0,
+        ticks=DistributionView.of(ticks),
+        journal=JournalFiguresView(waiting=2, latency=DistributionView.of(latency), behind=behind),
+        planner=[PlannerFiguresView(question="plan", outcome="found", took=DistributionView.of(plans))],
+        replaced={"planner": 1, "adviser": 0},
+    )
+
+
 def example_answer(ask: Ask) -> View:
     """An answer of the kind that is asked for. Raises `CommandRefused` for what the station does not have."""
     match ask:
@@ -187,6 +214,8 @@ def example_answer(ask: Ask) -> View:
             return ADVICE
         case AskCorrection():
             return CORRECTION
+        case AskFigures():
+            return example_figures()
         case AskGoal() | AskReset():
             return OFFER
         case AskDefinition(ability=name):

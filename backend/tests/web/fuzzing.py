@@ -79,6 +79,7 @@ def station(folder: Path, *, with_model: bool = False) -> Iterator[tuple[Server,
     loop = Loop()
     controller, server = Telling(loop, path), Server(loop, settings)
     controller.link = ControllerLink(path, controller.handle, controller.answer)
+    controller.of_now = True
     controller.start()
     server.start()
     try:

@@ -73,7 +73,12 @@ class Loop:
 
 
 class Controller:
-    """Publishes a view with a fresh time five times a second, and carries out or refuses commands."""
+    """Publishes a view with a fresh time five times a second, and carries out or refuses commands.
+
+    Its time begins long ago, or is that `of_now`.
+    """
+
+    of_now = False
 
     def __init__(self, loop: Loop, path: Path) -> None:
         self.loop = loop
@@ -120,7 +125,8 @@ class Controller:
     async def _publish(self) -> None:
         while True:
             if self.publishing:
-                self.view = self.view.model_copy(update={"time": self.view.time + PUBLISH_INTERVAL})
+                now = time.time() if self.of_now else self.view.time + PUBLISH_INTERVAL
+                self.view = self.view.model_copy(update={"time": now})
                 self.link.publish(self.view)
             await asyncio.sleep(PUBLISH_INTERVAL)
 

@@ -20,7 +20,7 @@ from sequence_planner.web.settings import Settings
 from .bearers import Bearer, Headers, everybody
 from .running import Controller, Loop, Server, free_port, until
 
-PUBLIC, WATCH = "public", "watch"
+PUBLIC, WATCH, BESIDE = "public", "watch", "beside"
 PERMITTED = "permitted"
 BODILESS = ("GET", "DELETE")
 STATUS = {
@@ -37,6 +37,8 @@ OPENAPI = "GET /api/v1/openapi.json"
 # Who may use what: role and scope. Whoever loosens a route has to say so here.
 DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /healthz": ("public", None),
+    "GET /readyz": ("public", None),
+    "GET /metrics": ("beside", "metrics"),
     "GET /api/v1/session": ("public", None),
     "POST /api/v1/session": ("public", None),
     "POST /api/v1/session/demonstration": ("public", None),
@@ -249,7 +251,7 @@ def _judged(status: int, text: str) -> str:
         problem: dict[str, Any] = json.loads(text)
         assert problem["status"] == status
         slug = problem["type"].rpartition("/")[2]
-    assert status < 500 or slug in ("preparing", "controller-error"), text
+    assert status < 500 or slug in ("preparing", "controller-error", "not-ready"), text
     assert (status in (401, 421)) <= (slug in STATUS), text
     if slug not in STATUS:
         return PERMITTED
@@ -264,6 +266,8 @@ def expected(place: str, bearer: Bearer) -> str:
         return PERMITTED
     if bearer.scopes is not None:
         return PERMITTED if scope in bearer.scopes else "scope-missing"
+    if role == BESIDE:  # all who try are on this machine
+        return "signed-out" if "Authorization" in bearer.headers else PERMITTED
     if place in FOR_WATCHES and (bearer.watch or bearer.waiting):
         return PERMITTED if bearer.watch or place in FOR_WAITING_WATCHES else "watch-waiting"
     if bearer.role is None or role == WATCH:
@@ -291,8 +295,9 @@ def test_the_table_knows_every_address_and_what_the_document_says_of_it(scene: S
         for method, operation in operations.items():
             place = f"{method.upper()} {path}"
             role, scope = DECLARED[place]
-            ways = {next(iter(each)) for each in operation["security"]}
-            assert ("session" in ways) == (role not in (PUBLIC, WATCH))
+            ways = {way for each in operation["security"] for way in each}
+            assert ({} in operation["security"]) == (role == BESIDE)
+            assert ("session" in ways) == (role not in (PUBLIC, WATCH, BESIDE))
             assert ("key" in ways) == (scope is not None)
             assert ("watch" in ways) == (place in FOR_WATCHES)
 

@@ -50,7 +50,7 @@ def test_every_refusal_is_described_as_a_problem(described: dict[str, Any]) -> N
 
 def test_each_operation_says_with_which_status_it_refuses(described: dict[str, Any]) -> None:
     paths = described["paths"]
-    assert paths["/healthz"]["get"]["responses"].keys() == {"200", "default"}
+    assert paths["/healthz"]["get"]["responses"].keys() == {"200", "503", "default"}
     assert paths["/api/v1/tasks"]["get"]["responses"].keys() == {"200", "401", "403", "503", "default"}
     change = paths["/api/v1/people/{person}"]["patch"]["responses"]
     assert {"401", "403", "404", "409", "412", "415", "422", "428"} < change.keys()

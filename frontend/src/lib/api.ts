@@ -2403,9 +2403,51 @@ export interface paths {
         };
         /**
          * Healthz
-         * @description Alive, and whether the controller is heard.
+         * @description Alive: the server answers and its controller is heard. Else 503 `not-alive`, with `reasons` by name.
          */
         get: operations["healthz_healthz_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/metrics": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Metrics
+         * @description The station in figures. The controller is asked for its own at most once a second, and waits for nobody.
+         */
+        get: operations["metrics_metrics_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/readyz": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Readyz
+         * @description Ready to work: prepared, with a journal that keeps up, a database that can be written to, and views of now.
+         *
+         *     Else 503 `not-ready`, with `reasons` by the name of each check that fails.
+         */
+        get: operations["readyz_readyz_get"];
         put?: never;
         post?: never;
         delete?: never;
@@ -4109,10 +4151,14 @@ export interface components {
         };
         /**
          * Health
-         * @description The server answers, so it is alive; `controller` says whether a view came within two seconds.
+         * @description The server answers, and a view of the controller came within two seconds.
          */
         Health: {
-            controller: components["schemas"]["ControllerState"];
+            /**
+             * Controller
+             * @constant
+             */
+            controller: "heard";
             /**
              * Status
              * @constant
@@ -5566,6 +5612,25 @@ export interface components {
             variable: string;
         };
         /**
+         * ReadinessCheck
+         * @description What is looked at.
+         * @enum {string}
+         */
+        ReadinessCheck: "controller" | "prepared" | "journal" | "time" | "database";
+        /**
+         * Ready
+         * @description All of these checks were passed.
+         */
+        Ready: {
+            /** Checks */
+            checks: components["schemas"]["ReadinessCheck"][];
+            /**
+             * Status
+             * @constant
+             */
+            status: "ready";
+        };
+        /**
          * ReasonBody
          * @description To ask for it is all that there is to say, but perhaps why.
          */
@@ -5893,7 +5958,7 @@ export interface components {
          * @description What the bearer of a key may do.
          * @enum {string}
          */
-        Scope: "read" | "audit" | "orders-read" | "orders-write";
+        Scope: "read" | "audit" | "orders-read" | "orders-write" | "metrics";
         /**
          * ServiceBody
          * @description Whether it is to be in service, and why.
@@ -12418,6 +12483,70 @@ export interface operations {
                     "application/json": components["schemas"]["Health"];
                 };
             };
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    metrics_metrics_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description All figures */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/openmetrics-text": string;
+                    "text/plain": string;
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    readyz_readyz_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Ready"];
+                };
+            };
+            503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
                 headers: {

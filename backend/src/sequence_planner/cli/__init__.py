@@ -59,9 +59,19 @@ COMMANDS = (
     ),
     PutOff("run", "serving:run", "Run a station: controller, server and page."),
     PutOff(
+        "configuration",
+        "configuration:configuration",
+        "Look at what `run` is told by a configuration file and by the environment.",
+    ),
+    PutOff(
         "messages",
         "messages:messages",
         "Write the station's message definitions as packages that colcon builds, for ROS 2 with rclpy.",
+    ),
+    PutOff(
+        "security",
+        "security:security",
+        "Write what each node of a station may do on a secured ROS 2 network, as a policy of SROS 2.",
     ),
     PutOff(
         "topics",
@@ -81,6 +91,16 @@ COMMANDS = (
         "journal",
         "journal:journal",
         "Who did what, and what has happened. Without a command it is list, as in: journal MODEL --verify",
+    ),
+    PutOff(
+        "backup",
+        "backing_up:backup",
+        "Write a station's database, revisions and model to one file, while it runs or not.",
+    ),
+    PutOff(
+        "restore",
+        "backing_up:restore",
+        "Put a backup in place where there is no database yet, verify it, and sign everybody out.",
     ),
     PutOff("controller", "controlling:controller", hidden=True),
     PutOff("server", "serving:server", hidden=True),

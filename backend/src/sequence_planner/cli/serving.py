@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from sequence_planner.cli.configured import ConfigurationOption
 from sequence_planner.cli.options import DatabaseOption, StationFolder, database_url, refuse
 from sequence_planner.cli.parts import (
     Launched,
@@ -19,8 +20,10 @@ from sequence_planner.cli.parts import (
     prepare,
 )
 from sequence_planner.cli.provider_options import Client, Groups, Issuer, Others, Roles, Scopes, SecretFile, Title
+from sequence_planner.configuration import ConfigurationError, has_password, url_in
 from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
+from sequence_planner.logs import LogFormat
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
@@ -56,7 +59,9 @@ Demonstration = Annotated[
 
 
 def run(
+    context: typer.Context,
     model: StationFolder,
+    configuration: ConfigurationOption = None,
     host: Host = "127.0.0.1",
     port: Port = 8000,
     certificate: Certificate = None,
@@ -64,6 +69,9 @@ def run(
     proxy: Proxies = None,
     name: Names = None,
     database: DatabaseOption = None,
+    database_file: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="A file that holds the database's URL, with its password.")
+    ] = None,
     transport: TransportOption = "auto",
     rosbridge: RosbridgeOption = None,
     emulator: Annotated[bool, typer.Option("--emulator", help="Run emulated devices beside it.")] = False,
@@ -86,6 +94,7 @@ def run(
     oidc_groups_claim: Groups = "groups",
     oidc_role: Roles = None,
     oidc_others: Others = NO_OTHERS,
+    log_format: Annotated[LogFormat, typer.Option(help="Write events as text for people or as JSON.")] = LogFormat.TEXT,
 ) -> None:
     """Run a station: controller, server and page."""
     from sequence_planner.launcher import Launch, launch  # noqa: PLC0415
@@ -102,6 +111,13 @@ def run(
     )
     if demonstration and not emulator:
         refuse("--demonstration is for emulated devices, which nobody has to sign in for: give --emulator, or leave it")
+    if database is not None and has_password(database) and _is_typed(context, "database"):
+        refuse(
+            "everybody on this machine can read a password on the command line: give the database's URL in "
+            f"--database-file, in the --configuration or in {DATABASE}"
+        )
+    if database_file is not None:
+        database = _url_in(database_file, database)
     if demonstration and database is not None:
         refuse(f"--demonstration has a database of its own, forgotten at the end: leave --database and {DATABASE} out")
     if hot_standby is not None and (demonstration or not HOT_STANDBY.fullmatch(hot_standby)):
@@ -122,10 +138,37 @@ def run(
         refuse("--demonstration is for whoever sits here, and nobody signs in: leave --oidc-issuer out, or it")
     prepare(model)
     url = None if demonstration else database_url(model, database)
-    request = Launch(model, endpoint, url, transport, rosbridge, emulator, start, emulator_speed, hot_standby, provider)
+    asked = Launch(
+        model,
+        endpoint,
+        url,
+        transport,
+        rosbridge,
+        emulator,
+        start,
+        emulator_speed,
+        hot_standby=hot_standby,
+        provider=provider,
+        log_format=log_format,
+    )
     try:
-        raise typer.Exit(launch(request))
+        raise typer.Exit(launch(asked))
     except (SettingsError, StorageError) as error:
+        refuse(str(error))
+
+
+def _is_typed(context: typer.Context, name: str) -> bool:
+    """Whether an option stands on the command line itself."""
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
+
+
+def _url_in(file: Path, beside: str | None) -> str:
+    if beside is not None:
+        refuse("the database is named twice: give --database or --database-file")
+    try:
+        return url_in(file)
+    except ConfigurationError as error:
         refuse(str(error))
 
 

@@ -35,6 +35,11 @@ class Adviser:
         self._awaited: asyncio.Future[Answer] | None = None
         self._starting = self._loop.call_later(start_after, self._there)
 
+    @property
+    def replaced(self) -> int:
+        """How often the process was replaced."""
+        return 0 if self._process is None else self._process.replaced
+
     def close(self) -> None:
         """End the process."""
         self._starting.cancel()

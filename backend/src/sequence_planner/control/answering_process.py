@@ -80,6 +80,7 @@ class AnsweringProcess(Generic[Model, Request, Answer]):
         self._deaths = 0  # since the last answer
         self._owes = False  # it has died over a question since
         self.trouble: str | None = None
+        self.replaced = 0  # how often
         self._start()
 
     @property
@@ -173,6 +174,7 @@ class AnsweringProcess(Generic[Model, Request, Answer]):
         self.close()
         pause = min(2.0**self._deaths, LONGEST_PAUSE) if self._deaths else 0.0
         self._deaths += 1
+        self.replaced += 1
         LOG.warning("a process is replaced", process=self._work.name, why=why, pause=pause)
         self._timer = self._loop.call_later(pause, self._start)
         self.trouble = f"the {self._work.name} {why} and is started again"

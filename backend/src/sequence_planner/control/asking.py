@@ -13,6 +13,7 @@ from sequence_planner.control.asks import (
     AskAdvice,
     AskCorrection,
     AskDefinition,
+    AskFigures,
     AskGoal,
     AskRecord,
     AskReset,
@@ -20,6 +21,7 @@ from sequence_planner.control.asks import (
 )
 from sequence_planner.control.corrections import Corrections
 from sequence_planner.control.definitions import Definitions
+from sequence_planner.control.figures_view import FiguresView
 from sequence_planner.control.offers import Offers
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView, RecordView
 from sequence_planner.control.view_part import View
@@ -35,6 +37,7 @@ class Asking:
     flows: Callable[[Container[str] | None], FlowsView]
     record: Callable[[str], RecordView]
     work_masters: Callable[[], WorkMastersView]
+    figures: Callable[[], FiguresView]
     corrections: Corrections
     offers: Offers
     why_not: WhyNot
@@ -51,6 +54,8 @@ class Asking:
                 return self.record(pipeline)
             case AboutWorkMasters():
                 return self.work_masters()
+            case AskFigures():
+                return self.figures()
             case AskCorrection(values=values):
                 return await self.corrections.preview(values)
             case AskAdvice():

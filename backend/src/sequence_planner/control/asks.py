@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from sequence_planner.control.correction_view import CorrectionPreview
 from sequence_planner.control.definition_view import AbilityDefinitionView
+from sequence_planner.control.figures_view import FiguresView
 from sequence_planner.control.offer_view import AdviceView, OfferView
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView, RecordView
 from sequence_planner.control.restart_commands import GivenValues
@@ -18,6 +19,7 @@ from sequence_planner.control.view_part import View
 from sequence_planner.control.why_not_view import WhyNotView
 from sequence_planner.control.work_master_view import WorkMastersView
 
+TOLD_WITHIN = 1.0  # seconds: who watches over the station asks again soon
 ADVISED_WITHIN = 15.0  # seconds: the adviser answers one after the other
 LONGEST_PREDICATE = 4000  # characters
 
@@ -52,6 +54,13 @@ class AboutFlows(AskBase[FlowsView]):
 
     kind: Literal["about-flows"] = "about-flows"
     among: frozenset[str] | None = None
+
+
+class AskFigures(AskBase[FiguresView]):
+    """What the controller has counted and timed of itself."""
+
+    patience: ClassVar[float | None] = TOLD_WITHIN
+    kind: Literal["ask-figures"] = "ask-figures"
 
 
 class AskRecord(AskBase[RecordView]):
@@ -117,6 +126,7 @@ class AboutWorkMasters(AskBase[WorkMastersView]):
 Ask = Annotated[
     AboutPipelines
     | AboutFlows
+    | AskFigures
     | AskRecord
     | AskCorrection
     | AskAdvice

@@ -34,6 +34,8 @@ from sequence_planner.control.definitions import Definitions
 from sequence_planner.control.devices import Devices
 from sequence_planner.control.doubting import Doubting
 from sequence_planner.control.execution import Execution
+from sequence_planner.control.figures import Figures
+from sequence_planner.control.figures_view import FiguresView
 from sequence_planner.control.forcing import Forcing
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.in_control import InControl
@@ -91,7 +93,7 @@ class Controller:
     ) -> None:
         automaton, known = station.automaton, known or Known()
         self.execution = Execution(automaton, supervisor, known.beginning)
-        self._writer = RunWriter(database, self._journalled)
+        self._writer, self._figures = RunWriter(database, self._journalled), Figures()
         self._recorder = RunRecorder(self.execution, self._writer.write, model_digest(automaton), known.beginning)
         self._wake = asyncio.Event()
         self.devices = Devices(station, transport, self._wake.set)
@@ -106,7 +108,7 @@ class Controller:
         self._beliefs = Beliefs(self.execution, known.beginning, known.beliefs, partial(self._note, BELIEFS))
         self._doubting = Doubting(self.execution)
         self._viewing = Viewing(identity, self.execution, self._outside, feeds, network, self._beliefs)
-        self._questions = Questions(self.execution, self._outside, self._take)
+        self._questions = Questions(self.execution, self._outside, self._take, self._figures.answers)
         self._adviser = Adviser(automaton, supervisor)
         self._corrections = Corrections(self.execution, self._adviser, self._beliefs, self._doubting)
         offers = Offers(self.execution, self._adviser, self._corrections, self._doubting.impossible)
@@ -133,6 +135,7 @@ class Controller:
             flows=self.devices.flows,
             record=self.devices.record,
             work_masters=partial(work_masters_view, automaton),
+            figures=self._measures,
             corrections=self._corrections,
             offers=offers,
             why_not=WhyNot(self.execution, around, self._adviser),
@@ -248,6 +251,10 @@ class Controller:
             return f"the database has not confirmed anything for {PATIENCE:g} s"
         return None
 
+    def _measures(self) -> FiguresView:
+        replaced = {"planner": self._questions.replaced, "adviser": self._adviser.replaced}
+        return self._figures.view(self._writer, self._unjournalled() is not None, replaced)
+
     def _tick_again(self) -> None:
         self._due = self._again = True
         self._in_a_row = 0
@@ -284,7 +291,9 @@ class Controller:
             return
         self._measured = measured
         self._due = True  # until it is done
+        began = time.perf_counter()
         outcome = self.execution.tick(measured, moment, obstacles, silent)
+        self._figures.ticks.note(time.perf_counter() - began)
         self._due = outcome.changed  # what a tick changed can make another possible at once
         self._again = self._again or self._due
         self._in_a_row = self._in_a_row + 1 if outcome.changed and not news else 0

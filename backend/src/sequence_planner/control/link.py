@@ -209,7 +209,8 @@ class ControllerLink:
             detail = "It came too late and was not carried out. Look at the station, then try again."
             return refusal(message.id, CommandRefused("command-expired", "The command came too late", detail))
         try:
-            await self._handle(message.command)
+            with structlog.contextvars.bound_contextvars(**_named(message.request)):
+                await self._handle(message.command)
         except CommandRefused as refused:
             return refusal(message.id, refused)
         except Exception:
@@ -229,6 +230,11 @@ class ControllerLink:
             LOG.exception("a question failed", about=message.ask.kind)
             return refusal(message.id, failed("The question could not be answered"))
         return AnswerMessage(id=message.id, answer=view.model_dump(mode="json"))
+
+
+def _named(request: str | None) -> dict[str, str]:
+    """What all that is logged meanwhile is to be found by."""
+    return {} if request is None else {"request": request}
 
 
 async def _say(peer: _Peer, message: LinkMessage) -> None:

@@ -87,12 +87,14 @@ class CommandMessage(LinkMessage):
 
     `expires` is when nobody waits for it any more, in seconds of `time.monotonic`, which all processes of a machine
     share: a controller that stood still must not start production long after the person who asked for it has left.
+    `request` is the number under which the server's log has what the command came from.
     """
 
     kind: Literal["command"] = "command"
     id: int = Field(ge=0)
     command: Command
     expires: float | None = None
+    request: str | None = Field(default=None, max_length=64)
 
 
 class AskMessage(LinkMessage):

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from collections import deque
 from collections.abc import Callable
 
 import structlog
 
 from sequence_planner.control.execution import Execution
+from sequence_planner.control.figures import Answers
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.planner_process import Listener, PlannerProcess
 from sequence_planner.planning.plan import PlanAnswer, PlanRequest, WayBackAnswer, WayBackRequest
@@ -27,13 +29,18 @@ DIAGNOSIS_DEADLINE = 20.0  # seconds it may take to say why there is no plan at 
 class Questions:
     """Asks about `execution` and `outside`. Used from one event loop.
 
-    What comes of an answer is handed to `take`, to be done by whoever runs the station.
+    What comes of an answer is handed to `take`, to be done by whoever runs the station; how long it took is noted in
+    `answers`.
     """
 
-    def __init__(self, execution: Execution, outside: Outside, take: Callable[[Callable[[], None]], None]) -> None:
+    def __init__(
+        self, execution: Execution, outside: Outside, take: Callable[[Callable[[], None]], None], answers: Answers
+    ) -> None:
         self._execution = execution
         self._outside = outside
         self._take = take
+        self._answers = answers
+        self._asked = 0.0  # when, on the clock
         self._needed: deque[Callable[[], Request | None]] = deque(
             (lambda: execution.request(PLAN_DEADLINE), lambda: outside.request(WAY_BACK_DEADLINE))
         )
@@ -47,6 +54,11 @@ class Questions:
     def trouble(self) -> str | None:
         """What is wrong with the planner, in words."""
         return self._planner.trouble
+
+    @property
+    def replaced(self) -> int:
+        """How often the planner's process was replaced."""
+        return self._planner.replaced
 
     def close(self) -> None:
         """End the planner."""
@@ -65,7 +77,7 @@ class Questions:
             if (request := question()) is not None:
                 self._planner.call_off()
                 self._spare = False
-                self._planner.ask(request)
+                self._ask(request)
                 return
         if self._planner.busy:
             return
@@ -74,10 +86,15 @@ class Questions:
             self._next_better = monotonic + BETTER_EVERY if request else self._next_better
         if request is not None:
             self._spare = True
-            self._planner.ask(request)
+            self._ask(request)
+
+    def _ask(self, request: Request) -> None:
+        self._asked = time.monotonic()
+        self._planner.ask(request)
 
     def _answered(self, request: Request, answer: Answer) -> None:
         self._spare = False
+        self._answers.note(request, answer, time.monotonic() - self._asked)
         match request, answer:
             case PlanRequest(), PlanAnswer():
                 self._take(lambda: self._adopt(request, answer))
@@ -95,6 +112,7 @@ class Questions:
 
     def _failed(self, request: Request, why: str, again: bool) -> None:
         self._spare = False
+        self._answers.note(request, None, time.monotonic() - self._asked)
         match request:
             case PlanRequest():
                 self._take(lambda: self._execution.unanswered(why, again))

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+from collections import deque
 from collections.abc import Callable
+from time import monotonic
 from typing import Final
 
 import structlog
 
+from sequence_planner.distribution import Distribution
 from sequence_planner.journal import checkpoints, run_journal
 from sequence_planner.journal.chain import Position, digest
 from sequence_planner.journal.checkpointing import Checkpointing
@@ -24,6 +27,7 @@ from sequence_planner.storage.database import Database, StorageError
 MOST_WAITING: Final = 100_000
 """More records than this should not wait in memory: whoever writes so many while the database is away is to stop."""
 
+LATENCIES: Final = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 10.0)  # seconds
 LOG = structlog.get_logger(__name__)
 _CLOSING: Final = 5.0  # seconds for what still waits at the end
 
@@ -38,6 +42,8 @@ class RunWriter:
     """Every record up to this number is durable."""
     trouble: str | None
     """Why nothing can be written now, for people. It is tried again, and None when it works again."""
+    latency: Distribution
+    """How long records took to be durable."""
 
     def __init__(self, database: Database, told: Callable[[], None]) -> None:
         with database.reading() as connection:
@@ -45,6 +51,8 @@ class RunWriter:
         if end is None:
             raise StorageError(f"the journal's end was taken out of {database.place}: put a copy in its place")
         self.durable, self.trouble = end.number, None
+        self.latency = Distribution(LATENCIES)
+        self._given = deque[float]()  # when each record that waits was given to write, on the clock
         self._told = told
         self._loop = asyncio.get_running_loop()
         self._end = end  # of what was given to write
@@ -53,6 +61,8 @@ class RunWriter:
 
     def begin(self) -> None:
         """Begin to write, beginning with what has been given until now."""
+        now = monotonic()
+        self._given = deque([now] * len(self._given))  # until now nobody waited for them
         self._commits.begin()
 
     @property
@@ -73,6 +83,7 @@ class RunWriter:
         text = RunRecord(number, float(time), kind, content, "").text()
         record = RunRecord(number, float(time), kind, content, digest(self._end.hash, text))
         self._end = Position(number, record.hash)
+        self._given.append(monotonic())
         self._commits.put(record)
         return number
 
@@ -89,5 +100,8 @@ class RunWriter:
             self._loop.call_soon_threadsafe(self._heard, durable, trouble)
 
     def _heard(self, durable: int, trouble: str | None) -> None:
+        now = monotonic()
+        for _ in range(durable - self.durable):
+            self.latency.note(now - self._given.popleft())
         self.durable, self.trouble = durable, trouble
         self._told()

@@ -24,7 +24,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
 
-from sequence_planner.ros import environment, names
+from sequence_planner.ros import enclaves, environment, names
 from sequence_planner.ros.both_sides import both_sides
 from sequence_planner.ros.delivery import Delivery
 from sequence_planner.ros.messages import MessageRegistry
@@ -75,7 +75,10 @@ class RclpyTransport:
         self._context = Context()
         try:
             # Our command line is not ROS's, so its arguments are kept from it.
-            rclpy.init(args=[], context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
+            told = enclaves.arguments(node_name)
+            rclpy.init(
+                args=told, context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO
+            )
             self._node = Node(
                 node_name,
                 context=self._context,

@@ -1,4 +1,4 @@
-"""Who may use a route: every route and WebSocket declares it, by `allowed` or `watch_only`, where it is defined.
+"""Who may use a route: every route and WebSocket declares it, by `allowed` or its like, where it is defined.
 
 A request shows a key, or else a session's cookie, or else a watch's. What it shows is looked up once; then only what
 the route declares decides. The application is not built when a route declares nothing (`check_declared`).
@@ -21,11 +21,12 @@ from sequence_planner.identity.sessions import SignedIn
 from sequence_planner.identity.watches import Watch, WatchState
 from sequence_planner.web.bearer_memory import Bearer
 from sequence_planner.web.cookies import Credentials, credentials
-from sequence_planner.web.demonstration import may_be_demonstration
+from sequence_planner.web.demonstration import is_beside, may_be_demonstration
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.problems import ProblemFound
 
-PUBLIC, WATCH = "public", "watch"  # in the place of a role: everybody, and watches alone
+# In the place of a role: everybody, watches alone, and programs on this machine.
+PUBLIC, WATCH, BESIDE = "public", "watch", "beside"
 
 
 @dataclass(frozen=True)
@@ -43,11 +44,13 @@ class Access:
     """What a route declares. Without `role` no person may use it; `public` lets everybody in.
 
     `scope` is that of the keys which may; `watch` lets active watches in, `waiting` those too that nobody has
-    confirmed yet; `unready` lets people in who must change their password first.
+    confirmed yet; `unready` lets people in who must change their password first. `beside` lets in whoever shows no key
+    on this machine itself.
     """
 
     role: Role | None = None
     public: bool = False
+    beside: bool = False
     scope: Scope | None = None
     watch: bool = False
     waiting: bool = False
@@ -56,11 +59,13 @@ class Access:
     @property
     def who(self) -> str:
         """The role, or what stands in its place."""
-        return PUBLIC if self.public else WATCH if self.role is None else self.role.value
+        if self.role is not None:
+            return self.role.value
+        return PUBLIC if self.public else BESIDE if self.beside else WATCH
 
     async def __call__(self, connection: HTTPConnection) -> None:
         """Let a request in, and keep in its `state` who it is; or raise `ProblemFound`."""
-        if self.public:
+        if self.public or (self.beside and is_beside(connection) and credentials(connection).key is None):
             return
         admitted = await self.admit(connection)
         connection.state.access = self
@@ -137,6 +142,12 @@ def allowed(
 def watch_only(*, waiting: bool = False) -> params.Depends:
     """Declares that active watches alone may use a route; with `waiting` also those that are not confirmed yet."""
     declared: params.Depends = Depends(Access(watch=True, waiting=waiting))
+    return declared
+
+
+def beside_or(scope: Scope) -> params.Depends:
+    """Declares that programs on this machine may use a route, and keys with `scope` from anywhere."""
+    declared: params.Depends = Depends(Access(beside=True, scope=scope))
     return declared
 
 

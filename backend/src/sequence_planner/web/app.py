@@ -1,8 +1,8 @@
 """The server's parts put together: routes, guards, problems, the stream, the page.
 
-From the outside in, a request passes the security headers, the last resort for errors, what knows proxies where there
-are any, the guard, what compresses long answers, and then the route for its address; what no route knows is a file of
-the page, or nothing.
+From the outside in, a request passes the security headers, what notes it, the last resort for errors, what knows
+proxies where there are any, the guard, what compresses long answers, and then the route for its address; what no route
+knows is a file of the page, or nothing.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ import asyncio
 from collections import Counter
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -39,6 +40,7 @@ from sequence_planner.web import (
     job_responses,
     keys,
     language,
+    metrics,
     model,
     modes,
     openapi_document,
@@ -59,14 +61,17 @@ from sequence_planner.web.access import check_declared
 from sequence_planner.web.binding import check_endpoint
 from sequence_planner.web.broadcast import Broadcast
 from sequence_planner.web.controller_client import ControllerClient
+from sequence_planner.web.figures import Figures
 from sequence_planner.web.forwarded import Forwarded
 from sequence_planner.web.guard import Guard
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.looking import FlowsShow, NetworkShow
+from sequence_planner.web.noting import Noted, Noting, known_routes
 from sequence_planner.web.openapi_document import describe
 from sequence_planner.web.openapi_refusals import PROBLEM_RESPONSES
 from sequence_planner.web.order_desk import OrderDesk
 from sequence_planner.web.problems import LastResort
+from sequence_planner.web.readiness import Readiness
 from sequence_planner.web.security_headers import SecurityHeaders
 from sequence_planner.web.settings import Settings
 from sequence_planner.web.static import PageFiles
@@ -187,10 +192,13 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     app.state.network_show, app.state.flows_show = network, flows
     app.state.streams = Counter()  # how many each person, key and watch has open, by id
     app.state.settings, app.state.attaching = settings, asyncio.Lock()
+    app.state.figures, app.state.noted = Figures(controller), Noted()
+    app.state.readiness = Readiness(controller, app.state.figures)
     problems.install(app)
     for part in PARTS:
         app.include_router(part, prefix=PREFIX)
     app.include_router(health.router)
+    app.include_router(metrics.router)
     check_declared(app.routes)
     app.router.default = PageFiles(settings.page)
     app.add_middleware(GZipMiddleware, minimum_size=LONG, compresslevel=1)
@@ -198,5 +206,6 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     if settings.proxies:
         app.add_middleware(Forwarded, proxies=settings.proxies)
     app.add_middleware(LastResort)
+    app.add_middleware(Noting, noted=app.state.noted, routes=cache(partial(known_routes, app.routes)))
     app.add_middleware(SecurityHeaders, https=settings.https)  # the last is outermost
     return app

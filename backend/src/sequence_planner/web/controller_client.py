@@ -111,9 +111,12 @@ class ControllerClient:
         sent, `controller-no-answer` (504) when it is not known what became of it.
         """
         expires = time.monotonic() + self._reply_deadline
+        request: str | None = structlog.contextvars.get_contextvars().get("request")
         unknown = "It is not known whether the command was carried out: look at the station before trying again."
         await self._exchange(
-            lambda number: CommandMessage(id=number, command=command, expires=expires), self._reply_deadline, unknown
+            lambda number: CommandMessage(id=number, command=command, expires=expires, request=request),
+            self._reply_deadline,
+            unknown,
         )
 
     async def ask(self, ask: AskBase[Told]) -> Told:

@@ -15,7 +15,7 @@ FORWARDED = ("forwarded", "x-forwarded-for", "x-real-ip")  # somebody stands bet
 def may_be_demonstration(connection: HTTPConnection, settings: Settings, controller: ControllerClient) -> bool:
     """Whether a demonstration that was opened may go on: nothing speaks against it."""
     is_real = controller.view is not None and not controller.view.station.emulated
-    return settings.demonstration and _is_beside(connection) and not is_real
+    return settings.demonstration and is_beside(connection) and not is_real
 
 
 def may_open_demonstration(connection: HTTPConnection, settings: Settings, controller: ControllerClient) -> bool:
@@ -24,7 +24,7 @@ def may_open_demonstration(connection: HTTPConnection, settings: Settings, contr
     return is_emulated and may_be_demonstration(connection, settings, controller)
 
 
-def _is_beside(connection: HTTPConnection) -> bool:
+def is_beside(connection: HTTPConnection) -> bool:
     """Whether the other end of the connection is on this machine."""
     if connection.client is None or any(name in connection.headers for name in FORWARDED):
         return False

@@ -37,7 +37,8 @@ class Forwarded:
             response = problem_response(refused.status_code, refused.slug, refused.title, refused.detail)
             await response(scope, receive, send)
             return
-        await self.app({**scope, "client": (client, 0), "scheme": ENCRYPTED[scope["type"]]}, receive, send)
+        scope.update(client=(client, 0), scheme=ENCRYPTED[scope["type"]])  # in place: outer layers learn of the route
+        await self.app(scope, receive, send)
 
     def _client(self, scope: Scope) -> str:
         """The address that the proxy was asked from. Raises `ProblemFound` when there is no knowing."""

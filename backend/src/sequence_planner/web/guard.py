@@ -3,8 +3,8 @@
 Every page that a person opens in a browser can reach whatever that browser reaches. Three checks keep those pages out:
 the Host header must name us (a foreign name that resolves to our address does not), an Origin, where the request can
 change something or opens a stream, must be one of ours, and a browser that says the request crosses sites is believed.
-Programs that send no Origin (curl, a MES) pass: they are not a page. So does, on this machine, the question whether
-the server is alive, by whatever name it is opened otherwise.
+Programs that send no Origin (curl, a MES) pass: they are not a page. So does, on this machine, the question how the
+server is, by whatever name it is opened otherwise.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ LARGEST_BODY = 64 * 1024  # bytes
 EDITS = 4 * 1024 * 1024  # bytes: files of a model, as they were and as they shall be
 LARGER_BODIES = {"/api/v1/model/changes": EDITS, "/api/v1/model/pipelines/preview": EDITS}
 BODY_SECONDS = 20.0  # in which a body must have come
+ABOUT_ITSELF = ("/healthz", "/readyz", "/metrics")  # what a machine asks a server that runs on it
 
 
 class Guard:
@@ -92,8 +93,8 @@ def _too_large(largest: int) -> ProblemFound:
 
 
 def is_own_health_check(scope: Scope) -> bool:
-    """Whether this machine itself asks by a name of the loopback if the server is alive, as containers do."""
-    if scope["type"] != "http" or scope["method"] not in ("GET", "HEAD") or scope["path"] != "/healthz":
+    """Whether this machine itself asks by a name of the loopback how the server is, as containers and Prometheus do."""
+    if scope["type"] != "http" or scope["method"] not in ("GET", "HEAD") or scope["path"] not in ABOUT_ITSELF:
         return False
     client = address_of(scope["client"][0]) if scope.get("client") else None
     hosts = Headers(scope=scope).getlist("host")

@@ -1,27 +1,62 @@
-"""Whether the server is alive. It answers for itself: a lost controller is told, but the server is still healthy."""
+"""Whether the station is alive, for whoever would start it again, and whether it is ready, for whoever would use it.
+
+Both are told to everybody: 200, or 503 with the reasons, which say nothing that is secret.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Literal
 
-from fastapi import APIRouter
-from pydantic import BaseModel
+from fastapi import APIRouter, Request, Response
+from pydantic import BaseModel, JsonValue
 
 from sequence_planner.web.access import allowed
-from sequence_planner.web.request_parts import Controller
+from sequence_planner.web.problems import problem_response, refused
+from sequence_planner.web.readiness import SILENT, Readiness, ReadinessCheck
+from sequence_planner.web.request_parts import Controller, Identity
 from sequence_planner.web.stream_messages import ControllerState
 
-router = APIRouter(tags=["health"])
+router = APIRouter(tags=["health"], dependencies=[allowed(None)])
 
 
 class Health(BaseModel):
-    """The server answers, so it is alive; `controller` says whether a view came within two seconds."""
+    """The server answers, and a view of the controller came within two seconds."""
 
     status: Literal["alive"]
-    controller: ControllerState
+    controller: Literal[ControllerState.HEARD]
 
 
-@router.get("/healthz", dependencies=[allowed(None)])
-async def healthz(client: Controller) -> Health:
-    """Alive, and whether the controller is heard."""
-    return Health(status="alive", controller=ControllerState.HEARD if client.heard else ControllerState.LOST)
+class Ready(BaseModel):
+    """All of these checks were passed."""
+
+    status: Literal["ready"]
+    checks: list[ReadinessCheck]
+
+
+@router.get("/healthz", response_model=Health, responses=refused(503))
+async def healthz(client: Controller) -> Health | Response:
+    """Alive: the server answers and its controller is heard. Else 503 `not-alive`, with `reasons` by name."""
+    if client.heard:
+        return Health(status="alive", controller=ControllerState.HEARD)
+    more = {"controller": ControllerState.LOST.value}
+    return _refusal("not-alive", "The station is not well", {ReadinessCheck.CONTROLLER: SILENT}, more)
+
+
+@router.get("/readyz", response_model=Ready, responses=refused(503))
+async def readyz(request: Request, identity: Identity) -> Ready | Response:
+    """Ready to work: prepared, with a journal that keeps up, a database that can be written to, and views of now.
+
+    Else 503 `not-ready`, with `reasons` by the name of each check that fails.
+    """
+    readiness: Readiness = request.app.state.readiness
+    failing = await readiness.failing(identity.database)
+    if not failing:
+        return Ready(status="ready", checks=list(ReadinessCheck))
+    return _refusal("not-ready", "The station is not ready", failing, {})
+
+
+def _refusal(slug: str, title: str, reasons: Mapping[ReadinessCheck, str], more: Mapping[str, str]) -> Response:
+    named: dict[str, JsonValue] = {check.value: why for check, why in reasons.items()}
+    detail = " ".join(dict.fromkeys(reasons.values()))
+    return problem_response(503, slug, title, detail, more={"reasons": named, **more})

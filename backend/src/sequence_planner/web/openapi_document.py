@@ -2,7 +2,8 @@
 
 FastAPI describes the REST routes; this adds what it cannot know: the messages of the WebSockets as components, that
 every refusal is a problem document, and who may use a route. `x-role` is the least role of a person, or `public`, or
-`watch` where watches alone may; `x-scope` is the scope of a key that may too, null where none does.
+`watch` where watches alone may, or `beside` where programs on this machine may; `x-scope` is the scope of a key that
+may too, null where none does.
 """
 
 from __future__ import annotations
@@ -83,5 +84,6 @@ def describe(app: FastAPI) -> dict[str, Any]:
 def _who(access: Access) -> dict[str, Any]:
     ways = {"session": access.role is not None, "watch": access.watch, "key": access.scope is not None}
     security: list[dict[str, list[str]]] = [{way: []} for way, open_to in ways.items() if open_to]
+    security += [{}] if access.beside else []  # nothing is needed on this machine
     scope = None if access.scope is None else access.scope.value
     return {"x-role": access.who, "x-scope": scope, "security": security}

@@ -15,7 +15,7 @@ import structlog
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.routing import iter_route_contexts
-from pydantic import BaseModel
+from pydantic import BaseModel, JsonValue
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -91,8 +91,9 @@ def problem_response(
     place: TextPlace | None = None,
     allowed: Sequence[OrderCommand] = (),
     headers: Mapping[str, str] | None = None,
+    more: Mapping[str, JsonValue] | None = None,
 ) -> Response:
-    """The answer that carries a problem."""
+    """The answer that carries a problem, with `more` members beside those of all problems (RFC 9457, section 3.2)."""
     problem = Problem(
         type=f"/problems/{slug}",
         title=title,
@@ -103,7 +104,7 @@ def problem_response(
         allowed=list(allowed),
     )
     # In ASCII: a name that came with the request may hold what UTF-8 cannot write, such as half a surrogate pair.
-    body = json.dumps(problem.model_dump(), ensure_ascii=True)
+    body = json.dumps({**(more or {}), **problem.model_dump()}, ensure_ascii=True)
     kept = {"Cache-Control": "no-store", **(headers or {})}
     return Response(body, status_code=status, media_type=MEDIA_TYPE, headers=kept)
 

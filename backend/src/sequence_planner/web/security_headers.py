@@ -50,7 +50,7 @@ HEADERS = {
     "Cross-Origin-Resource-Policy": "same-origin",
 }
 ONLY_HTTPS = {"Strict-Transport-Security": "max-age=31536000"}  # seconds; other hosts below this name are not ours
-LIVE = ("/api/", "/healthz")  # what is so now is not so later: no browser or proxy keeps it
+LIVE = ("/api/", "/healthz", "/readyz", "/metrics")  # what is so now is not so later: no browser or proxy keeps it
 STARTS = ("http.response.start", "websocket.http.response.start")
 
 

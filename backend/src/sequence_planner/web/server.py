@@ -48,6 +48,7 @@ def uvicorn_config(settings: Settings) -> uvicorn.Config:
         proxy_headers=False,  # `Forwarded` believes one hop only, uvicorn as many as there are known addresses
         server_header=False,
         access_log=False,
+        log_config=None,  # its events are written as all others are
         log_level="warning",
         limit_concurrency=MOST_CONNECTIONS + 1,  # beyond, connections are closed at once
         h11_max_incomplete_event_size=LARGEST_HEAD,

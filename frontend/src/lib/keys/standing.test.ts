@@ -26,4 +26,5 @@ test('the example reads what the key may read, and holds no secret', () => {
 		'curl --header @- https://station:8443/api/v1/station <<< "Authorization: Bearer $KEY"'
 	);
 	expect(example(['audit'], 'https://station')).toContain('/api/v1/audit');
+	expect(example(['metrics'], 'https://station')).toContain('https://station/metrics ');
 });

@@ -10,13 +10,18 @@ export function standingOf(key: Key, now: number): Standing {
 }
 
 /** What a key of each scope can read, the most telling first. */
-const READS = { read: 'station', audit: 'audit', 'orders-read': 'job-orders' } as const satisfies Partial<Record<KeyScope, string>>;
+const READS = {
+	read: '/api/v1/station',
+	audit: '/api/v1/audit',
+	'orders-read': '/api/v1/job-orders',
+	metrics: '/metrics'
+} as const satisfies Partial<Record<KeyScope, string>>;
 
 /**
  * A command line that reads something with a key that is kept in the variable `KEY`, from the server at `origin`. The secret
  * is not one of its arguments, which everybody on the machine may read.
  */
 export function example(scopes: readonly KeyScope[], origin: string): string {
-	const address = Object.entries(READS).find(([scope]) => scopes.some((each) => each === scope))?.[1] ?? 'job-orders';
-	return `curl --header @- ${origin}/api/v1/${address} <<< "Authorization: Bearer $KEY"`;
+	const address = Object.entries(READS).find(([scope]) => scopes.some((each) => each === scope))?.[1] ?? '/api/v1/job-orders';
+	return `curl --header @- ${origin}${address} <<< "Authorization: Bearer $KEY"`;
 }

@@ -137,6 +137,7 @@ export const account = {
 		scopes: {
 			read: 'reads the station, as a viewer does',
 			audit: 'reads the journal',
+			metrics: 'reads figures for monitoring',
 			'orders-read': 'reads job orders, responses and events',
 			'orders-write': 'gives, changes and commands job orders'
 		},

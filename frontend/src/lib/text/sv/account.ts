@@ -142,6 +142,7 @@ export const account: Text['account'] = {
 		scopes: {
 			read: 'läser stationen, som en betraktare',
 			audit: 'läser journalen',
+			metrics: 'läser mätvärden för övervakning',
 			'orders-read': 'läser jobborder, svar och händelser',
 			'orders-write': 'lägger, ändrar och styr jobborder'
 		},

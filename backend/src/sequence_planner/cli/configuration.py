@@ -1,0 +1,43 @@
+"""`configuration`: what `run` would be told by a file and the environment, without running anything."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sequence_planner.cli.options import AsJson, print_json, refuse
+from sequence_planner.configuration import FILE, ConfigurationError, Told, configured
+
+configuration = typer.Typer(
+    name="configuration",
+    no_args_is_help=True,
+    add_completion=False,
+    help="Look at what `run` is told by a configuration file and by the environment.",
+)
+File = Annotated[Path | None, typer.Argument(metavar="[FILE]", envvar=FILE, help="The file.", show_default=False)]
+
+
+@configuration.command()
+def check(file: Annotated[Path, typer.Argument(metavar="FILE", help="The file.")]) -> None:
+    """Say what is wrong in a file, with file and line; the environment is not looked at."""
+    typer.echo(f"{file} can be used: {', '.join(_told(file, {})) or 'it tells nothing'}")
+
+
+@configuration.command()
+def show(file: File = None, as_json: AsJson = False) -> None:
+    """Print what is told, and where: by the file, and by variables, which come before it. Passwords are left out."""
+    told = _told(file, None)
+    if as_json:
+        print_json({name: {"value": each.shown, "where": each.where} for name, each in told.items()})
+        return
+    for name, each in told.items():
+        typer.echo(f"{name} = {each.shown}  # {each.where}")
+
+
+def _told(file: Path | None, environ: dict[str, str] | None) -> dict[str, Told]:
+    try:
+        return configured(file) if environ is None else configured(file, environ)
+    except ConfigurationError as error:
+        refuse(str(error))

@@ -1,0 +1,35 @@
+"""The option `--configuration`: a file and the environment tell what the command line leaves out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from sequence_planner.cli.options import refuse
+from sequence_planner.configuration import FILE, ConfigurationError, configured
+
+
+def _configure(context: typer.Context, file: Path | None) -> Path | None:
+    """Read before all other options, which then find there what nobody gave."""
+    try:
+        told = configured(file)
+    except ConfigurationError as error:
+        refuse(str(error))
+    context.default_map = {name: each.value for name, each in told.items()}
+    return file
+
+
+ConfigurationOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--configuration",
+        envvar=FILE,
+        metavar="FILE",
+        is_eager=True,
+        callback=_configure,
+        help="A TOML file with what else would stand here, as in port = 8443; variables such as "
+        "SEQUENCE_PLANNER_PORT come before it.",
+    ),
+]

@@ -1,0 +1,159 @@
+"""What a file and the environment tell `run`, which comes before which, and what is said of mistakes."""
+
+from __future__ import annotations
+
+import inspect
+from pathlib import Path
+
+import pytest
+
+from sequence_planner import launcher
+from sequence_planner.cli.serving import run
+from sequence_planner.configuration import Configuration
+from sequence_planner.launcher import Launch
+from sequence_planner.logs import LogFormat
+
+from .commands import CELL, as_json, command
+
+SECRET = "postgresql://press:s3cret@127.0.0.1/press"
+
+
+@pytest.fixture
+def launched(monkeypatch: pytest.MonkeyPatch) -> list[Launch]:
+    """What would be run, once all that was told is put together; nothing is."""
+    found: list[Launch] = []
+
+    def note(request: Launch) -> int:
+        found.append(request)
+        return 0
+
+    monkeypatch.setattr(launcher, "launch", note)
+    return found
+
+
+def written(folder: Path, text: str, mode: int = 0o644) -> Path:
+    file = folder / "station.toml"
+    file.write_text(text, encoding="utf-8")
+    file.chmod(mode)
+    return file
+
+
+def test_it_has_all_that_the_command_line_has() -> None:
+    parameters = set(inspect.signature(run).parameters) - {"context", "configuration"}
+    assert parameters == set(Configuration.model_fields)
+
+
+def test_the_command_line_comes_before_the_environment_and_that_before_the_file(
+    tmp_path: Path, launched: list[Launch], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    file = written(
+        tmp_path,
+        f'model = "{CELL}"\nport = 8001\nname = ["a.example"]\n'
+        'emulator = true\nemulator_speed = 2\nlog_format = "json"\n',
+    )
+    monkeypatch.setenv("SEQUENCE_PLANNER_PORT", "8002")
+    monkeypatch.setenv("SEQUENCE_PLANNER_NAME", "b.example c.example:8443")
+    monkeypatch.setenv("SEQUENCE_PLANNER_START", "true")
+    assert command("run", "--configuration", file) == (0, "", "")
+    assert command("run", "--configuration", file, "--port", 8003, "--name", "d.example") == (0, "", "")
+    monkeypatch.setenv("SEQUENCE_PLANNER_CONFIGURATION", str(file))
+    assert command("run") == (0, "", "")
+    first, second, third = launched
+    assert (first.endpoint.port, first.endpoint.names) == (8002, ("b.example", "c.example:8443"))
+    assert (second.endpoint.port, second.endpoint.names) == (8003, ("d.example",))
+    assert (first.model, first.emulator, first.start, first.emulator_speed) == (CELL, True, True, 2.0)
+    assert first.log_format is LogFormat.JSON
+    assert first.endpoint.host == "127.0.0.1"  # told nowhere
+    assert third == first
+
+
+def test_paths_are_seen_from_the_file(tmp_path: Path, launched: list[Launch]) -> None:
+    (tmp_path / "model").symlink_to(CELL)
+    (tmp_path / "url").write_text(f"{SECRET}\n", encoding="utf-8")
+    file = written(tmp_path, 'model = "model"\ndatabase_file = "url"\ncertificate = "a.pem"\nprivate_key = "/b.pem"\n')
+    assert command("run", "--configuration", file) == (0, "", "")
+    (request,) = launched
+    assert (request.model, request.database) == (tmp_path / "model", SECRET)
+    assert request.endpoint.certificate == tmp_path / "a.pem"
+    assert request.endpoint.private_key == Path("/b.pem")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("host = 'localhost'\nprot = 8443\n", "2: there is no setting `prot`; did you mean `port`?"),
+        ("\n\nport = 70000\n", "3: `port` is not as it must be: Input should be less than or equal to 65535"),
+        ("port = '8443'\n", "1: `port` is not as it must be: Input should be a valid integer"),
+        ("name = 'station.example'\n", "1: `name` is not as it must be: Input should be a valid array"),
+        ("emulator = 1\n", "1: `emulator` is not as it must be"),
+        (
+            "transport = 'zenoh'\n",
+            "1: `transport` is not as it must be: Input should be 'auto', 'rclpy' or 'cyclonedds'",
+        ),
+        ("[server]\nport = 1\n", "1: there is no setting `server`"),
+        ("port = \n", "this is no TOML"),
+    ],
+)
+def test_a_mistake_in_a_file_is_told_with_its_line(tmp_path: Path, text: str, said: str) -> None:
+    file = written(tmp_path, text)
+    for arguments in (("configuration", "check", file), ("run", CELL, "--configuration", file)):
+        code, out, err = command(*arguments)
+        assert (code, out) == (2, "")
+        assert f"{file}:" in err
+        assert said in err
+
+
+@pytest.mark.parametrize(
+    ("variable", "value", "said"),
+    [
+        ("SEQUENCE_PLANNER_PROT", "1", "there is no such variable; did you mean `SEQUENCE_PLANNER_PORT`?"),
+        ("SEQUENCE_PLANNER_PORT", "high", "`port` is not as it must be: Input should be a valid integer"),
+        ("SEQUENCE_PLANNER_DEMONSTRATION", "perhaps", "`demonstration` is not as it must be"),
+    ],
+)
+def test_a_mistake_in_the_environment_is_told_with_its_variable(
+    variable: str, value: str, said: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(variable, value)
+    code, _, err = command("run", CELL)
+    assert code == 2
+    assert err.startswith(f"{variable}: ")
+    assert said in err
+
+
+def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
+    code, _, err = command("configuration", "check", written(tmp_path, "port = 0\nhots = 'a'\nstart = 'no'\n"))
+    assert code == 2
+    assert len(err.splitlines()) == 3
+
+
+def test_a_password_comes_from_no_command_line_and_no_file_that_others_read(
+    tmp_path: Path, launched: list[Launch], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    code, _, err = command("run", CELL, "--database", SECRET)
+    assert (code, "command line" in err, "s3cret" in err) == (2, True, False)
+    open_to_all = written(tmp_path, f'database = "{SECRET}"\n')
+    code, _, err = command("run", CELL, "--configuration", open_to_all)
+    assert (code, f"chmod 600 {open_to_all}" in err, "s3cret" in err) == (2, True, False)
+    closed = written(tmp_path, f'database = "{SECRET}"\n', mode=0o600)
+    assert command("run", CELL, "--configuration", closed)[0] == 0
+    monkeypatch.setenv("SEQUENCE_PLANNER_DATABASE", SECRET)
+    assert command("run", CELL)[0] == 0
+    assert [each.database for each in launched] == [SECRET, SECRET]
+    code, _, err = command("run", CELL, "--database-file", closed)
+    assert (code, "named twice" in err) == (2, True)
+
+
+def test_what_is_told_is_shown_without_passwords(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = written(tmp_path, f'port = 8001\nhost = "::"\ndatabase = "{SECRET}"\n', mode=0o600)
+    monkeypatch.setenv("SEQUENCE_PLANNER_PORT", "8002")
+    code, out, err = command("configuration", "show", file)
+    assert (code, err) == (0, "")
+    assert f'host = "::"  # {file}:2\n' in out
+    assert 'port = "8002"  # SEQUENCE_PLANNER_PORT\n' in out
+    assert "press:***@127.0.0.1" in out
+    assert "s3cret" not in out
+    _, document = as_json("configuration", "show", file)
+    assert document["host"] == {"value": '"::"', "where": f"{file}:2"}
+    code, out, _ = command("configuration", "check", file)
+    assert (code, out) == (0, f"{file} can be used: port, host, database\n")
