@@ -299,6 +299,8 @@ def test_the_order_between_jobs_is_kept_as_long_as_both_are_there(on: Bench) -> 
     on.ticks()
     assert on.jobs["b"].steps["pack_it"].waits_for == ["a/check_it"]
     assert on.execution.active == {"fill_it", "sweep"}
+    on.sequence(("b/pack_it", "a/check_it"), ("a/label_it", "a/check_it"), ("a/label_it", "a/fill_it"))
+    assert on.jobs["a"].steps["label_it"].waits_for == ["check_it", "fill_it"]
     with refused("jobs-in-circle") as circle:
         on.sequence(("b/pack_it", "a/check_it"), ("a/fill_it", "b/pack_it"))
     assert circle.value.status == 422

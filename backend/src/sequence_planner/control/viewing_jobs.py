@@ -31,8 +31,9 @@ def waits_for(execution: Execution, job: Job) -> list[str]:
 
 def _awaited(jobs: Jobs, job: Job, operation: str, automaton: Automaton) -> list[str]:
     """The operations that have to be completed before this one of the job; those of other jobs as `job/operation`."""
-    others = sorted(jobs.awaited(job, operation))
-    return [*sorted(job.after(operation, automaton)), *(f"{id_}/{name}" for id_, name in others)]
+    awaited = jobs.awaited(job, operation)
+    own = job.after(operation, automaton) | {name for id_, name in awaited if id_ == job.id}
+    return [*sorted(own), *(f"{id_}/{name}" for id_, name in sorted(awaited) if id_ != job.id)]
 
 
 def why_idle(execution: Execution, operation: str) -> str | None:
