@@ -14,8 +14,12 @@ from sqlalchemy import Connection, delete, select
 
 from core.budget import examples
 from sequence_planner.actor import Actor, ActorKind
+from sequence_planner.control.job_view import JobState
+from sequence_planner.control.work_master_view import WorkMastersView
 from sequence_planner.journal import audit
 from sequence_planner.mes import events, orders, responses
+from sequence_planner.mes.following import note, response
+from sequence_planner.mes.ledger import JobMade, News
 from sequence_planner.mes.order import JobOrder, OrderContent
 from sequence_planner.mes.refusal import OrderRefused
 from sequence_planner.mes.states import OrderCommand, OrderState
@@ -187,6 +191,58 @@ class Orders(RuleBasedStateMachine):
                 expected.state, expected.wish = ABORTED, None
                 expected.told.append("job-order-aborted")
 
+    @rule(which=st.integers(0, 9))
+    def station_takes(self, which: int) -> None:
+        if (picked := self.pick(which)) is None or not picked[1].at_station:
+            return
+        id, expected = picked
+        with self.database.writing() as connection:
+            note(connection, News("taken", made(id), self.now), None)
+        if expected.state == READY:
+            expected.state = RUNNING
+            expected.revision += 1
+            expected.told.append("job-order-running")
+
+    @rule(which=st.integers(0, 9))
+    def station_pauses_or_resumes(self, which: int) -> None:
+        if (picked := self.pick(which)) is None or picked[1].wish not in ("pause", "resume"):
+            return
+        id, expected = picked
+        with self.database.writing() as connection:
+            assert orders.granted(connection, orders_named(connection, id), self.now) is not None
+        pausing = expected.wish == "pause"
+        expected.state, expected.wish = INTERRUPTED if pausing else RUNNING, None
+        expected.revision += 1
+        expected.told.append("job-order-interrupted" if pausing else "job-order-running")
+
+    @rule(which=st.integers(0, 9))
+    def station_refuses_what_is_wished_for(self, which: int) -> None:
+        if (picked := self.pick(which)) is None or picked[1].wish is None:
+            return
+        id, expected = picked
+        with self.database.writing() as connection:
+            orders.refused(connection, orders_named(connection, id), self.now)
+        expected.wish = None
+        expected.revision += 1
+
+    @rule(which=st.integers(0, 9), how=st.sampled_from((JobState.ENDED, JobState.STOPPED, JobState.ABORTED)))
+    def job_ends(self, which: int, how: JobState) -> None:
+        if (picked := self.pick(which)) is None or not picked[1].at_station:
+            return
+        id, expected = picked
+        job = made(id, how)
+        with self.database.writing() as connection:
+            for _ in range(2):  # told twice, it has happened once
+                note(
+                    connection,
+                    News("over", job, self.now),
+                    response(job, WorkMastersView(work_masters={}, abilities={})),
+                )
+        expected.state = ABORTED if how is JobState.ABORTED else ENDED
+        expected.at_station, expected.wish = False, None
+        expected.revision += 1
+        expected.told.append(f"job-order-{expected.state.lower()}")
+
     @invariant()
     def every_order_is_as_it_should_be_and_everything_is_told_once(self) -> None:
         with self.database.reading() as connection:
@@ -217,6 +273,11 @@ class Orders(RuleBasedStateMachine):
             assert {each.job_order for each in responses.page(connection, 0, 1000)} == over
             assert [each.id for each in orders.open_orders(connection)] == [id for id in shown if id not in over]
             assert orders.count_open(connection) == len(shown) - len(over)
+
+
+def made(id: str, state: JobState = JobState.RUNNING) -> JobMade:
+    """The job of an order."""
+    return JobMade(job=id, work_master="engine", state=state, taken=5.0, ended=6.0 if state.is_over else None)
 
 
 def orders_named(connection: Connection, id: str) -> JobOrder:

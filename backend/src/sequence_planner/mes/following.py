@@ -73,7 +73,7 @@ class Following:
         if happened or ledger.number - self._kept >= _KEEP_EVERY:
             with self._database.writing() as connection:
                 for news, made in happened:
-                    _apply(connection, news, made)
+                    note(connection, news, made)
                 _keep(connection, ledger)
             self._kept = ledger.number
         self._ledger = ledger
@@ -99,7 +99,7 @@ def response(job: JobMade, masters: WorkMastersView) -> JobResponse:
     )
 
 
-def _apply(connection: Connection, news: News, made: JobResponse | None) -> None:
+def note(connection: Connection, news: News, made: JobResponse | None) -> None:
     """Let an order be as its job is. Of jobs that nobody has ordered here there is nothing to note."""
     order = orders.find(connection, news.job.job)
     if order is None or order.is_over:
