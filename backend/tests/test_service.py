@@ -117,7 +117,8 @@ def test_wheel_and_sdist_have_all_that_runs(tmp_path: Path) -> None:
     # What was installed finds its own page and schemas, and not those of the repository.
     code = (
         "from pathlib import Path; import sys; from sequence_planner import launcher; "
-        "from sequence_planner.model.schemas import write_schemas; write_schemas(Path(sys.argv[1])); print(launcher.PAGE)"
+        "from sequence_planner.model.schemas import write_schemas; "
+        "write_schemas(Path(sys.argv[1])); print(launcher.PAGE)"
     )
     environment = {**os.environ, "PYTHONPATH": str(tmp_path / "installed")}
     printed = subprocess.run(
