@@ -85,6 +85,9 @@ types: install frontend/node_modules/done.stamp ## Make the page's types and the
 	cd backend && .venv/bin/python -m sequence_planner.web.openapi > ../frontend/openapi.json
 	cd frontend && npm run types
 
+wheel: install page ## Make a wheel and an sdist with the page in them, in dist
+	$(BIN)/python backend/packaging/distribute.py frontend/build dist
+
 lock: install ## Lock the newest Python packages that pyproject.toml allows
 	$(BIN)/pip install --quiet uv
 	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements.lock pyproject.toml requirements-build.in
@@ -93,7 +96,7 @@ lock: install ## Lock the newest Python packages that pyproject.toml allows
 	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements-node.lock requirements-node.in
 
 clean: ## Remove everything that was installed or built
-	rm -rf $(VENV) .node .ci/results backend/.*_cache backend/.hypothesis backend/tests/foreign/.built frontend/node_modules frontend/build frontend/.svelte-kit e2e/node_modules
+	rm -rf $(VENV) .node dist .ci/results backend/.*_cache backend/.hypothesis backend/tests/foreign/.built frontend/node_modules frontend/build frontend/.svelte-kit e2e/node_modules
 
 # What the verbs stand on.
 
@@ -167,4 +170,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator hall test static types-of-e2e figures pictures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium
+.PHONY: help run emulator hall wheel test static types-of-e2e figures pictures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium

@@ -55,11 +55,12 @@ SERVICE = {
                 "retries": {"type": "integer", "minimum": 1},
             },
         },
-        "image": {"type": "string", "pattern": "^[a-z]+:[0-9]+$"},
+        "image": {"type": "string", "pattern": "^[a-z]+(/[a-z]+)?:v?[0-9]+([.][0-9]+)*$"},
         "init": {"type": "boolean"},
         "network_mode": {"type": "string"},
         "ports": STRINGS,
         "profiles": STRINGS,
+        "secrets": STRINGS,
         "restart": {"enum": ["no", "always", "on-failure", "unless-stopped"]},
         "volumes": STRINGS,
     },
@@ -71,6 +72,15 @@ COMPOSE = {
     "properties": {
         "services": {"type": "object", "minProperties": 1, "additionalProperties": SERVICE},
         "volumes": {"type": "object", "additionalProperties": {"type": "object", "additionalProperties": False}},
+        "secrets": {
+            "type": "object",
+            "additionalProperties": {
+                "type": "object",
+                "additionalProperties": False,
+                "required": ["file"],
+                "properties": {"file": {"type": "string"}},
+            },
+        },
     },
 }
 
@@ -103,7 +113,10 @@ def test_compose_reads_it(compose: dict[str, Any]) -> None:
     Draft202012Validator.check_schema(COMPOSE)
     Draft202012Validator(COMPOSE).validate(compose)
     for service in compose["services"].values():
-        assert all(each.partition(":")[0] in compose["volumes"] for each in service.get("volumes", []))
+        for each in service.get("volumes", []):
+            source, _, target = each.partition(":")
+            assert source in compose["volumes"] or ((ROOT / source).is_file() and target.endswith(":ro"))
+        assert set(service.get("secrets", [])) <= compose["secrets"].keys()
         for needed in service.get("depends_on", {}):
             assert set(service["profiles"]) <= set(compose["services"][needed]["profiles"])
 
@@ -152,6 +165,21 @@ def test_the_station_finds_its_database_and_no_password_is_in_the_file(compose: 
     assert kept["depends_on"] == {"postgresql": {"condition": "service_healthy"}}
     for ignored in (".gitignore", ".dockerignore"):
         assert ".env" in (ROOT / ignored).read_text().splitlines()
+
+
+def test_prometheus_scrapes_with_a_key_that_stands_in_no_file_of_the_repository(compose: dict[str, Any]) -> None:
+    prometheus = compose["services"]["prometheus"]
+    assert "--web.listen-address=127.0.0.1:9090" in prometheus["command"]
+    (job,) = YAML(typ="safe").load(ROOT / "deploy" / "prometheus.yml")["scrape_configs"]
+    assert job["authorization"]["credentials_file"] == f"/run/secrets/{prometheus['secrets'][0]}"
+    assert "credentials" not in job["authorization"]
+    for service in stations(compose):
+        options = run_options(service["command"])
+        assert job["static_configs"] == [{"targets": [f"{options['host']}:{options['port']}"]}]
+    file = compose["secrets"]["metrics-key"]["file"].removeprefix("./")
+    assert not (ROOT / file).exists() or file in (ROOT / ".gitignore").read_text().splitlines()
+    for ignored in (".gitignore", ".dockerignore"):
+        assert file in (ROOT / ignored).read_text().splitlines()
 
 
 def test_the_way_beyond_the_loopback_fits_the_file(compose: dict[str, Any], guide: str) -> None:
