@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 from core.choices import Choices
 from core.random_problems import RESOURCES, Problem, problem
-from sequence_planner.automaton.structure import Automaton, Kind, State, Timeouts
+from sequence_planner.actor import SYSTEM
+from sequence_planner.automaton.structure import Automaton, Kind, State, Timeouts, WorkMaster
 from sequence_planner.automaton.tick import apply_effects
+from sequence_planner.control.command_base import CommandRefused
 from sequence_planner.control.conduct import Beginning
 from sequence_planner.control.errand import Errand, ErrandKind
 from sequence_planner.control.execution import Execution
+from sequence_planner.control.job_commands import (
+    CommandJob,
+    ForgetJob,
+    JobCommand,
+    JobOperation,
+    JobWait,
+    SequenceJobs,
+    SetByOrder,
+    TakeJob,
+)
+from sequence_planner.control.job_desk import JobDesk
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view import Mode
-from sequence_planner.expressions.syntax import TRUE, Expression
+from sequence_planner.expressions.syntax import TRUE, Assignment, Constant, Expression, Variable
 from sequence_planner.expressions.types import Value
 from sequence_planner.history.model_digest import model_digest
 from sequence_planner.history.recorder import RunRecorder
@@ -65,7 +80,7 @@ def life(choices: Choices, snapshot_every: int = 5) -> Life:
 
 
 def _demanding(choices: Choices, given: Problem) -> Automaton:
-    """The station with time-outs and operations that are done once."""
+    """The station with time-outs, operations that are done once, and work masters."""
     station = given.automaton
     abilities = {
         name: changed(each, timeouts=Timeouts(react=1.0, finish=3.0, retries=choices.number(0, 1), replan=True))
@@ -74,7 +89,22 @@ def _demanding(choices: Choices, given: Problem) -> Automaton:
         for name, each in station.abilities.items()
     }
     operations = {name: changed(each, repeat=not choices.chance(3)) for name, each in station.operations.items()}
-    return changed(station, abilities=abilities, operations=operations)
+    masters = _work_masters(choices, station)
+    return changed(station, abilities=abilities, operations=operations, work_masters=masters)
+
+
+def _work_masters(choices: Choices, station: Automaton) -> dict[str, WorkMaster]:
+    """Two of them, which may have operations and estimates in common; each operation may wait for earlier ones."""
+    masters: dict[str, WorkMaster] = {}
+    for name in ("one", "other"):
+        steps: dict[str, frozenset[str]] = {}
+        for operation in choices.different(tuple(station.operations), 1, 3):
+            steps[operation] = frozenset(choices.different(tuple(steps), 0, 1))
+        brought = [station.variables[each] for each in choices.different(station.names(Kind.ESTIMATED), 0, 2)]
+        brings = [Assignment(Variable(v.name, v.type), Constant(choices.pick(v.type.domain))) for v in brought]
+        if steps:
+            masters[name] = WorkMaster(name, name, steps, tuple(brings))
+    return masters
 
 
 def _beginning(choices: Choices, station: Automaton) -> Beginning:
@@ -142,8 +172,14 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
             execution.change_mode(Mode.PAUSED, "Eva", lived.moment)
         execution.take_errand(taken, lived.moment)
 
+    desk = JobDesk(execution)
+
+    def order() -> None:
+        with contextlib.suppress(CommandRefused):
+            desk.carry_out(_order(choices, execution), lived.moment)
+
     return [
-        *(tick, tick, tick, tick, ask, ask, answer, answer),
+        *(tick, tick, tick, tick, ask, ask, answer, answer, order, order),
         lambda: execution.change_mode(choices.pick(tuple(Mode)), "Eva", lived.moment),
         lambda: execution.set_stepping(choices.chance(2)),
         *(execution.take_step, service, correct, force, release, errand),
@@ -152,6 +188,26 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
         lambda: execution.stop_errand("Eva", lived.moment),
         lambda: execution.explained(Diagnosis(None, ())),
     ]
+
+
+def _order(choices: Choices, execution: Execution) -> JobCommand:
+    """What may be asked about jobs, where most of it is possible."""
+    jobs, masters = execution.conduct.jobs, execution.automaton.work_masters
+    if not jobs.by_order or choices.chance(8):
+        return SetByOrder(actor=SYSTEM, on=not choices.chance(4), reason="so")
+    if masters and (not jobs.taken or choices.chance(3)):
+        name = choices.pick(tuple(masters))
+        return TakeJob(actor=SYSTEM, job=f"job-{choices.number(1, 4)}", title="A job", work_master=name)
+    job = choices.pick([each.id for each in jobs.taken] or ["job-1"])
+    if choices.chance(3):
+        return ForgetJob(actor=SYSTEM, job=job)
+    if choices.chance(3):
+        names = tuple(execution.automaton.operations)
+        steps = [JobOperation(job=each.id, operation=name) for each in jobs.taken for name in names]
+        chosen = choices.different(steps, 0, 3)
+        waits = [JobWait(job=a.job, operation=a.operation, for_=[b]) for a, b in pairwise(chosen)]
+        return SequenceJobs(actor=SYSTEM, waits=waits)
+    return CommandJob(actor=SYSTEM, job=job, what=choices.pick(("resume", "pause", "stop", "abort")))
 
 
 def _any_goal(station: Automaton) -> Expression:

@@ -14,6 +14,7 @@ from sqlalchemy import text
 
 import sequence_planner.identity
 import sequence_planner.journal
+import sequence_planner.mes
 import sequence_planner.workshop
 from sequence_planner.storage.database import Database, StorageError
 from sequence_planner.storage.metadata import METADATA
@@ -32,10 +33,11 @@ database.check()
 
 
 def test_the_migrations_make_the_tables_that_the_program_declares(database: Database) -> None:
-    for package in (sequence_planner.identity, sequence_planner.journal, sequence_planner.workshop):
+    rooms = (sequence_planner.identity, sequence_planner.journal, sequence_planner.mes, sequence_planner.workshop)
+    for package in rooms:
         for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)
-    assert {"audit", "people", "sessions", "keys", "watches", "draft_files", "draft_changes"} <= set(METADATA.tables)
+    assert {"audit", "people", "sessions", "keys", "watches", "draft_files", "job_orders"} <= set(METADATA.tables)
     with database.reading() as connection:
         assert compare_metadata(MigrationContext.configure(connection), METADATA) == []
 

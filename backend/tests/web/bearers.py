@@ -94,7 +94,8 @@ def _unready(server: Server) -> dict[str, Bearer]:
 
 def _keys(server: Server) -> dict[str, Bearer]:
     found = {}
-    for scopes in ((Scope.READ,), (Scope.AUDIT,), (Scope.READ, Scope.AUDIT)):
+    orders = ((Scope.ORDERS_READ,), (Scope.ORDERS_WRITE,))
+    for scopes in ((Scope.READ,), (Scope.AUDIT,), (Scope.READ, Scope.AUDIT), *orders):
         secret, _ = key(server, *scopes)
         found[f"key to {' and '.join(scopes)}"] = Bearer(_bearing(secret), scopes=scopes)
     secret, revoked = key(server, Scope.READ, Scope.AUDIT)

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from sequence_planner.control.asks import Ask, AskAdvice, AskCorrection, AskDefinition, AskGoal, AskReset, AskWhyNot
+from sequence_planner.control.asks import (
+    AboutWorkMasters,
+    Ask,
+    AskAdvice,
+    AskCorrection,
+    AskDefinition,
+    AskGoal,
+    AskReset,
+    AskWhyNot,
+)
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.correction_view import CorrectedView, CorrectionPreview
 from sequence_planner.control.definition_view import (
@@ -30,7 +39,24 @@ from sequence_planner.control.view import BeliefView
 from sequence_planner.control.view_part import View
 from sequence_planner.control.way_back_view import SpecificationView
 from sequence_planner.control.why_not_view import ChangerView, ConditionView, InvolvedView, WhyNotView
+from sequence_planner.control.work_master_view import (
+    WorkAbilityView,
+    WorkMastersView,
+    WorkMasterView,
+    WorkOperationView,
+)
 
+WORK_MASTERS = WorkMastersView(
+    work_masters={
+        "truck_engine": WorkMasterView(
+            title="Engine",
+            brings=["bolts[bolt_pair_1] := empty"],
+            brought=["bolts[bolt_pair_1]"],
+            operations={"tighten": WorkOperationView(title="Tighten", after=[], goal_reads=["bolts[bolt_pair_1]"])},
+        )
+    },
+    abilities={"robot.move": WorkAbilityView(title="Move", writes=["robot.pose"], instant=False)},
+)
 STEP = PreviewStepView(tick=1, ability="robot.move", title="Move", resource="robot", human=False, restart=True)
 PLAN = PlanPreviewView(ticks=2, steps=[STEP], minimal_ticks=True, minimal_starts=False)
 OFFER = OfferView(
@@ -155,6 +181,8 @@ DEFINITION = AbilityDefinitionView(
 def example_answer(ask: Ask) -> View:
     """An answer of the kind that is asked for. Raises `CommandRefused` for what the station does not have."""
     match ask:
+        case AboutWorkMasters():
+            return WORK_MASTERS
         case AskAdvice():
             return ADVICE
         case AskCorrection():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
+from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
 from sequence_planner.control.override_view import OverrideFieldView, OverrideView
 from sequence_planner.control.restart_view import ForceView, UndecidedOutputView
 from sequence_planner.control.view import (
@@ -118,6 +119,22 @@ def example_view(**changes: object) -> StationView:
                 precondition="true",
                 left_out=False,
                 repeat=True,
+                for_jobs=True,
+                job="4711",
+            )
+        },
+        by_order=True,
+        jobs={
+            "4711": JobView(
+                title="Engine 4711",
+                work_master="truck_engine",
+                state=JobState.RUNNING,
+                stopping=False,
+                taken=980.0,
+                begun=981.0,
+                ended=None,
+                waits_for=[],
+                steps={"tighten": JobStepView(state=JobStepState.ACTIVE, waits_for=[], started=990.0, ended=None)},
             )
         },
         plan=PlanView(

@@ -227,6 +227,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/capabilities": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Capabilities
+         * @description What may be ordered, and what it is made with.
+         */
+        get: operations["capabilities_api_v1_capabilities_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/control": {
         parameters: {
             query?: never;
@@ -421,6 +441,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/events": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read
+         * @description The events with higher numbers than `after`. They are numbered without gaps and never change.
+         */
+        get: operations["read_api_v1_events_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/first-administrator": {
         parameters: {
             query?: never;
@@ -609,6 +649,123 @@ export interface paths {
          * @description How the station would have gone on from there, with emulated devices. Nothing of it reaches the station.
          */
         post: operations["take_branch_api_v1_history__number__branch_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/job-orders": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read
+         * @description The orders as they were stored, only those in a state where one is named. Those that come meanwhile are last.
+         */
+        get: operations["read_api_v1_job_orders_get"];
+        put?: never;
+        /**
+         * Store
+         * @description Store an order; with `start` it may begin at once.
+         *
+         *     The same request with the same `Idempotency-Key` stores nothing more and is answered the same, for seven days. 422
+         *     `idempotency-key-reused` when the key was that of another request; 409 `job-order-exists` when the id was used.
+         */
+        post: operations["store_api_v1_job_orders_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/job-orders/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One
+         * @description An order, and why nothing is done for it now.
+         */
+        get: operations["one_api_v1_job_orders__id__get"];
+        /**
+         * Change
+         * @description Let an order be of another content, until the station works on it; what is left out is as if it was new.
+         *
+         *     428 without `If-Match`; 412 `job-order-changed` when by now it has another revision; 409 `job-order-started`.
+         */
+        put: operations["change_api_v1_job_orders__id__put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/job-orders/{id}/commands": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Command
+         * @description Start, RevokeStart, Pause, Resume, Stop, Abort, Cancel or Clear an order.
+         *
+         *     What the station has to do is `commanded` until it is done. 409 `command-not-allowed` names in `allowed` what is. A
+         *     person who resumes an order has to be in control.
+         */
+        post: operations["command_api_v1_job_orders__id__commands_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/job-responses": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read
+         * @description What was made of the orders that are over, in the order in which they were; orders that are cleared are left
+         *     out.
+         */
+        get: operations["read_api_v1_job_responses_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/job-responses/{id}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * One
+         * @description What was made of an order; 404 `no-job-response` until it is over.
+         */
+        get: operations["one_api_v1_job_responses__id__get"];
+        put?: never;
+        post?: never;
         delete?: never;
         options?: never;
         head?: never;
@@ -2148,6 +2305,25 @@ export interface components {
             trial: components["schemas"]["TrialView"] | null;
         };
         /**
+         * AbilityMade
+         * @description A start of an ability for the order. Without `ended` it still ran when the order was over.
+         */
+        AbilityMade: {
+            /** Ability */
+            ability: string;
+            /**
+             * Called Off
+             * @default false
+             */
+            called_off: boolean;
+            /** Ended */
+            ended?: number | null;
+            /** Record */
+            record: number;
+            /** Started */
+            started: number;
+        };
+        /**
          * AbilityView
          * @description The flags of a ground ability; null is undetermined.
          */
@@ -2520,6 +2696,32 @@ export interface components {
             types: string[];
         };
         /**
+         * CapabilitiesAnswer
+         * @description What may be ordered, and what it is made with.
+         *
+         *     `personnel` are the resources whose abilities people carry out, `equipment` all others. Only while `by_order` the
+         *     station works on orders: it is for people there to let it.
+         */
+        CapabilitiesAnswer: {
+            /** Equipment */
+            equipment: {
+                [key: string]: components["schemas"]["EquipmentAnswer"];
+            };
+            job_orders: components["schemas"]["HeldAnswer"];
+            /** Personnel */
+            personnel: {
+                [key: string]: components["schemas"]["EquipmentAnswer"];
+            };
+            /** Station */
+            station: string;
+            /** Title */
+            title: string;
+            /** Work Masters */
+            work_masters: {
+                [key: string]: components["schemas"]["WorkMasterView"];
+            };
+        };
+        /**
          * ChangeBody
          * @description Edits that are carried out together, or not at all; `title` says what they do, for the list of changes.
          */
@@ -2623,6 +2825,15 @@ export interface components {
          */
         ClientMessage: components["schemas"]["Resync"];
         /**
+         * CommandBody
+         * @description What is asked of the order, and why.
+         */
+        CommandBody: {
+            command: components["schemas"]["OrderCommand"];
+            /** Reason */
+            reason?: string | null;
+        };
+        /**
          * ComparisonView
          * @description How two models differ: in their texts, by path as `diff -u` shows it, and in what they do.
          *
@@ -2671,7 +2882,8 @@ export interface components {
          * @description Something that has to be otherwise. `involved` alone keep it from being true, and none of them could be spared.
          *
          *     `kind` is station (how the station executes), service (what does not take part), written (in the model),
-         *     unpublished (a command has to leave first), supervisor (what synthesis has added) or plan (nothing wants it yet).
+         *     unpublished (a command has to leave first), supervisor (what synthesis has added), plan (nothing wants it yet) or
+         *     order (no job asks for it yet).
          */
         ConditionView: {
             /** Involved */
@@ -2764,6 +2976,24 @@ export interface components {
             values: {
                 [key: string]: boolean | number | string;
             };
+        };
+        /**
+         * CorrectionMade
+         * @description Values that a person has set while the order was worked, who and why.
+         */
+        CorrectionMade: {
+            /** By */
+            by: string;
+            /** Record */
+            record: number;
+            /** Time */
+            time: number;
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+            /** Why */
+            why: string;
         };
         /**
          * CorrectionPreview
@@ -2862,6 +3092,24 @@ export interface components {
             reason: string;
             /** Revision */
             revision: string;
+        };
+        /**
+         * Deviation
+         * @description What did not go as planned while the order was worked: `kind` is that of the record.
+         *
+         *     Several orders that were worked at the same time tell of the same one.
+         */
+        Deviation: {
+            /** Content */
+            content: {
+                [key: string]: components["schemas"]["JsonValue"];
+            };
+            /** Kind */
+            kind: string;
+            /** Record */
+            record: number;
+            /** Time */
+            time: number;
         };
         /**
          * DiagnosisView
@@ -3205,7 +3453,7 @@ export interface components {
                 [key: string]: components["schemas"]["JsonValue"];
             };
             /** @default done */
-            outcome: components["schemas"]["Outcome"];
+            outcome: components["schemas"]["sequence_planner__journal__entry__Outcome"];
             /** Reason */
             reason?: string | null;
             /**
@@ -3227,6 +3475,20 @@ export interface components {
             line: number;
             /** Path */
             path: (string | number)[];
+        };
+        /**
+         * EquipmentAnswer
+         * @description A resource, whether all its topics speak and it is in service.
+         */
+        EquipmentAnswer: {
+            /** Abilities */
+            abilities: string[];
+            /** In Service */
+            in_service: boolean;
+            /** Online */
+            online: boolean;
+            /** Title */
+            title: string;
         };
         /**
          * ErrandBody
@@ -3265,6 +3527,22 @@ export interface components {
             title: string;
             /** Why */
             why: string;
+        };
+        /**
+         * EventKind
+         * @description What has happened. A kind is never renamed; new ones may come.
+         * @enum {string}
+         */
+        EventKind: "job-order-stored" | "job-order-updated" | "job-order-allowed" | "job-order-revoked" | "job-order-running" | "job-order-interrupted" | "job-order-ended" | "job-order-aborted" | "job-order-cancelled" | "job-order-cleared" | "operation-started" | "operation-completed";
+        /**
+         * EventsAnswer
+         * @description Events, the oldest first; `next` is the `after` with which to ask for what comes then.
+         */
+        EventsAnswer: {
+            /** Events */
+            events: components["schemas"]["JobEvent"][];
+            /** Next */
+            next: number;
         };
         /**
          * Examples
@@ -3518,6 +3796,16 @@ export interface components {
             status: "alive";
         };
         /**
+         * HeldAnswer
+         * @description How many orders that are not over the station holds at most, and holds now.
+         */
+        HeldAnswer: {
+            /** Most */
+            most: number;
+            /** Now */
+            now: number;
+        };
+        /**
          * HistoryAnswer
          * @description Records, newest first; `next` is the `before` with which older ones follow, null when there are none.
          */
@@ -3593,6 +3881,79 @@ export interface components {
             value: boolean | number | string | null;
             /** Wanted */
             wanted: (boolean | number | string)[];
+        };
+        /**
+         * JobEvent
+         * @description An event: `number` counts from 1 without gaps, `time` is in seconds since the epoch.
+         */
+        JobEvent: {
+            /** Content */
+            content: {
+                [key: string]: components["schemas"]["JsonValue"];
+            };
+            /** Job Order */
+            job_order: string;
+            kind: components["schemas"]["EventKind"];
+            /** Number */
+            number: number;
+            /** Time */
+            time: number;
+        };
+        /**
+         * JobState
+         * @description Where a job stands.
+         * @enum {string}
+         */
+        JobState: "waiting" | "running" | "paused" | "ended" | "stopped" | "aborted";
+        /**
+         * JobStepState
+         * @description Where an operation of a job stands.
+         * @enum {string}
+         */
+        JobStepState: "waiting" | "eligible" | "active" | "completed";
+        /**
+         * JobStepView
+         * @description An operation of a job: when it was active first, and when it was completed.
+         *
+         *     One whose goal held already is completed without having been active. It `waits_for` operations of its job, or of
+         *     another, written `job/operation`.
+         */
+        JobStepView: {
+            /** Ended */
+            ended: number | null;
+            /** Started */
+            started: number | null;
+            state: components["schemas"]["JobStepState"];
+            /** Waits For */
+            waits_for: string[];
+        };
+        /**
+         * JobView
+         * @description A job, with its operations in the order of its work master.
+         *
+         *     `begun` is when what its product brings was there. With `stopping` no further operation begins, and it is `stopped`
+         *     as soon as those that were active then are completed. `waits_for` says in words what keeps it from going on.
+         */
+        JobView: {
+            /** Begun */
+            begun: number | null;
+            /** Ended */
+            ended: number | null;
+            state: components["schemas"]["JobState"];
+            /** Steps */
+            steps: {
+                [key: string]: components["schemas"]["JobStepView"];
+            };
+            /** Stopping */
+            stopping: boolean;
+            /** Taken */
+            taken: number;
+            /** Title */
+            title: string;
+            /** Waits For */
+            waits_for: string[];
+            /** Work Master */
+            work_master: string;
         };
         JsonValue: unknown;
         /**
@@ -3904,6 +4265,40 @@ export interface components {
             id: string;
         };
         /**
+         * NewOrderBody
+         * @description A new order. Without an `id` it is given one; with `start` it is allowed to start at once.
+         * @example {
+         *       "id": "engine-4711",
+         *       "start": true,
+         *       "work_master": "truck_engine"
+         *     }
+         */
+        NewOrderBody: {
+            /**
+             * Description
+             * @default
+             */
+            description: string;
+            /** Due */
+            due?: number | null;
+            /** Earliest */
+            earliest?: number | null;
+            /** Id */
+            id?: string | null;
+            /**
+             * Priority
+             * @default 0
+             */
+            priority: number;
+            /**
+             * Start
+             * @default false
+             */
+            start: boolean;
+            /** Work Master */
+            work_master: string;
+        };
+        /**
          * NodeView
          * @description A node, and the names of what it uses and serves.
          */
@@ -4007,8 +4402,34 @@ export interface components {
             unsupervised: boolean;
         };
         /**
+         * OperationMade
+         * @description An operation of the order. Where its goal held already it was never `started`; without `ended` it is not done.
+         *
+         *     `actuals` are the values that its goal depends on, as they were when it was completed.
+         */
+        OperationMade: {
+            /**
+             * Actuals
+             * @default {}
+             */
+            actuals: {
+                [key: string]: boolean | number | string | null;
+            };
+            /** Ended */
+            ended?: number | null;
+            /** Operation */
+            operation: string;
+            /** Record */
+            record?: number | null;
+            /** Started */
+            started?: number | null;
+        };
+        /**
          * OperationView
          * @description An operation: active until its goal holds.
+         *
+         *     With `for_jobs` a work master has it: while the station works by order it is active only for a job under way. `job`
+         *     is the one that has it, whether it is its turn or not.
          */
         OperationView: {
             /** Active */
@@ -4017,8 +4438,12 @@ export interface components {
             active_since: number | null;
             /** Completed */
             completed: number;
+            /** For Jobs */
+            for_jobs: boolean;
             /** Goal */
             goal: string;
+            /** Job */
+            job: string | null;
             /** Left Out */
             left_out: boolean;
             /** Precondition */
@@ -4056,11 +4481,90 @@ export interface components {
             label: string;
         };
         /**
-         * Outcome
-         * @description How far an act has come. A command on the station is recorded before its effect, and again when it is known.
+         * OrderAnswer
+         * @description An order. Times are in seconds since the epoch; `stored_by` is the name of a person or a key.
+         *
+         *     `commanded` is what the station is still to do with it, `allowed` the commands that the order allows now. Since
+         *     `began` the station works on it. `waits_for` says in words why nothing is done for it now.
+         */
+        OrderAnswer: {
+            /** Allowed */
+            allowed: components["schemas"]["OrderCommand"][];
+            /** Began */
+            began: number | null;
+            /** Changed */
+            changed: number;
+            commanded: components["schemas"]["OrderCommand"] | null;
+            /** Description */
+            description: string;
+            /** Due */
+            due: number | null;
+            /** Earliest */
+            earliest: number | null;
+            /** Ended */
+            ended: number | null;
+            /** Id */
+            id: string;
+            /** Priority */
+            priority: number;
+            /** Revision */
+            revision: number;
+            state: components["schemas"]["OrderState"];
+            /** Stored */
+            stored: number;
+            /** Stored By */
+            stored_by: string;
+            /** Waits For */
+            waits_for: string[];
+            /** Work Master */
+            work_master: string;
+        };
+        /**
+         * OrderBody
+         * @description What is ordered: a job of a work master.
+         *
+         *     The highest `priority` comes first, then what is `due` first; nothing begins before `earliest`.
+         */
+        OrderBody: {
+            /**
+             * Description
+             * @default
+             */
+            description: string;
+            /** Due */
+            due?: number | null;
+            /** Earliest */
+            earliest?: number | null;
+            /**
+             * Priority
+             * @default 0
+             */
+            priority: number;
+            /** Work Master */
+            work_master: string;
+        };
+        /**
+         * OrderCommand
+         * @description What may be asked of an order.
          * @enum {string}
          */
-        Outcome: "requested" | "done" | "refused" | "failed";
+        OrderCommand: "Start" | "RevokeStart" | "Pause" | "Resume" | "Stop" | "Abort" | "Cancel" | "Clear";
+        /**
+         * OrderState
+         * @description Where an order stands.
+         * @enum {string}
+         */
+        OrderState: "NotAllowedToStart" | "AllowedToStart" | "Running" | "Interrupted" | "Ended" | "Aborted";
+        /**
+         * OrdersAnswer
+         * @description Orders as they were stored; `next` is the `cursor` with which later ones follow, null when there are none.
+         */
+        OrdersAnswer: {
+            /** Job Orders */
+            job_orders: components["schemas"]["OrderAnswer"][];
+            /** Next */
+            next: number | null;
+        };
         /**
          * OverrideBody
          * @description The values of the fields that are to be set; others are as they come.
@@ -4206,10 +4710,16 @@ export interface components {
         PastView: {
             /** Active */
             active: string[];
+            /** By Order */
+            by_order: boolean;
             errand: components["schemas"]["ErrandView"] | null;
             /** Forces */
             forces: {
                 [key: string]: components["schemas"]["ForceView"];
+            };
+            /** Jobs */
+            jobs: {
+                [key: string]: components["schemas"]["JobView"];
             };
             mode: components["schemas"]["Mode"];
             /** Out Of Service */
@@ -4542,8 +5052,11 @@ export interface components {
          * @description Why a request was refused.
          *
          *     `errors` is empty unless `type` is `/problems/invalid-request`, `place` null unless it is `/problems/bad-predicate`.
+         *     `allowed` are the commands that a job order does allow where `type` is `/problems/command-not-allowed`.
          */
         Problem: {
+            /** Allowed */
+            allowed: components["schemas"]["OrderCommand"][];
             /** Detail */
             detail: string;
             /** Errors */
@@ -4795,6 +5308,16 @@ export interface components {
             time: number;
         };
         /**
+         * ResponsesAnswer
+         * @description Responses as they were written; `next` is the `cursor` with which later ones follow, null when there are none.
+         */
+        ResponsesAnswer: {
+            /** Job Responses */
+            job_responses: components["schemas"]["StoredResponse"][];
+            /** Next */
+            next: number | null;
+        };
+        /**
          * RestoreBody
          * @description The draft, after its change `number`, becomes the revision.
          */
@@ -4970,7 +5493,7 @@ export interface components {
          * @description What the bearer of a key may do.
          * @enum {string}
          */
-        Scope: "read" | "audit";
+        Scope: "read" | "audit" | "orders-read" | "orders-write";
         /**
          * ServiceBody
          * @description Whether it is to be in service, and why.
@@ -5227,6 +5750,8 @@ export interface components {
          * @description What is running, and how; and all that people have asked of it, or that it asks of them.
          */
         StationAnswer: {
+            /** By Order */
+            by_order: boolean;
             control: components["schemas"]["ControlView"] | null;
             errand: components["schemas"]["ErrandView"] | null;
             /** Forces */
@@ -5272,11 +5797,17 @@ export interface components {
                 [key: string]: components["schemas"]["AlarmView"];
             };
             analysis?: components["schemas"]["AnalysisDocument"] | null;
+            /** By Order */
+            by_order?: boolean;
             control?: components["schemas"]["ControlView"] | null;
             errand?: components["schemas"]["ErrandView"] | null;
             /** Forces */
             forces?: {
                 [key: string]: components["schemas"]["ForceView"];
+            };
+            /** Jobs */
+            jobs?: {
+                [key: string]: components["schemas"]["JobView"];
             };
             last_correction?: components["schemas"]["LastCorrectionView"] | null;
             last_errand?: components["schemas"]["LastErrandView"] | null;
@@ -5356,6 +5887,8 @@ export interface components {
             alarms?: string[];
             /** Forces */
             forces?: string[];
+            /** Jobs */
+            jobs?: string[];
             /** Operations */
             operations?: string[];
             /** Overrides */
@@ -5407,11 +5940,17 @@ export interface components {
                 [key: string]: components["schemas"]["AlarmView"];
             };
             analysis: components["schemas"]["AnalysisDocument"] | null;
+            /** By Order */
+            by_order: boolean;
             control: components["schemas"]["ControlView"] | null;
             errand: components["schemas"]["ErrandView"] | null;
             /** Forces */
             forces: {
                 [key: string]: components["schemas"]["ForceView"];
+            };
+            /** Jobs */
+            jobs: {
+                [key: string]: components["schemas"]["JobView"];
             };
             last_correction: components["schemas"]["LastCorrectionView"] | null;
             last_errand: components["schemas"]["LastErrandView"] | null;
@@ -5508,6 +6047,33 @@ export interface components {
         StopBody: {
             /** Reason */
             reason?: string | null;
+        };
+        /**
+         * StoredResponse
+         * @description A response in its place; `number` counts them without gaps.
+         */
+        StoredResponse: {
+            /** Abilities */
+            abilities: components["schemas"]["AbilityMade"][];
+            /** Began */
+            began: number | null;
+            /** Corrections */
+            corrections: components["schemas"]["CorrectionMade"][];
+            /** Description */
+            description: string;
+            /** Deviations */
+            deviations: components["schemas"]["Deviation"][];
+            /** Ended */
+            ended: number;
+            /** Job Order */
+            job_order: string;
+            /** Number */
+            number: number;
+            /** Operations */
+            operations: components["schemas"]["OperationMade"][];
+            outcome: components["schemas"]["sequence_planner__mes__responses__Outcome"];
+            /** Work Master */
+            work_master: string;
         };
         /**
          * StreamError
@@ -6263,6 +6829,34 @@ export interface components {
             title: string;
         };
         /**
+         * WorkMasterView
+         * @description A work master: its operations, the estimates that a new product `brings`, and the variables of these.
+         */
+        WorkMasterView: {
+            /** Brings */
+            brings: string[];
+            /** Brought */
+            brought: string[];
+            /** Operations */
+            operations: {
+                [key: string]: components["schemas"]["WorkOperationView"];
+            };
+            /** Title */
+            title: string;
+        };
+        /**
+         * WorkOperationView
+         * @description An operation of a work master: which others come before it, and the variables that its goal depends on.
+         */
+        WorkOperationView: {
+            /** After */
+            after: string[];
+            /** Goal Reads */
+            goal_reads: string[];
+            /** Title */
+            title: string;
+        };
+        /**
          * WorkshopSnapshot
          * @description The draft of the model and its check as they are now.
          */
@@ -6332,6 +6926,18 @@ export interface components {
             /** Then */
             then: boolean | number | string;
         };
+        /**
+         * Outcome
+         * @description How far an act has come. A command on the station is recorded before its effect, and again when it is known.
+         * @enum {string}
+         */
+        sequence_planner__journal__entry__Outcome: "requested" | "done" | "refused" | "failed";
+        /**
+         * Outcome
+         * @description How an order ended.
+         * @enum {string}
+         */
+        sequence_planner__mes__responses__Outcome: "completed" | "stopped" | "aborted";
         /**
          * Standing
          * @description Whether something of a pipeline is sound.
@@ -6914,6 +7520,38 @@ export interface operations {
             };
         };
     };
+    capabilities_api_v1_capabilities_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["CapabilitiesAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     take_api_v1_control_put: {
         parameters: {
             query?: never;
@@ -7326,6 +7964,42 @@ export interface operations {
             };
         };
     };
+    read_api_v1_events_get: {
+        parameters: {
+            query?: {
+                after?: number;
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["EventsAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     first_administrator_api_v1_first_administrator_post: {
         parameters: {
             query?: never;
@@ -7703,6 +8377,297 @@ export interface operations {
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_api_v1_job_orders_get: {
+        parameters: {
+            query?: {
+                state?: components["schemas"]["OrderState"] | null;
+                cursor?: number;
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OrdersAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    store_api_v1_job_orders_post: {
+        parameters: {
+            query?: never;
+            header: {
+                "Idempotency-Key": string;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NewOrderBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    /** @description The revision, as `If-Match` has to name it. */
+                    ETag: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OrderAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    one_api_v1_job_orders__id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description The revision, as `If-Match` has to name it. */
+                    ETag: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OrderAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    change_api_v1_job_orders__id__put: {
+        parameters: {
+            query?: never;
+            header?: {
+                "if-match"?: string | null;
+            };
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["OrderBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description The revision, as `If-Match` has to name it. */
+                    ETag: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OrderAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            412: components["responses"]["Problem412"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            428: components["responses"]["Problem428"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    command_api_v1_job_orders__id__commands_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["CommandBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    /** @description The revision, as `If-Match` has to name it. */
+                    ETag: string;
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OrderAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_api_v1_job_responses_get: {
+        parameters: {
+            query?: {
+                cursor?: number;
+                limit?: number;
+            };
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["ResponsesAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    one_api_v1_job_responses__id__get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                id: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StoredResponse"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
                 headers: {

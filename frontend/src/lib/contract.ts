@@ -13,6 +13,7 @@ export type Resource = Schemas['ResourceView'];
 export type Variable = Schemas['VariableView'];
 export type Ability = Schemas['AbilityView'];
 export type Operation = Schemas['OperationView'];
+export type Job = Schemas['JobView'];
 export type Plan = Schemas['PlanView'];
 export type Diagnosis = Schemas['DiagnosisView'];
 export type PlanStep = Schemas['PlanStepView'];
@@ -133,6 +134,7 @@ const MERGED: Record<keyof Schemas['StationRemoval'], true> = {
 	variables: true,
 	abilities: true,
 	operations: true,
+	jobs: true,
 	tasks: true,
 	topics: true,
 	overrides: true,

@@ -182,6 +182,11 @@ class Automaton(Immutable):
         return frozenset(self.names(Kind.OUTPUT))
 
     @cached_property
+    def job_operations(self) -> frozenset[str]:
+        """The operations of work masters."""
+        return frozenset(name for master in self.work_masters.values() for name in master.operations)
+
+    @cached_property
     def types(self) -> Mapping[str, Type]:
         """The type of each variable and flag."""
         types: dict[str, Type] = {name: variable.type for name, variable in self.variables.items()}

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from sequence_planner.control.asks import (
     AboutFlows,
     AboutPipelines,
+    AboutWorkMasters,
     Ask,
     AskAdvice,
     AskCorrection,
@@ -23,6 +24,7 @@ from sequence_planner.control.offers import Offers
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView, RecordView
 from sequence_planner.control.view_part import View
 from sequence_planner.control.why_not import WhyNot
+from sequence_planner.control.work_master_view import WorkMastersView
 
 
 @dataclass(frozen=True)
@@ -32,6 +34,7 @@ class Asking:
     pipelines: Callable[[], PipelinesView]
     flows: Callable[[Container[str] | None], FlowsView]
     record: Callable[[str], RecordView]
+    work_masters: Callable[[], WorkMastersView]
     corrections: Corrections
     offers: Offers
     why_not: WhyNot
@@ -46,6 +49,8 @@ class Asking:
                 return self.flows(among)
             case AskRecord(pipeline=pipeline):
                 return self.record(pipeline)
+            case AboutWorkMasters():
+                return self.work_masters()
             case AskCorrection(values=values):
                 return await self.corrections.preview(values)
             case AskAdvice():

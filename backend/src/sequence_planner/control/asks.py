@@ -16,6 +16,7 @@ from sequence_planner.control.pipeline_view import FlowsView, PipelinesView, Rec
 from sequence_planner.control.restart_commands import GivenValues
 from sequence_planner.control.view_part import View
 from sequence_planner.control.why_not_view import WhyNotView
+from sequence_planner.control.work_master_view import WorkMastersView
 
 ADVISED_WITHIN = 15.0  # seconds: the adviser answers one after the other
 LONGEST_PREDICATE = 4000  # characters
@@ -107,6 +108,12 @@ class AskCorrection(AskBase[CorrectionPreview]):
     values: GivenValues
 
 
+class AboutWorkMasters(AskBase[WorkMastersView]):
+    """What jobs consist of."""
+
+    kind: Literal["about-work-masters"] = "about-work-masters"
+
+
 Ask = Annotated[
     AboutPipelines
     | AboutFlows
@@ -116,6 +123,7 @@ Ask = Annotated[
     | AskGoal
     | AskReset
     | AskWhyNot
-    | AskDefinition,
+    | AskDefinition
+    | AboutWorkMasters,
     Field(discriminator="kind"),
 ]

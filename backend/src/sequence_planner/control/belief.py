@@ -16,6 +16,7 @@ from sequence_planner.control.conduct import Beginning
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.happenings import CalledOff, Confirmed, Corrected, ModeChanged, Ticked
 from sequence_planner.control.heard import Heard, TickOutcome
+from sequence_planner.control.jobs import Job
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.value_text import value_text
 from sequence_planner.control.view import BeliefView
@@ -71,8 +72,11 @@ class Beliefs:
             self._tell({name: belief.model_dump(mode="json") for name, belief in self._beliefs.items()})
 
     def _ticked(self, heard: Heard, outcome: TickOutcome, now: Moment) -> None:
-        """In their order: who finished, who was called off, who started."""
+        """In their order: what a new product brought, who finished, who was called off, who started."""
         abilities, changed = self._automaton.abilities, self._changed(heard)
+        for job in self._execution.conduct.jobs.under_way:
+            if job.begun == now:
+                self._brought(job, changed)
         for name in outcome.finished:
             ability = abilities[name]
             assert ability.finish_guard is not None
@@ -87,6 +91,14 @@ class Beliefs:
             ability = abilities[name]
             for action in _taken(ability.start_actions, self._estimates, changed):
                 self._wrote(heard, ability, conjunction(ability.enabled, ability.start_guard), action, now)
+
+    def _brought(self, job: Job, changed: frozenset[str]) -> None:
+        """The product of the job is there; who ordered it says what it is like."""
+        for action in self._automaton.work_masters[job.work_master].brings:
+            if target(action) in changed:
+                since = job.begun.epoch if job.begun is not None else 0.0
+                belief = BeliefView(writer=f"job {job.id}", at=since, evidence=[], unconfirmed_since=None)
+                self._beliefs[target(action)] = belief
 
     def _wrote(self, heard: Heard, ability: Ability, guard: Expression, action: Assignment, now: Moment) -> None:
         """The ability has written an estimate, as its `guard` held."""

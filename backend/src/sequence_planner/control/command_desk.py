@@ -24,6 +24,8 @@ from sequence_planner.control.commands import (
 from sequence_planner.control.corrections import Corrections
 from sequence_planner.control.forcing import Forcing
 from sequence_planner.control.in_control import InControl
+from sequence_planner.control.job_commands import CommandJob, ForgetJob, SequenceJobs, SetByOrder, TakeJob
+from sequence_planner.control.job_desk import JobDesk
 from sequence_planner.control.mode_desk import ModeDesk
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.offers import Offers
@@ -55,6 +57,7 @@ class CommandDesk:
     offers: Offers
     trials: Trials
     forcing: Forcing
+    jobs: JobDesk
     alarms: Alarms
     start_production: Callable[[], None]
     real_devices: Callable[[], Sequence[str]]
@@ -88,6 +91,8 @@ class CommandDesk:
                 self.trials.carry_out(command, moment)
             case ForceVariable() | ReleaseForce():
                 self.forcing.carry_out(command, moment)
+            case TakeJob() | SequenceJobs() | CommandJob() | ForgetJob() | SetByOrder():
+                self.jobs.carry_out(command, moment)
             case AlarmCommand():
                 self.alarms.carry_out(command, moment)
             case _:

@@ -14,6 +14,7 @@ from sequence_planner.control.alarm_commands import (
     UnshelveAlarm,
 )
 from sequence_planner.control.command_base import CommandBase, CommandRefused
+from sequence_planner.control.job_commands import CommandJob, ForgetJob, SequenceJobs, SetByOrder, TakeJob
 from sequence_planner.control.override_view import FieldValue
 from sequence_planner.control.production_commands import (
     Deploy,
@@ -120,6 +121,11 @@ Command = Annotated[
     | SolveProblem
     | SetOverride
     | ClearOverride
+    | SetByOrder
+    | TakeJob
+    | SequenceJobs
+    | CommandJob
+    | ForgetJob
     | TakeControl
     | ReleaseControl
     | WithdrawControl,

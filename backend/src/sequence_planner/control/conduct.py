@@ -11,6 +11,7 @@ from typing import Any, Final
 
 from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.control.errand import Errand
+from sequence_planner.control.jobs import Jobs
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view import Mode, Production
@@ -59,9 +60,9 @@ class Beginning(Immutable):
     """What is known as an execution begins: estimates and outputs that came back, as `values`.
 
     Nobody has seen since `unconfirmed_since` whether the estimates are still true; None where nothing came back. `done`
-    are the operations that do not repeat and have been completed. It goes on in the same mode, and steps as before: who
-    had held the station finds it held. `revision` is higher than any that was shown before, so that nobody decides on a
-    state of another life.
+    are the operations that do not repeat and have been completed. It goes on in the same mode, with the same jobs, and
+    steps as before: who had held the station finds it held. `revision` is higher than any that was shown before, so
+    that nobody decides on a state of another life.
     """
 
     values: Mapping[str, Value]
@@ -72,6 +73,7 @@ class Beginning(Immutable):
     mode: Mode = Mode.AUTOMATIC
     stepping: bool = False
     revision: int = 0
+    jobs: Jobs = Jobs()
 
 
 class Conduct(Immutable):
@@ -92,6 +94,7 @@ class Conduct(Immutable):
     done: frozenset[str] = frozenset()
     tried: Mapping[str, int] = NOTHING
     silent: frozenset[str] = frozenset()  # resources that are not heard
+    jobs: Jobs = Jobs()
 
     @property
     def executes_operations(self) -> bool:
@@ -107,10 +110,9 @@ class Conduct(Immutable):
             return self.mode is Mode.AUTOMATIC
         return self.mode is Mode.RESTART or (self.mode is Mode.PAUSED and not self.errand.restart)
 
-    @property
-    def idle_operations(self) -> frozenset[str]:
+    def idle_operations(self, automaton: Automaton) -> frozenset[str]:
         """The operations that do not become active."""
-        return self.done | self.out_of(ServiceKind.OPERATION)
+        return self.done | self.out_of(ServiceKind.OPERATION) | self.jobs.idle(automaton)
 
     def out_of(self, kind: ServiceKind) -> frozenset[str]:
         """The names of what is out of service, of one kind."""

@@ -36,6 +36,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.forcing import Forcing
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.involving import Surroundings
+from sequence_planner.control.job_desk import JobDesk
 from sequence_planner.control.known import Known
 from sequence_planner.control.mode_desk import ModeDesk
 from sequence_planner.control.moment import Moment
@@ -50,6 +51,7 @@ from sequence_planner.control.view import Production, StationIdentity, StationVi
 from sequence_planner.control.view_part import View
 from sequence_planner.control.viewing import Doubts, Viewing
 from sequence_planner.control.why_not import WhyNot
+from sequence_planner.control.work_masters import work_masters_view
 from sequence_planner.expressions.types import Value
 from sequence_planner.history.model_digest import model_digest
 from sequence_planner.history.recorder import RunRecorder
@@ -114,6 +116,7 @@ class Controller:
             offers=offers,
             trials=trials,
             forcing=Forcing(self.execution),
+            jobs=JobDesk(self.execution),
             alarms=self._alarms,
             start_production=self._start_production,
             real_devices=self.devices.real_devices,
@@ -122,6 +125,7 @@ class Controller:
             pipelines=partial(pipelines_view, station.pipelines),
             flows=self.devices.flows,
             record=self.devices.record,
+            work_masters=partial(work_masters_view, automaton),
             corrections=self._corrections,
             offers=offers,
             why_not=WhyNot(self.execution, around, self._adviser),

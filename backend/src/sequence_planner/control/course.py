@@ -11,11 +11,13 @@ from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.automaton.tick import reverts
+from sequence_planner.control.bringing import kept_back, lacking, still_written
 from sequence_planner.control.cancelling import cancelled
 from sequence_planner.control.conduct import Beginning, Conduct, LastErrand, writing
 from sequence_planner.control.errand import NAME as ERRAND
 from sequence_planner.control.errand import Errand
 from sequence_planner.control.heard import TickOutcome
+from sequence_planner.control.jobs import Job
 from sequence_planner.control.live_plan import LivePlan, Present
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.pursued import Pursued
@@ -53,6 +55,7 @@ class Course:
                 service=service,
                 done=beginning.done,
                 returned=returned,
+                jobs=beginning.jobs,
             )
         unmeasured = dict.fromkeys(automaton.names(Kind.MEASURED), None)
         self._run = CompiledRun(self._compiled, {**automaton.initial_valuation, **known, **unmeasured})
@@ -144,6 +147,16 @@ class Course:
             return None
         return after if self._allows(after.values) else None
 
+    def keeps_from_beginning(self, job: Job) -> tuple[str, ...]:
+        """What has to be otherwise before what the product of this job brings can be so, in words."""
+        master = self.automaton.work_masters[job.work_master]
+        found = list(still_written(self.automaton, master, self.running()))
+        if brought := lacking(master, self.state):
+            found = [*kept_back(self.conduct), *found]
+            if not found and not self._is_safe_with(brought):
+                found = ["a state that stays safe with what the product brings"]
+        return tuple(found)
+
     def may_go_on(self, name: str) -> bool:
         """Whether the order still reaches the goals once its first ability, `name`, has been started now."""
         after = self.startable(name)
@@ -169,6 +182,7 @@ class Course:
     def _tick(self, measured: Mapping[str, Value | None], now: Moment) -> TickOutcome:
         before, conduct = self.state, self.conduct
         self._release([name for name, force in conduct.forces.items() if force.until.monotonic <= now.monotonic])
+        self._begin_jobs(now)
         sensed, self.conduct = self.conduct.sensing(measured)
         self._run.sense(sensed)
         finishing = self._run.finish()
@@ -201,6 +215,15 @@ class Course:
             called_off,
             given_up,
         )
+
+    def _begin_jobs(self, now: Moment) -> None:
+        """What the products of new jobs bring is so from now on, where nothing is in the way: as after a correction."""
+        for job in self.conduct.jobs.under_way:
+            if job.may_begin and not self.keeps_from_beginning(job):
+                master = self.automaton.work_masters[job.work_master]
+                self._write(lacking(master, self.state))
+                done = self.conduct.done - master.operations.keys()
+                self._change(jobs=self.conduct.jobs.having_begun(job.id, now), done=done)
 
     def _look_after_running(self, ended: tuple[str, ...], now: Moment) -> tuple[tuple[str, ...], tuple[str, ...]]:
         """The overdue abilities that are called off to be planned anew, and those of them that are given up."""
@@ -235,13 +258,14 @@ class Course:
 
     def _update_operations(self, now: Moment) -> tuple[frozenset[str], frozenset[str]]:
         """Step 4: the operations that are activated by it, and those that are completed."""
-        idle = self.conduct.idle_operations
+        idle = self.conduct.idle_operations(self.automaton)
         active = self._run.update_operations(self.active)
         left = self.active - active
         withdrawn = (self.active & active & idle) | (left & idle)
         active, completed = active - idle, left - idle
         activated = active - self.active
-        if once := frozenset(name for name in completed if not self.automaton.operations[name].repeat):
+        done = completed | self._advance_jobs(active, now)
+        if once := frozenset(name for name in done if not self.automaton.operations[name].repeat):
             self._change(done=self.conduct.done | once)
         if self.conduct.executes_operations:
             self._operations = self._operations.settled(completed, self._run.values, now)
@@ -257,15 +281,28 @@ class Course:
             self.plan.settle(active, self._operations.hopeful)
         return activated, completed
 
+    def _advance_jobs(self, active: frozenset[str], now: Moment) -> frozenset[str]:
+        """What was eligible for a job in step 4 has begun, or is completed where its goal holds: the latter."""
+        before, operations, values = self.conduct.jobs, self.automaton.operations, self._run.values
+        after = before.advanced(self.automaton, active, lambda name: holds(operations[name].goal, values), now)
+        if after is before:
+            return frozenset()
+        self._change(jobs=after)
+        pairs = zip(before.taken, after.taken, strict=True)
+        return frozenset(name for old, new in pairs for name in new.completed.keys() - old.completed.keys())
+
     def _look_after_errand(self, now: Moment) -> None:
         """An errand whose goal holds is done; with it an operation that is reset begins anew."""
         errand = self.errand
         if errand is None or errand.ability is not None or not holds(errand.goal, self._run.values):
             return
         if errand.operation is not None:
-            self.active -= {errand.operation}
-            self._operations = self._operations.without((errand.operation,))
-            self._change(done=self.conduct.done - {errand.operation})
+            jobs = self.conduct.jobs.reopened(errand.operation, self.automaton)
+            self._change(done=self.conduct.done - {errand.operation}, jobs=jobs)
+            # What comes after it in a job has to wait for it again.
+            withdrawn = {errand.operation} | (self.active & self.conduct.idle_operations(self.automaton))
+            self.active -= withdrawn
+            self._operations = self._operations.without(withdrawn)
             self._run.record_activity(self.active)
         self._end_errand("", now, done=True)
 

@@ -18,6 +18,7 @@ from sequence_planner.control.errand import Errand
 from sequence_planner.control.happenings import (
     Answered,
     Asked,
+    ByOrderChanged,
     CalledOff,
     Confirmed,
     Corrected,
@@ -27,6 +28,10 @@ from sequence_planner.control.happenings import (
     Forced,
     ForceReleased,
     Happening,
+    JobCommanded,
+    JobForgotten,
+    JobsSequenced,
+    JobTaken,
     ModeChanged,
     ProductionStarted,
     ServiceChanged,
@@ -36,6 +41,7 @@ from sequence_planner.control.happenings import (
     Unanswered,
 )
 from sequence_planner.control.heard import Heard, TickOutcome
+from sequence_planner.control.jobs import Job, JobAct, Waits
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view import Mode, Production
@@ -170,6 +176,33 @@ class Execution(Course):
             self._break_off(errand.ability, now)
         self._end_errand(f"{by} stopped it", now, by=by)
         self._tell(ErrandStopped(by, now), before)
+
+    # Its jobs. They advance with the next tick.
+
+    def set_by_order(self, on: bool, by: str, why: str, now: Moment) -> None:
+        """From now on the operations of work masters are active for jobs only, or whenever they can be."""
+        self._change(jobs=replace(self.conduct.jobs, by_order=on))
+        self._tell(ByOrderChanged(on, by, why, now), self.state)
+
+    def take_job(self, job: str, title: str, work_master: str, by: str, now: Moment) -> None:
+        """Work a job of which there is none yet, and whose operations no other job under way has."""
+        self._change(jobs=self.conduct.jobs.taking(Job(job, title, work_master, now)))
+        self._tell(JobTaken(job, title, work_master, by, now), self.state)
+
+    def sequence_jobs(self, waits: Waits, by: str, now: Moment) -> None:
+        """Operations of jobs wait for these of others, which leads into no circle."""
+        self._change(jobs=replace(self.conduct.jobs, waits=waits))
+        self._tell(JobsSequenced(waits, by, now), self.state)
+
+    def command_job(self, job: str, act: JobAct, by: str, why: str, now: Moment) -> None:
+        """Pause, resume, stop or abort a job under way."""
+        self._change(jobs=self.conduct.jobs.told(job, act, self.active, self.automaton, now))
+        self._tell(JobCommanded(job, act, by, why, now), self.state)
+
+    def forget_job(self, job: str, by: str, now: Moment) -> None:
+        """Do not keep a job that has ended any longer."""
+        self._change(jobs=self.conduct.jobs.forgetting(job))
+        self._tell(JobForgotten(job, by, now), self.state)
 
     # Its plan.
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from sequence_planner.control.errand import Errand
+from sequence_planner.control.jobs import JobAct, Waits
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view import Mode
@@ -125,6 +126,51 @@ class ForceReleased(Immutable):
     name: str
 
 
+class ByOrderChanged(Immutable):
+    """From now on the operations of work masters are active for jobs only, or whenever they can be."""
+
+    on: bool
+    by: str
+    why: str
+    now: Moment
+
+
+class JobTaken(Immutable):
+    """The station has taken a job."""
+
+    job: str
+    title: str
+    work_master: str
+    by: str
+    now: Moment
+
+
+class JobsSequenced(Immutable):
+    """Operations of jobs wait for these of others, and no more for what was said before."""
+
+    waits: Waits
+    by: str
+    now: Moment
+
+
+class JobCommanded(Immutable):
+    """A job under way is paused, resumed, being stopped, or aborted."""
+
+    job: str
+    act: JobAct
+    by: str
+    why: str
+    now: Moment
+
+
+class JobForgotten(Immutable):
+    """A job that has ended is not kept any longer."""
+
+    job: str
+    by: str
+    now: Moment
+
+
 class ErrandTaken(Immutable):
     """A person has taken a plan to be carried out."""
 
@@ -157,4 +203,9 @@ Happening = (
     | ForceReleased
     | ErrandTaken
     | ErrandStopped
+    | ByOrderChanged
+    | JobTaken
+    | JobsSequenced
+    | JobCommanded
+    | JobForgotten
 )

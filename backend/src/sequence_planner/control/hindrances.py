@@ -32,6 +32,7 @@ class HindranceKind(StrEnum):
     UNPUBLISHED = "unpublished"  # a command has to leave first
     SUPERVISOR = "supervisor"  # the guard that synthesis has added
     PLAN = "plan"  # nothing wants it, or not yet
+    ORDER = "order"  # no job asks for it, or not yet
 
 
 @dataclass(frozen=True)

@@ -243,7 +243,7 @@ def _waiting_goals(execution: Execution) -> Goals:
     """The goals of operations that are not active, and will be once their preconditions hold."""
     if execution.production is not Production.STARTED:
         return ()
-    idle = execution.active | execution.conduct.idle_operations
+    idle = execution.active | execution.conduct.idle_operations(execution.automaton)
     return goals_of(execution.automaton, sorted(execution.automaton.operations.keys() - idle))
 
 

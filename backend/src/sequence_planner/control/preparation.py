@@ -139,6 +139,8 @@ def preparing_view(
         variables={},
         abilities={},
         operations={},
+        by_order=False,
+        jobs={},
         plan=plan,
         errand=None,
         last_errand=None,

@@ -11,6 +11,7 @@ from enum import StrEnum
 
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.alarm_view import AlarmView
+from sequence_planner.control.job_view import JobView
 from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import (
     ErrandView,
@@ -152,7 +153,11 @@ class AbilityView(View):
 
 
 class OperationView(View):
-    """An operation: active until its goal holds."""
+    """An operation: active until its goal holds.
+
+    With `for_jobs` a work master has it: while the station works by order it is active only for a job under way. `job`
+    is the one that has it, whether it is its turn or not.
+    """
 
     title: str
     active: bool
@@ -162,6 +167,8 @@ class OperationView(View):
     precondition: str
     left_out: bool  # active, but not part of the plan, because not all goals can be planned together
     repeat: bool  # it becomes active again after it was completed, whenever its precondition holds
+    for_jobs: bool
+    job: str | None
 
 
 class PlanStepView(View):
@@ -283,6 +290,8 @@ class StationView(View):
     variables: dict[str, VariableView]
     abilities: dict[str, AbilityView]
     operations: dict[str, OperationView]
+    by_order: bool  # operations of work masters are active for jobs only
+    jobs: dict[str, JobView]  # that are under way, or have ended and are not forgotten yet, in the order taken
     plan: PlanView
     errand: ErrandView | None
     last_errand: LastErrandView | None

@@ -52,6 +52,7 @@ from sequence_planner.control.viewing_conduct import (
     packml,
     service_views,
 )
+from sequence_planner.control.viewing_jobs import job_views
 from sequence_planner.control.viewing_outside import way_back
 from sequence_planner.control.waiting import waits_for
 from sequence_planner.expressions.printing import print_expression
@@ -145,6 +146,8 @@ class Viewing:
             variables=self._variables(),
             abilities=self._abilities(),
             operations=self._operations(),
+            by_order=conduct.jobs.by_order,
+            jobs=job_views(execution),
             plan=self._plan(),
             errand=errand_view(execution),
             last_errand=last_errand_view(conduct),
@@ -207,6 +210,8 @@ class Viewing:
     def _operations(self) -> dict[str, OperationView]:
         execution = self._execution
         left_out = set(execution.plan.answer.left_out) if execution.plan.answer else set()
+        jobs, automaton = execution.conduct.jobs, execution.automaton
+        asking = {name: job.id for job in jobs.under_way for name in automaton.work_masters[job.work_master].operations}
         return {
             operation.name: OperationView(
                 title=operation.title,
@@ -217,8 +222,10 @@ class Viewing:
                 precondition=print_expression(operation.precondition),
                 left_out=operation.name in left_out & execution.active,
                 repeat=operation.repeat,
+                for_jobs=operation.name in automaton.job_operations,
+                job=asking.get(operation.name),
             )
-            for operation in execution.automaton.operations.values()
+            for operation in automaton.operations.values()
         }
 
     def _plan(self) -> PlanView:

@@ -20,6 +20,7 @@ from sequence_planner.control.offer_view import PlanPreviewView
 from sequence_planner.control.predicates import read_predicate
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view import DiagnosisView, Mode
+from sequence_planner.control.viewing_jobs import why_idle
 from sequence_planner.control.why_not_view import WhyNotView
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.printing import print_expression
@@ -101,6 +102,8 @@ class WhyNot:
         if operation.name in execution.conduct.done:
             text = "a reset: it is completed, and does not become active again by itself"
             yield Hindrance(HindranceKind.SERVICE, text)
+        if (idle := why_idle(execution, operation.name)) is not None:
+            yield Hindrance(HindranceKind.ORDER, idle)
         if evaluate(operation.goal, execution.state) is True:
             undone = Not(operation.goal)
             yield Hindrance(HindranceKind.WRITTEN, f"{print_expression(undone)}: its goal holds", undone)

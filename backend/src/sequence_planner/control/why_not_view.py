@@ -41,7 +41,8 @@ class ConditionView(View):
     """Something that has to be otherwise. `involved` alone keep it from being true, and none of them could be spared.
 
     `kind` is station (how the station executes), service (what does not take part), written (in the model),
-    unpublished (a command has to leave first), supervisor (what synthesis has added) or plan (nothing wants it yet).
+    unpublished (a command has to leave first), supervisor (what synthesis has added), plan (nothing wants it yet) or
+    order (no job asks for it yet).
     """
 
     kind: str

@@ -6,6 +6,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.start_order import Step
 from sequence_planner.control.view import StepStatus
 from sequence_planner.control.viewing_conduct import errand_view, force_views, packml, service_views
+from sequence_planner.control.viewing_jobs import job_views
 from sequence_planner.history.replay import Replayed
 from sequence_planner.history.view import MomentView, PastPlanView, PastStepView, PastView, record_view
 
@@ -28,6 +29,8 @@ def past_view(execution: Execution) -> PastView:
         values={name: state[name] for name in execution.automaton.variables},
         running=sorted(execution.running()),
         active=sorted(execution.active),
+        by_order=conduct.jobs.by_order,
+        jobs=job_views(execution),
         plan=_plan(execution),
         errand=errand_view(execution),
         forces=force_views(conduct),

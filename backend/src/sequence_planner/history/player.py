@@ -11,6 +11,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.happenings import (
     Answered,
     Asked,
+    ByOrderChanged,
     CalledOff,
     Confirmed,
     Corrected,
@@ -20,6 +21,10 @@ from sequence_planner.control.happenings import (
     Forced,
     ForceReleased,
     Happening,
+    JobCommanded,
+    JobForgotten,
+    JobsSequenced,
+    JobTaken,
     ModeChanged,
     ProductionStarted,
     ServiceChanged,
@@ -137,6 +142,16 @@ class Player:
                 execution.take_errand(errand, now)
             case ErrandStopped(by, now):
                 execution.stop_errand(by, now)
+            case ByOrderChanged(on, by, why, now):
+                execution.set_by_order(on, by, why, now)
+            case JobTaken(job, title, work_master, by, now):
+                execution.take_job(job, title, work_master, by, now)
+            case JobsSequenced(waits, by, now):
+                execution.sequence_jobs(waits, by, now)
+            case JobCommanded(job, act, by, why, now):
+                execution.command_job(job, act, by, why, now)
+            case JobForgotten(job, by, now):
+                execution.forget_job(job, by, now)
 
     def _difference(self, record: RunRecord, content: dict[str, Any]) -> str:
         """In what the replayed execution is not as it was, as far as the record says how it was."""

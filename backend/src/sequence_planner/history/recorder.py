@@ -19,6 +19,7 @@ from sequence_planner.control.conduct import Beginning, OutOfService
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.happenings import Confirmed, Corrected, Ticked
 from sequence_planner.control.heard import Heard, TickOutcome
+from sequence_planner.control.jobs import Job, Jobs, Waits
 from sequence_planner.control.moment import Moment
 from sequence_planner.history.codec import BEGUN, SNAPSHOT, TICKED, Codec, Document, Senses, TickBook, kind_of
 from sequence_planner.history.memory import Memory
@@ -55,6 +56,7 @@ class RunRecorder:
         self._unconfirmed = self._estimates if self._unconfirmed_since is not None else frozenset()
         self._service, self._done = execution.conduct.service, execution.conduct.done
         self._mode, self._stepping = execution.conduct.mode, execution.conduct.stepping
+        self._jobs = execution.conduct.jobs
         self._plan = _plan(execution)
         self._since_snapshot = 0
         self._now = Moment(clock(), 0.0) if beginning is None else beginning.now
@@ -96,6 +98,9 @@ class RunRecorder:
         if conduct.mode is not self._mode or conduct.stepping != self._stepping:
             self._mode, self._stepping = conduct.mode, conduct.stepping
             found["mode"], found["stepping"] = str(conduct.mode), conduct.stepping
+        if conduct.jobs is not self._jobs:
+            before, self._jobs = self._jobs, conduct.jobs
+            found |= self._job_changes(before, conduct.jobs)
         if (plan := _plan(self._execution)) != self._plan:
             found["plan"] = {"status": plan[0], "reason": plan[1]}
             if plan[2] > self._plan[2]:
@@ -103,6 +108,21 @@ class RunRecorder:
             self._plan = plan
         if self._unconfirmed and (seen := _seen(heard) | changes.keys()):
             self._unconfirmed -= seen
+        return found
+
+    def _job_changes(self, before: Jobs, after: Jobs) -> Document:
+        """Each job that is another by now, and null for one that is not there any more."""
+        found: Document = {}
+        known = {job.id: job for job in before.taken}
+        changed: Document = {
+            job.id: self._codec.encode(Job, job) for job in after.taken if known.pop(job.id, None) != job
+        }
+        if changed := changed | dict.fromkeys(known):
+            found["jobs"] = changed
+        if after.waits != before.waits:
+            found["waits"] = self._codec.encode(Waits, after.waits)
+        if after.by_order != before.by_order:
+            found["by_order"] = after.by_order
         return found
 
     def _changes(self, before: State, after: State) -> dict[str, JsonValue]:
@@ -125,6 +145,9 @@ class RunRecorder:
             "done": sorted(conduct.done),
             "mode": str(conduct.mode),
             "stepping": conduct.stepping,
+            "by_order": conduct.jobs.by_order,
+            "jobs": {job.id: self._codec.encode(Job, job) for job in conduct.jobs.taken},
+            "waits": self._codec.encode(Waits, conduct.jobs.waits),
             "unconfirmed_since": self._unconfirmed_since,
             "unconfirmed": sorted(self._unconfirmed),
             "senses": self._codec.encode(Senses, self._book.senses),

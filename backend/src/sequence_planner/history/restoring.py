@@ -11,19 +11,22 @@ from sqlalchemy import Connection
 from sequence_planner.automaton.structure import Automaton, Kind
 from sequence_planner.control.conduct import Beginning, OutOfService
 from sequence_planner.control.happenings import Confirmed
+from sequence_planner.control.jobs import Jobs
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view import Mode
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.types import Value, contains
 from sequence_planner.history.codec import BEGUN, SNAPSHOT, Codec, kind_of
+from sequence_planner.history.restoring_jobs import restored_jobs
 from sequence_planner.history.shapes import UnreadableError
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.storage.error import StorageError
 
 _PAGE: Final = 1000  # records read at once
-_CONDUCT: Final = ("service", "done", "mode", "stepping")  # what records say of it where it changed
+# What records say of the conduct where it changed.
+_CONDUCT: Final = ("service", "done", "mode", "stepping", "by_order", "waits")
 _CONFIRMED: Final = kind_of(Confirmed)
 
 
@@ -74,6 +77,7 @@ class _Known:
         self._last = record.time
         self._found: dict[str, Any] = json.loads(record.content)
         self._unconfirmed = set(self._found["unconfirmed"])
+        self._jobs: dict[str, Any] = dict(self._found.get("jobs", {}))
 
     def take(self, record: RunRecord) -> None:
         content = json.loads(record.content)
@@ -82,6 +86,11 @@ class _Known:
         changes = content.get("changes", {})
         self._found["values"] |= changes
         self._found |= {name: content[name] for name in _CONDUCT if name in content}
+        for job, document in content.get("jobs", {}).items():
+            if document is None:  # it was forgotten
+                self._jobs.pop(job, None)
+            else:
+                self._jobs[job] = document
         what = content.get("what", {})
         seen = what.get("names", ()) if record.kind == _CONFIRMED else what.get("values", {})
         self._unconfirmed.difference_update(changes, seen)
@@ -97,8 +106,13 @@ class _Known:
             Mode(self._found["mode"]),
             bool(self._found["stepping"]),
             self.record.number,  # each change of the state is in a record of its own, so there were fewer
+            self._restored_jobs(automaton, left_out, now),
         )
         return Restored(beginning, tuple(left_out))
+
+    def _restored_jobs(self, automaton: Automaton, left_out: list[str], now: Moment) -> Jobs:
+        by_order, waits = bool(self._found.get("by_order", False)), self._found.get("waits", [])
+        return restored_jobs(automaton, by_order, self._jobs, waits, left_out, now)
 
     def _values(self, automaton: Automaton, left_out: list[str]) -> dict[str, Value]:
         fitting: dict[str, Value] = {}

@@ -6,6 +6,7 @@ import json
 
 from pydantic import JsonValue
 
+from sequence_planner.control.job_view import JobView
 from sequence_planner.control.restart_view import ErrandView, ForceView, ServiceView
 from sequence_planner.control.view import Mode, PackML, PlanStatus, Production, StepStatus
 from sequence_planner.control.view_part import Value, View
@@ -89,6 +90,8 @@ class PastView(View):
     values: dict[str, Value | None]
     running: list[str]
     active: list[str]
+    by_order: bool
+    jobs: dict[str, JobView]
     plan: PastPlanView
     errand: ErrandView | None
     forces: dict[str, ForceView]

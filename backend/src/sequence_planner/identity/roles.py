@@ -24,3 +24,5 @@ class Scope(StrEnum):
 
     READ = "read"  # the station as a viewer sees it
     AUDIT = "audit"  # the record of who did what
+    ORDERS_READ = "orders-read"  # job orders, what became of them, and what the station can do
+    ORDERS_WRITE = "orders-write"  # store and change job orders, and command them

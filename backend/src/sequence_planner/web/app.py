@@ -26,12 +26,16 @@ from sequence_planner.web import (
     alarms,
     attachments,
     audit,
+    capabilities,
     control_routes,
     corrections,
     draft_pipelines,
     errands,
+    events,
     health,
     history,
+    job_orders,
+    job_responses,
     keys,
     language,
     model,
@@ -59,6 +63,7 @@ from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.looking import FlowsShow, NetworkShow
 from sequence_planner.web.openapi_document import describe
 from sequence_planner.web.openapi_refusals import PROBLEM_RESPONSES
+from sequence_planner.web.order_desk import OrderDesk
 from sequence_planner.web.problems import LastResort
 from sequence_planner.web.security_headers import SecurityHeaders
 from sequence_planner.web.settings import Settings
@@ -95,6 +100,11 @@ PARTS = (
     watch_stream.router,
     audit.router,
     history.router,
+    job_orders.router,
+    job_orders.bodiless,
+    job_responses.router,
+    events.router,
+    capabilities.router,
     model.router,
     language.router,
     draft_pipelines.router,
@@ -132,6 +142,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         office = await run_in_threadpool(IdentityOffice.open, settings.database, demonstration=settings.demonstration)
         app.state.identity = office
+        app.state.order_desk = OrderDesk(controller)
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)

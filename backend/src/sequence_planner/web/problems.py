@@ -22,6 +22,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from sequence_planner.control.command_base import TextPlace
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.identity.refusal import IdentityRefused
+from sequence_planner.mes.refusal import OrderRefused
+from sequence_planner.mes.states import OrderCommand
 from sequence_planner.storage.error import StorageError
 
 LOG = structlog.get_logger(__name__)
@@ -56,6 +58,7 @@ class Problem(BaseModel):
     """Why a request was refused.
 
     `errors` is empty unless `type` is `/problems/invalid-request`, `place` null unless it is `/problems/bad-predicate`.
+    `allowed` are the commands that a job order does allow where `type` is `/problems/command-not-allowed`.
     """
 
     type: str
@@ -64,6 +67,7 @@ class Problem(BaseModel):
     detail: str
     errors: list[FieldError]
     place: TextPlace | None
+    allowed: list[OrderCommand]
 
 
 class ProblemFound(HTTPException):
@@ -85,11 +89,18 @@ def problem_response(
     *,
     errors: Sequence[FieldError] = (),
     place: TextPlace | None = None,
+    allowed: Sequence[OrderCommand] = (),
     headers: Mapping[str, str] | None = None,
 ) -> Response:
     """The answer that carries a problem."""
     problem = Problem(
-        type=f"/problems/{slug}", title=title, status=status, detail=detail, errors=list(errors), place=place
+        type=f"/problems/{slug}",
+        title=title,
+        status=status,
+        detail=detail,
+        errors=list(errors),
+        place=place,
+        allowed=list(allowed),
     )
     # In ASCII: a name that came with the request may hold what UTF-8 cannot write, such as half a surrogate pair.
     body = json.dumps(problem.model_dump(), ensure_ascii=True)
@@ -103,6 +114,7 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(RequestValidationError, _invalid)
     app.add_exception_handler(CommandRefused, _refused)
     app.add_exception_handler(IdentityRefused, _identity_refused)
+    app.add_exception_handler(OrderRefused, _order_refused)
     app.add_exception_handler(StorageError, _storage_unavailable)
 
 
@@ -151,6 +163,11 @@ async def _identity_refused(request: Request, error: Exception) -> Response:
     if error.status == 401:
         headers["WWW-Authenticate"] = "Bearer"  # RFC 9110 wants a challenge; this one makes no browser ask by itself
     return problem_response(error.status, error.slug, error.title, error.detail, headers=headers)
+
+
+async def _order_refused(request: Request, error: Exception) -> Response:
+    assert isinstance(error, OrderRefused)
+    return problem_response(error.status, error.slug, error.title, error.detail, allowed=error.allowed)
 
 
 async def _storage_unavailable(request: Request, error: Exception) -> Response:

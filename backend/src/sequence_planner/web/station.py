@@ -58,6 +58,7 @@ class StationAnswer(Answer):
     packml: PackML
     stepping: bool
     production: Production
+    by_order: bool
     unconfirmed: bool
     undecided: dict[str, UndecidedOutputView]
     control: ControlView | None

@@ -15,6 +15,7 @@ from typing_extensions import TypedDict
 
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.alarm_view import AlarmView
+from sequence_planner.control.job_view import JobView
 from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import (
     ErrandView,
@@ -61,6 +62,8 @@ class StationChange(TypedDict, total=False):
     variables: dict[str, VariableView]
     abilities: dict[str, AbilityView]
     operations: dict[str, OperationView]
+    by_order: bool
+    jobs: dict[str, JobView]
     plan: PlanView
     errand: ErrandView | None
     last_errand: LastErrandView | None
@@ -83,6 +86,7 @@ class StationRemoval(TypedDict, total=False):
     variables: list[str]
     abilities: list[str]
     operations: list[str]
+    jobs: list[str]
     tasks: list[str]
     topics: list[str]
     overrides: list[str]

@@ -20,15 +20,16 @@ const MOST_IDS = 90;
 
 const MODE = ['production-started', 'mode-changed', 'called-off', 'stepping-changed', 'step-taken', 'errand-taken', 'errand-stopped'];
 const HAND = ['corrected', 'confirmed', 'forced', 'force-released', 'service-changed'];
+const JOBS = ['by-order-changed', 'job-taken', 'job-commanded'];
 const WORK = ['started', 'ended', 'activated', 'completed', 'called_off', 'given_up'];
 
 /** Of which kinds the records are, or which parts they have; and whether acts of people are among them. */
 const CHOICES: Record<Kind, { readonly kinds: readonly string[]; readonly parts: readonly string[]; readonly acts: boolean }> = {
-	note: { kinds: ['begun', 'alarm', 'unanswered', ...MODE, ...HAND], parts: [...WORK, 'plan'], acts: true },
+	note: { kinds: ['begun', 'alarm', 'unanswered', ...MODE, ...HAND, ...JOBS], parts: [...WORK, 'plan'], acts: true },
 	people: { kinds: [], parts: [], acts: true },
 	mode: { kinds: ['begun', ...MODE], parts: ['mode'], acts: false },
 	plan: { kinds: ['unanswered', 'explained'], parts: ['plan'], acts: false },
-	work: { kinds: [], parts: WORK, acts: false },
+	work: { kinds: JOBS, parts: WORK, acts: false },
 	hand: { kinds: HAND, parts: [], acts: false },
 	alarm: { kinds: ['alarm'], parts: [], acts: false },
 	controller: { kinds: ['begun'], parts: [], acts: false },

@@ -42,6 +42,24 @@ test('what a person did says who and why', () => {
 	);
 });
 
+test('a job says what became of it', () => {
+	expect(said('job-taken', { what: { job: '4711', title: 'Engine', work_master: 'engine', by: 'MES' } })).toEqual([
+		'Job taken',
+		'Engine',
+		'MES',
+		'',
+		''
+	]);
+	expect(said('job-commanded', { what: { job: '4711', act: 'stop', by: 'Eva', why: 'late' } })).toEqual([
+		'Job to be stopped',
+		'4711',
+		'Eva',
+		'late',
+		''
+	]);
+	expect(said('by-order-changed', { what: { on: true, by: 'Eva', why: '' } })).toEqual(['Work by order', 'on', 'Eva', '', '']);
+});
+
 test('an answer of the planner says what came of it', () => {
 	const answer = { verdict: 'found', plan: { ticks: [{ starts: ['a', 'b'] }, { starts: [] }] } };
 	expect(said('answered', { what: { answer } })).toEqual(['Planner answered', '', '', '', '2 starts']);

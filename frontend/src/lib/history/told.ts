@@ -83,6 +83,16 @@ export function told(record: Tellable, names: Names): Told {
 		}
 		case 'errand-stopped':
 			return { ...nothing, what: words.errandStopped };
+		case 'by-order-changed':
+			return { ...nothing, what: words.byOrder, on: what['on'] === true ? words.on : words.off };
+		case 'job-taken':
+			return { ...nothing, what: words.jobTaken, on: textOf(what['title']) || textOf(what['job']) };
+		case 'jobs-sequenced':
+			return { ...nothing, what: words.jobsSequenced };
+		case 'job-commanded':
+			return { ...nothing, what: words.jobTold[textOf(what['act'])] ?? '', on: textOf(what['job']) };
+		case 'job-forgotten':
+			return { ...nothing, what: words.jobForgotten, on: textOf(what['job']) };
 		case 'alarm':
 			return { ...nothing, what: words.alarm(textOf(what['event'])), on: textOf(what['text']), outcome: textOf(what['priority']) };
 		case 'alarms-aside':

@@ -11,7 +11,9 @@ const active: Operation = {
 	goal: 'b == tightened',
 	precondition: 'b == placed',
 	left_out: false,
-	repeat: true
+	repeat: true,
+	for_jobs: false,
+	job: null
 };
 
 describe('the page speaks of a restart', () => {

@@ -90,6 +90,8 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		variables: {},
 		abilities: {},
 		operations: {},
+		by_order: false,
+		jobs: {},
 		plan: PLAN,
 		errand: null,
 		last_errand: null,

@@ -66,10 +66,11 @@ class Consequences:
             for name, declared in automaton.variables.items()
             if declared.resource in resources and execution.state[name] is None
         }
+        idle = execution.conduct.idle_operations(automaton)
         titles = [
             f"“{operation.title}”"
             for name, operation in automaton.operations.items()
-            if name not in execution.conduct.idle_operations
+            if name not in idle
             and evaluate(operation.precondition, execution.state) is None
             and unknown.intersection(_read(automaton, variables(operation.precondition)))
         ]

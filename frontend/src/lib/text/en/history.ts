@@ -96,6 +96,16 @@ export const history = {
 		released: 'Force released',
 		errand: 'Plan of a person taken',
 		errandStopped: 'Plan of a person stopped',
+		byOrder: 'Work by order',
+		jobTaken: 'Job taken',
+		jobsSequenced: 'Order between jobs',
+		jobTold: {
+			pause: 'Job paused',
+			resume: 'Job resumed',
+			stop: 'Job to be stopped',
+			abort: 'Job aborted'
+		} as Readonly<Record<string, string>>,
+		jobForgotten: 'Job put away',
 		alarm: (event: string): string => `Alarm ${event}`,
 		aside: 'Alarms set aside written down',
 		beliefs: 'Estimates written down',

@@ -77,7 +77,8 @@ export const operate = {
 			written: 'Condition of the model',
 			unpublished: 'Command on its way',
 			supervisor: 'Kept back by the supervisor',
-			plan: 'Plan'
+			plan: 'Plan',
+			order: 'Order'
 		} as Readonly<Record<string, string>>,
 		untilExecuting: (title: string): string => `waits until ${title} is executing`,
 		untilNotExecuting: (title: string): string => `waits until ${title} is not executing`,
@@ -111,6 +112,12 @@ export const operate = {
 		completed: (n: number): string => `${n}× completed`,
 		once: 'done once: active again after a reset',
 		out: 'out of service',
+		asked: {
+			none: (): string => 'no job asks for it',
+			later: (job: string): string => `later in ${job}`,
+			now: (job: string): string => `for ${job}`,
+			done: (job: string): string => `done for ${job}`
+		} as Readonly<Record<'none' | 'later' | 'now' | 'done', (job: string) => string>>,
 		leftOut: 'left out of the plan'
 	},
 	resources: {

@@ -96,6 +96,16 @@ export const history: Text['history'] = {
 		released: 'Tvång hävt',
 		errand: 'En människas plan antogs',
 		errandStopped: 'En människas plan stoppades',
+		byOrder: 'Arbete på order',
+		jobTaken: 'Jobb antaget',
+		jobsSequenced: 'Ordning mellan jobb',
+		jobTold: {
+			pause: 'Jobb pausat',
+			resume: 'Jobb återupptaget',
+			stop: 'Jobb ska stoppas',
+			abort: 'Jobb avbrutet'
+		},
+		jobForgotten: 'Jobb undanlagt',
 		alarm: (event) => `Larm: ${event}`,
 		aside: 'Undanlagda larm skrevs ner',
 		beliefs: 'Skattade värden skrevs ner',

@@ -76,7 +76,8 @@ export const operate: Text['operate'] = {
 			written: 'Villkor i modellen',
 			unpublished: 'Kommando på väg',
 			supervisor: 'Hålls tillbaka av övervakaren',
-			plan: 'Plan'
+			plan: 'Plan',
+			order: 'Order'
 		},
 		untilExecuting: (title) => `väntar tills ${title} pågår`,
 		untilNotExecuting: (title) => `väntar tills ${title} inte pågår`,
@@ -110,6 +111,12 @@ export const operate: Text['operate'] = {
 		completed: (n) => `${n}× slutförd`,
 		once: 'utförs en gång: aktiv igen efter återställning',
 		out: 'ur drift',
+		asked: {
+			none: () => 'inget jobb kräver den',
+			later: (job) => `senare i ${job}`,
+			now: (job) => `för ${job}`,
+			done: (job) => `klar för ${job}`
+		},
 		leftOut: 'utanför planen'
 	},
 	resources: {

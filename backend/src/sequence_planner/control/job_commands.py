@@ -1,0 +1,105 @@
+"""What is asked of a station that works by order: which jobs it takes, in which order, and how they go on."""
+
+from __future__ import annotations
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from sequence_planner.actor import ActorKind
+from sequence_planner.control.command_base import CommandBase
+from sequence_planner.journal.entry import LONGEST_REASON
+
+JobId = Annotated[str, Field(pattern=r"^[A-Za-z0-9._-]{1,64}$")]
+Operation = Annotated[str, Field(min_length=1, max_length=400)]
+_NO_CONTROL = (ActorKind.KEY, ActorKind.SYSTEM)  # orders come from other systems, which never are in control
+
+
+class OrderCommand(CommandBase):
+    """A command about jobs. Only a person has to be in control for it."""
+
+    @property
+    def needs_control(self) -> bool:
+        """A job moves devices; it goes on in the mode that a person has chosen."""
+        return self.actor.kind not in _NO_CONTROL
+
+
+class TakeJob(OrderCommand):
+    """Work a job of a work master. Asking for it again changes nothing."""
+
+    kind: Literal["take-job"] = "take-job"
+    job: JobId
+    title: str = Field(min_length=1, max_length=200)
+    work_master: str = Field(min_length=1, max_length=400)
+
+    @property
+    def subject(self) -> str:
+        """The job."""
+        return f"job {self.job}"
+
+
+class JobOperation(BaseModel):
+    """An operation of a job."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    job: JobId
+    operation: Operation
+
+
+class JobWait(JobOperation):
+    """It is not eligible before the operations it waits `for` are completed, or their jobs are over."""
+
+    for_: Annotated[list[JobOperation], Field(alias="for", max_length=1000)]
+    model_config = ConfigDict(frozen=True, extra="forbid", validate_by_name=True, serialize_by_alias=True)
+
+
+class SequenceJobs(OrderCommand):
+    """The order between operations of different jobs, in place of what was said before.
+
+    What it says of jobs that are not under way, and of operations that they do not have, is ignored.
+    """
+
+    kind: Literal["sequence-jobs"] = "sequence-jobs"
+    waits: list[JobWait] = Field(max_length=10_000)
+
+
+class CommandJob(OrderCommand):
+    """A job is paused, resumed, stopped once what is active is completed, or aborted at once."""
+
+    kind: Literal["command-job"] = "command-job"
+    job: JobId
+    what: Literal["pause", "resume", "stop", "abort"]
+
+    @property
+    def needs_control(self) -> bool:
+        """To go on needs it; anybody who may act may keep a job from going on."""
+        return self.what == "resume" and super().needs_control
+
+    @property
+    def subject(self) -> str:
+        """The job."""
+        return f"job {self.job}"
+
+
+class ForgetJob(OrderCommand):
+    """A job that has ended is shown no longer: whoever ordered it knows how it ended."""
+
+    kind: Literal["forget-job"] = "forget-job"
+    job: JobId
+
+    @property
+    def subject(self) -> str:
+        """The job."""
+        return f"job {self.job}"
+
+
+class SetByOrder(CommandBase):
+    """With `on`, the operations of work masters are active for jobs only; else whenever their preconditions hold."""
+
+    kind: Literal["work-by-order"] = "work-by-order"
+    for_control: ClassVar[bool] = True
+    reason: str = Field(min_length=1, max_length=LONGEST_REASON)
+    on: bool
+
+
+JobCommand = TakeJob | SequenceJobs | CommandJob | ForgetJob | SetByOrder

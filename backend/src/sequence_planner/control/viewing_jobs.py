@@ -1,0 +1,102 @@
+"""What is shown of jobs, and in words what keeps them and their operations from going on."""
+
+from __future__ import annotations
+
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.hindrances import of_station
+from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
+from sequence_planner.control.jobs import Job
+from sequence_planner.control.moment import Moment
+
+
+def job_views(execution: Execution) -> dict[str, JobView]:
+    """Each job by its id, in the order in which they were taken."""
+    return {job.id: _view(execution, job) for job in execution.conduct.jobs.taken}
+
+
+def waits_for(execution: Execution, job: Job) -> list[str]:
+    """What keeps a job as a whole from going on."""
+    if job.state is JobState.PAUSED:
+        return ["the job to be resumed"]
+    if job.state is JobState.WAITING:
+        return list(execution.keeps_from_beginning(job))
+    if job.state is JobState.RUNNING:
+        errand = execution.errand
+        carried_out = [] if errand is None else [f"the end of what is carried out: {errand.title}"]
+        return [*(each.text for each in of_station(execution)), *carried_out]
+    return []
+
+
+def awaited_steps(execution: Execution, job: Job, operation: str) -> list[str]:
+    """The operations that have to be completed before this one of the job; those of other jobs as `job/operation`."""
+    others = execution.conduct.jobs.awaited(job, operation)
+    return [*sorted(job.after(operation, execution.automaton)), *(f"{id_}/{name}" for id_, name in sorted(others))]
+
+
+def why_idle(execution: Execution, operation: str) -> str | None:
+    """What has to come before a job asks for an operation; None where one does, or none has to."""
+    jobs, automaton = execution.conduct.jobs, execution.automaton
+    if not jobs.by_order or operation not in automaton.job_operations:
+        return None
+    job = jobs.having(operation, automaton)
+    if job is None:
+        return "a job that asks for it: the station works by order, and no job asks for it"
+    if operation in jobs.eligible(job, automaton):
+        return None
+    if operation in job.completed:
+        return f"another job that asks for it: for {job.title} it is completed"
+    if job.finishing is not None:
+        return f"another job that asks for it: {job.title} is being stopped"
+    if job.state is JobState.PAUSED:
+        return f"{job.title} to be resumed"
+    if job.state is JobState.WAITING:
+        return f"{job.title} to begin, which waits for {' and '.join(waits_for(execution, job)) or 'the next tick'}"
+    before = [_titled(execution, each) for each in awaited_steps(execution, job, operation)]
+    return f"what comes before it for {job.title}: {', '.join(before)}"
+
+
+def _titled(execution: Execution, step: str) -> str:
+    """An operation as people know it; `4711/tighten` is that of another job."""
+    job, _, name = step.rpartition("/")
+    title = execution.automaton.operations[name].title
+    return f"{title} of job {job}" if job else title
+
+
+def _view(execution: Execution, job: Job) -> JobView:
+    master = execution.automaton.work_masters.get(job.work_master)
+    # One that ended before the model was changed can have a work master that is not there any more.
+    names = sorted(job.started.keys() | job.completed.keys()) if master is None else list(master.operations)
+    return JobView(
+        title=job.title,
+        work_master=job.work_master,
+        state=job.state,
+        stopping=job.finishing is not None and job.under_way,
+        taken=job.taken.epoch,
+        begun=_epoch(job.begun),
+        ended=_epoch(job.ended),
+        waits_for=waits_for(execution, job),
+        steps={name: _step(execution, job, name) for name in names},
+    )
+
+
+def _step(execution: Execution, job: Job, name: str) -> JobStepView:
+    state = _state(execution, job, name)
+    waiting = state is JobStepState.WAITING and job.under_way
+    return JobStepView(
+        state=state,
+        waits_for=awaited_steps(execution, job, name) if waiting else [],
+        started=_epoch(job.started.get(name)),
+        ended=_epoch(job.completed.get(name)),
+    )
+
+
+def _state(execution: Execution, job: Job, name: str) -> JobStepState:
+    if name in job.completed:
+        return JobStepState.COMPLETED
+    if name not in execution.conduct.jobs.eligible(job, execution.automaton):
+        return JobStepState.WAITING
+    return JobStepState.ACTIVE if name in execution.active else JobStepState.ELIGIBLE
+
+
+def _epoch(moment: Moment | None) -> float | None:
+    return None if moment is None else moment.epoch

@@ -1,0 +1,236 @@
+"""The orders in the database: storing, changing and reading them.
+
+Each change is one transaction: the order, the record of who did it, and the event that tells of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from typing import Final
+
+from pydantic import JsonValue
+from sqlalchemy import Connection, func, insert, select, update
+
+from sequence_planner.actor import Actor
+from sequence_planner.identity.tokens import new_id
+from sequence_planner.journal.audit import append as append_record
+from sequence_planner.journal.entry import Entry
+from sequence_planner.mes import events, responses
+from sequence_planner.mes.events import EventKind
+from sequence_planner.mes.order import JobOrder, OrderContent
+from sequence_planner.mes.refusal import OrderRefused
+from sequence_planner.mes.states import AT_ONCE, BEFORE_START, OVER, WISHES, OrderCommand, OrderState, Wish
+from sequence_planner.mes.tables import JOB_ORDERS
+
+MOST_OPEN: Final = 10_000  # orders that are not over
+
+_SHOWN = JOB_ORDERS.c.removed.is_(None)
+_OPEN = JOB_ORDERS.c.state.not_in([str(each) for each in OVER]) & _SHOWN
+_NO_WISH: Final = {"wish": None, "wished_by": None, "wished_because": None}
+_GRANTED: Final = {
+    Wish.PAUSE: (OrderState.INTERRUPTED, EventKind.INTERRUPTED),
+    Wish.RESUME: (OrderState.RUNNING, EventKind.RUNNING),
+}
+_EVENTS: Final = {
+    OrderCommand.START: EventKind.ALLOWED,
+    OrderCommand.REVOKE_START: EventKind.REVOKED,
+    OrderCommand.ABORT: EventKind.ABORTED,
+    OrderCommand.CANCEL: EventKind.CANCELLED,
+    OrderCommand.CLEAR: EventKind.CLEARED,
+}
+
+
+def store(
+    connection: Connection, content: OrderContent, by: Actor, now: float, *, id: str | None = None, start: bool
+) -> JobOrder:
+    """A new order, which is allowed to start at once with `start`; without an `id` it is given one.
+
+    Raises `OrderRefused`: `job-order-exists` (409) for an id that was used before, `too-many-job-orders` (409).
+    """
+    if id is not None and find(connection, id) is not None:
+        detail = f"There is a job order {id} already, or there was. Every order has an id of its own."
+        raise OrderRefused("job-order-exists", "There is such a job order", detail)
+    if count_open(connection) >= MOST_OPEN:
+        detail = f"The station holds {MOST_OPEN} orders that are not over. Try again when some are."
+        raise OrderRefused("too-many-job-orders", "There are too many job orders", detail)
+    last: int | None = connection.execute(select(func.max(JOB_ORDERS.c.number))).scalar_one()
+    state = OrderState.ALLOWED_TO_START if start else OrderState.NOT_ALLOWED_TO_START
+    id = id or new_id()
+    row = {
+        **content.model_dump(),
+        "number": (last or 0) + 1,
+        "id": id,
+        "state": state.value,
+        "revision": 1,
+        "stored": now,
+        "stored_by": by.name,
+        "changed": now,
+    }
+    connection.execute(insert(JOB_ORDERS), row)
+    told = {**content.model_dump(mode="json"), "state": state.value}
+    _record(connection, by, "job-order-stored", id, now, told)
+    events.append(connection, EventKind.STORED, id, now, told)
+    return get(connection, id)
+
+
+def change(connection: Connection, id: str, revision: int, content: OrderContent, by: Actor, now: float) -> JobOrder:
+    """Let an order be of another content, before the station works on it.
+
+    Raises `OrderRefused`: `no-job-order` (404), `job-order-changed` (412) when by now it has another revision,
+    `job-order-started` (409).
+    """
+    order = get(connection, id)
+    if order.revision != revision:
+        detail = f"Somebody or the station has changed it since: it has the revision {order.revision}. Read it again."
+        raise OrderRefused("job-order-changed", "The job order has changed", detail, 412)
+    if order.state not in BEFORE_START or order.handed_over is not None:
+        detail = f"It is {order.state.value}: an order can be changed until the station works on it."
+        raise OrderRefused("job-order-started", "The job order has started", detail)
+    told = content.model_dump(mode="json")
+    changed = _set(connection, order, now, content.model_dump())
+    _record(connection, by, "job-order-updated", id, now, told)
+    events.append(connection, EventKind.UPDATED, id, now, {**told, "state": order.state.value})
+    return changed
+
+
+def command(
+    connection: Connection, id: str, given: OrderCommand, by: Actor, reason: str | None, now: float
+) -> JobOrder:
+    """Do what is asked of an order; what the station has to do is noted as its wish.
+
+    Raises `OrderRefused`: `no-job-order` (404), and `command-not-allowed` (409) with those that are.
+    """
+    order = get(connection, id)
+    if given not in order.allowed:
+        able = ", ".join(order.allowed) or "nothing"
+        wish = "" if order.wish is None else f", and the station is to {order.wish} it"
+        detail = f"The order is {order.state.value}{wish}: it allows {able}."
+        raise OrderRefused("command-not-allowed", "The command is not allowed", detail, allowed=order.allowed)
+    _record(connection, by, f"job-order-{_dashed(given)}", id, now, {"state": order.state.value}, reason)
+    if order.is_at_station:
+        wished = {"wish": WISHES[given].value, "wished_by": by.model_dump_json(), "wished_because": reason}
+        return _set(connection, order, now, wished)
+    if given in (OrderCommand.CANCEL, OrderCommand.CLEAR):
+        changed = _set(connection, order, now, {"removed": now})
+    else:
+        state = AT_ONCE[given]
+        changed = _set(connection, order, now, {"state": state.value, "ended": now if state in OVER else None})
+    told: dict[str, JsonValue] = {"state": changed.state.value, "by": by.name, "reason": reason}
+    if changed.is_over and not order.is_over:
+        told["response"] = responses.write(connection, responses.nothing_made(changed), now)
+    events.append(connection, _EVENTS[given], id, now, told)
+    return changed
+
+
+def hand_over(connection: Connection, order: JobOrder, now: float) -> JobOrder | None:
+    """Note that the station is about to be given an order; None if by now that may not start any more."""
+    current = find(connection, order.id)
+    if current is None or current.state is not OrderState.ALLOWED_TO_START or current.removed is not None:
+        return None
+    return current if current.handed_over is not None else _set(connection, current, now, {"handed_over": now})
+
+
+def take_back(connection: Connection, order: JobOrder, now: float) -> JobOrder | None:
+    """The station has refused an order: it waits again, or is aborted if that was wished for meanwhile."""
+    current = find(connection, order.id)
+    if current is None or current.handed_over is None or current.state is not OrderState.ALLOWED_TO_START:
+        return None
+    if current.wish is None:
+        return _set(connection, current, now, {"handed_over": None})
+    over = {**_NO_WISH, "handed_over": None, "state": OrderState.ABORTED.value, "ended": now}
+    changed = _set(connection, current, now, over)
+    response = responses.write(connection, responses.nothing_made(changed), now)
+    told: dict[str, JsonValue] = {"state": changed.state.value, "reason": current.wished_because, "response": response}
+    events.append(connection, EventKind.ABORTED, current.id, now, told)
+    return changed
+
+
+def granted(connection: Connection, order: JobOrder, now: float) -> JobOrder | None:
+    """The station has paused or resumed an order, as was wished for; None if by now that is wished for no more."""
+    current = find(connection, order.id)
+    if current is None or current.is_over or current.wish is None or current.wish is not order.wish:
+        return None
+    state, kind = _GRANTED[current.wish]
+    changed = _set(connection, current, now, {**_NO_WISH, "state": state.value})
+    told: dict[str, JsonValue] = {"state": state.value, "reason": current.wished_because}
+    events.append(connection, kind, order.id, now, told)
+    return changed
+
+
+def refused(connection: Connection, order: JobOrder, now: float) -> None:
+    """The station does not do what was wished for."""
+    current = find(connection, order.id)
+    if current is not None and not current.is_over and current.wish is order.wish:
+        _set(connection, current, now, _NO_WISH)
+
+
+def become(
+    connection: Connection, order: JobOrder, state: OrderState, now: float, values: Mapping[str, object]
+) -> JobOrder:
+    """Note what has become of an order, without an event."""
+    return _set(connection, order, now, {"state": state.value, **values})
+
+
+def get(connection: Connection, id: str) -> JobOrder:
+    """The order with this id. Raises `OrderRefused` (`no-job-order`, 404)."""
+    order = find(connection, id)
+    if order is None or order.removed is not None:
+        raise OrderRefused("no-job-order", "There is no such job order", "There is no job order with this id.", 404)
+    return order
+
+
+def page(connection: Connection, state: OrderState | None, after: int, limit: int) -> list[JobOrder]:
+    """Up to `limit` orders with numbers above `after`, as they were stored; only those in a state, if one is named."""
+    chosen = select(JOB_ORDERS).where(_SHOWN, JOB_ORDERS.c.number > after).order_by(JOB_ORDERS.c.number).limit(limit)
+    if state is not None:
+        chosen = chosen.where(JOB_ORDERS.c.state == state.value)
+    return [JobOrder.of(row) for row in connection.execute(chosen).mappings()]
+
+
+def open_orders(connection: Connection) -> list[JobOrder]:
+    """All orders that are not over, as they were stored."""
+    chosen = select(JOB_ORDERS).where(_OPEN).order_by(JOB_ORDERS.c.number)
+    return [JobOrder.of(row) for row in connection.execute(chosen).mappings()]
+
+
+def those_over(connection: Connection, ids: Collection[str]) -> set[str]:
+    """Of these orders, those that are over."""
+    over = JOB_ORDERS.c.state.in_([str(each) for each in OVER])
+    return set(connection.execute(select(JOB_ORDERS.c.id).where(JOB_ORDERS.c.id.in_(ids), over)).scalars())
+
+
+def count_open(connection: Connection) -> int:
+    """How many orders are not over."""
+    found: int = connection.execute(select(func.count()).select_from(JOB_ORDERS).where(_OPEN)).scalar_one()
+    return found
+
+
+def find(connection: Connection, id: str) -> JobOrder | None:
+    """The order with this id, be it removed or not; None if there never was one."""
+    row = connection.execute(select(JOB_ORDERS).where(JOB_ORDERS.c.id == id)).mappings().first()
+    return None if row is None else JobOrder.of(row)
+
+
+def _set(connection: Connection, order: JobOrder, now: float, values: Mapping[str, object]) -> JobOrder:
+    changed = {**values, "revision": order.revision + 1, "changed": now}
+    connection.execute(update(JOB_ORDERS).where(JOB_ORDERS.c.id == order.id).values(changed))
+    found = find(connection, order.id)
+    assert found is not None
+    return found
+
+
+def _dashed(given: OrderCommand) -> str:
+    return "".join(f"-{letter.lower()}" if letter.isupper() else letter for letter in given.value).lstrip("-")
+
+
+def _record(
+    connection: Connection,
+    by: Actor,
+    action: str,
+    id: str,
+    now: float,
+    details: Mapping[str, JsonValue],
+    reason: str | None = None,
+) -> None:
+    entry = Entry(actor=by, action=action, subject=f"job order {id}", details=dict(details), reason=reason)
+    append_record(connection, entry, now)

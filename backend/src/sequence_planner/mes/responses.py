@@ -1,0 +1,153 @@
+"""What was made of an order: operations and abilities with their times, values, deviations and corrections.
+
+A response is written once, when its order is over, and never changes. `record` is always the number of the record of
+the run's journal that says so, so that responses can be held against the journal.
+"""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import Final
+
+from pydantic import BaseModel, ConfigDict, JsonValue
+from sqlalchemy import Connection, func, insert, select
+
+from sequence_planner.control.view_part import Value
+from sequence_planner.mes.order import JobOrder
+from sequence_planner.mes.states import OrderState
+from sequence_planner.mes.tables import JOB_ORDERS, JOB_RESPONSES
+
+_FORM: Final = ConfigDict(frozen=True, extra="forbid")
+
+
+class Outcome(StrEnum):
+    """How an order ended."""
+
+    COMPLETED = "completed"
+    STOPPED = "stopped"  # not everything that was ordered was made
+    ABORTED = "aborted"
+
+
+class OperationMade(BaseModel):
+    """An operation of the order. Where its goal held already it was never `started`; without `ended` it is not done.
+
+    `actuals` are the values that its goal depends on, as they were when it was completed.
+    """
+
+    model_config = _FORM
+    operation: str
+    started: float | None = None
+    ended: float | None = None
+    record: int | None = None  # that tells of its end, or else of its start
+    actuals: dict[str, Value | None] = {}
+
+
+class AbilityMade(BaseModel):
+    """A start of an ability for the order. Without `ended` it still ran when the order was over."""
+
+    model_config = _FORM
+    ability: str
+    started: float
+    ended: float | None = None
+    record: int  # that tells of its start
+    called_off: bool = False  # it was ended by its cancel actions
+
+
+class Deviation(BaseModel):
+    """What did not go as planned while the order was worked: `kind` is that of the record.
+
+    Several orders that were worked at the same time tell of the same one.
+    """
+
+    model_config = _FORM
+    time: float
+    record: int
+    kind: str
+    content: dict[str, JsonValue]
+
+
+class CorrectionMade(BaseModel):
+    """Values that a person has set while the order was worked, who and why."""
+
+    model_config = _FORM
+    time: float
+    record: int
+    values: dict[str, Value]
+    by: str
+    why: str
+
+
+class JobResponse(BaseModel):
+    """What was made of an order. Times are in seconds since the epoch."""
+
+    model_config = _FORM
+    job_order: str
+    work_master: str
+    description: str
+    outcome: Outcome
+    began: float | None  # when the station began to work on it
+    ended: float
+    operations: list[OperationMade]
+    abilities: list[AbilityMade]
+    deviations: list[Deviation]
+    corrections: list[CorrectionMade]
+
+
+class StoredResponse(JobResponse):
+    """A response in its place; `number` counts them without gaps."""
+
+    number: int
+
+
+def nothing_made(order: JobOrder) -> JobResponse:
+    """The response to an order that was aborted before the station worked on it."""
+    assert order.state is OrderState.ABORTED
+    assert order.ended is not None
+    return JobResponse(
+        job_order=order.id,
+        work_master=order.work_master,
+        description=order.description,
+        outcome=Outcome.ABORTED,
+        began=None,
+        ended=order.ended,
+        operations=[],
+        abilities=[],
+        deviations=[],
+        corrections=[],
+    )
+
+
+def write(connection: Connection, response: JobResponse, now: float) -> int:
+    """Keep a response, within a `writing()` block; its number."""
+    last: int | None = connection.execute(select(func.max(JOB_RESPONSES.c.number))).scalar_one()
+    number = (last or 0) + 1
+    row = {"number": number, "job_order": response.job_order, "time": now, "content": response.model_dump_json()}
+    connection.execute(insert(JOB_RESPONSES), row)
+    return number
+
+
+def get(connection: Connection, job_order: str) -> StoredResponse | None:
+    """The response to an order; None where there is none, or the order was cleared."""
+    return next(iter(_chosen(connection, 0, 1, job_order)), None)
+
+
+def page(connection: Connection, after: int, limit: int) -> list[StoredResponse]:
+    """Up to `limit` responses with numbers above `after`, the oldest first; those of cleared orders are left out."""
+    return _chosen(connection, after, limit, None)
+
+
+def _chosen(connection: Connection, after: int, limit: int, job_order: str | None) -> list[StoredResponse]:
+    chosen = (
+        select(JOB_RESPONSES.c.number, JOB_RESPONSES.c.content)
+        .join(JOB_ORDERS, JOB_ORDERS.c.id == JOB_RESPONSES.c.job_order)
+        .where(JOB_RESPONSES.c.number > after, JOB_ORDERS.c.removed.is_(None))
+        .order_by(JOB_RESPONSES.c.number)
+        .limit(limit)
+    )
+    if job_order is not None:
+        chosen = chosen.where(JOB_RESPONSES.c.job_order == job_order)
+    found = []
+    for number, content in connection.execute(chosen):
+        response = JobResponse.model_validate_json(content)
+        found.append(StoredResponse(**dict(response), number=number))
+    return found

@@ -1,0 +1,28 @@
+import { expect, test } from 'vitest';
+import type { Job, Operation, StationView } from '#lib/contract.ts';
+import { view } from '#lib/testing/view.ts';
+import { askedFor } from './asked.ts';
+
+type StepState = Job['steps'][string]['state'];
+
+const operation = { for_jobs: true, job: '4711' } as Operation;
+
+function asked(over: Partial<Operation> = {}, state: StepState = 'waiting', by_order = true): unknown {
+	const steps = { tighten: { state, waits_for: [], started: null, ended: null } };
+	const jobs: StationView['jobs'] = { '4711': { title: 'Engine', steps } as unknown as Job };
+	return askedFor(view({ by_order, jobs, operations: { tighten: { ...operation, ...over } } }), 'tighten');
+}
+
+test('an operation of a job says whether it is its turn', () => {
+	expect(asked()).toEqual({ how: 'later', job: 'Engine' });
+	expect(asked({}, 'eligible')).toEqual({ how: 'now', job: 'Engine' });
+	expect(asked({}, 'active')).toEqual({ how: 'now', job: 'Engine' });
+	expect(asked({}, 'completed')).toEqual({ how: 'done', job: 'Engine' });
+});
+
+test('without a job it says so, and where none is needed it says nothing', () => {
+	expect(asked({ job: null })).toEqual({ how: 'none', job: '' });
+	expect(asked({ for_jobs: false, job: null })).toBeNull();
+	expect(asked({}, 'waiting', false)).toBeNull();
+	expect(askedFor(null, 'tighten')).toBeNull();
+});
