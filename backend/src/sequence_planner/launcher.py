@@ -18,12 +18,13 @@ import tempfile
 import threading
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from sequence_planner.announcement import announced, answers, first_start
 from sequence_planner.control.unix_socket import LONGEST_PATH
 from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED
+from sequence_planner.mes.webhooks.targets import Targets
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.web.binding import check_demonstration, check_free
@@ -53,6 +54,7 @@ class Launch:
     emulator: bool
     start: bool
     emulator_speed: float
+    webhooks: Targets = field(default_factory=Targets)
 
 
 class Part:
@@ -218,6 +220,8 @@ class _Launcher:
         self._controller = Part("controller", _command("controller", *controller), database, has_spare=True)
         server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
         server += ["--demonstration"] if request.database is None else []
+        server += [f"--webhook-host={host}" for host in request.webhooks.written]
+        server += ["--webhook-loopback"] if request.webhooks.loopback else []
         self._server = Part("server", _command("server", *server, *_options(request.endpoint)), database)
         self._emulator = Part("emulated devices", _command("emulate", model, *speed, *transport))
 

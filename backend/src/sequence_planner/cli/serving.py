@@ -16,6 +16,7 @@ from sequence_planner.cli.parts import (
     begin,
     prepare,
 )
+from sequence_planner.mes.webhooks.targets import TargetRefused, Targets, host_and_port
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
@@ -39,6 +40,18 @@ Proxies = Annotated[
 Names = Annotated[
     list[str] | None,
     typer.Option("--name", metavar="HOST[:PORT]", help="A name by which people open the page; can be repeated."),
+]
+WebhookHosts = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--webhook-host",
+        metavar="HOST[:PORT]",
+        help="A host that webhooks may go to, by HTTPS and not within a private network; can be repeated.",
+    ),
+]
+WebhookLoopback = Annotated[
+    bool,
+    typer.Option("--webhook-loopback", help="Such a host may be this machine too, and be reached by HTTP there."),
 ]
 Demonstration = Annotated[
     bool,
@@ -64,6 +77,8 @@ def run(
     start: Annotated[bool, typer.Option("--start", help="Start production at once; only with --emulator.")] = False,
     emulator_speed: Annotated[float, typer.Option(min=0.1, max=100, help="Emulated devices go so much faster.")] = 1.0,
     demonstration: Demonstration = False,
+    webhook_host: WebhookHosts = None,
+    webhook_loopback: WebhookLoopback = False,
 ) -> None:
     """Run a station: controller, server and page."""
     from sequence_planner.launcher import Launch, launch  # noqa: PLC0415
@@ -82,10 +97,12 @@ def run(
         refuse("--demonstration is for emulated devices, which nobody has to sign in for: give --emulator, or leave it")
     if demonstration and database is not None:
         refuse(f"--demonstration has a database of its own, forgotten at the end: leave --database and {DATABASE} out")
+    webhooks = _targets(webhook_host, webhook_loopback)
     prepare(model)
     url = None if demonstration else database_url(model, database)
     try:
-        raise typer.Exit(launch(Launch(model, endpoint, url, transport, rosbridge, emulator, start, emulator_speed)))
+        asked = Launch(model, endpoint, url, transport, rosbridge, emulator, start, emulator_speed, webhooks)
+        raise typer.Exit(launch(asked))
     except (SettingsError, StorageError) as error:
         refuse(str(error))
 
@@ -103,6 +120,8 @@ def server(
     name: Names = None,
     database: DatabaseOption = None,
     demonstration: Demonstration = False,
+    webhook_host: WebhookHosts = None,
+    webhook_loopback: WebhookLoopback = False,
     launched: Launched = False,
 ) -> None:
     """Run the server alone; `run` does this."""
@@ -123,5 +142,13 @@ def server(
             model=model,
             transport=transport,
             demonstration=demonstration,
+            webhooks=_targets(webhook_host, webhook_loopback),
         )
     )
+
+
+def _targets(hosts: list[str] | None, loopback: bool) -> Targets:
+    try:
+        return Targets(frozenset(map(host_and_port, hosts or ())), loopback)
+    except TargetRefused as refused:
+        refuse(f"--webhook-host: {refused}")

@@ -26,3 +26,4 @@ class Scope(StrEnum):
     AUDIT = "audit"  # the record of who did what
     ORDERS_READ = "orders-read"  # job orders, what became of them, and what the station can do
     ORDERS_WRITE = "orders-write"  # store and change job orders, and command them
+    WEBHOOKS = "webhooks"  # say who is told of events, and where

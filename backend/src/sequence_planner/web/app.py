@@ -19,6 +19,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.middleware.gzip import GZipMiddleware
 
 from sequence_planner.history.process import HistoryProcess
+from sequence_planner.mes.webhooks.deliverer import Deliverer
+from sequence_planner.mes.webhooks.sending import Sender
 from sequence_planner.storage.location import revisions_folder
 from sequence_planner.web import (
     abilities,
@@ -51,6 +53,7 @@ from sequence_planner.web import (
     stream,
     watch_stream,
     watches,
+    webhooks,
     why_not,
 )
 from sequence_planner.web.access import check_declared
@@ -98,6 +101,8 @@ PARTS = (
     keys.bodiless,
     watches.router,
     watch_stream.router,
+    webhooks.router,
+    webhooks.bodiless,
     audit.router,
     history.router,
     job_orders.router,
@@ -146,7 +151,8 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
-        parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller))
+        deliverer = Deliverer(office.database, Sender(settings.webhooks))
+        parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller), deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
         if shop is not None:
             running.append(asyncio.create_task(shop.read_ahead()))

@@ -8,6 +8,8 @@ from dataclasses import dataclass, field
 from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 
+from sequence_planner.mes.webhooks.targets import Targets
+
 LOCALHOST = "localhost"
 LOOPBACK_NAMES = ("127.0.0.1", LOCALHOST, "[::1]")
 NAME = re.compile(
@@ -101,6 +103,7 @@ class Settings(Endpoint):
 
     With `transport` the network is joined for what a person wants to attach, as the controller joins it. `database`
     is the URL of where identity and journal are kept. With `demonstration` one may be opened without signing in.
+    `webhooks` is where events may be sent to.
     """
 
     controller_socket: Path
@@ -110,6 +113,7 @@ class Settings(Endpoint):
     transport: str = "auto"
     demonstration: bool = False
     stream: StreamLimits = field(default_factory=StreamLimits)
+    webhooks: Targets = field(default_factory=Targets)
 
 
 def address_of(host: str) -> IPv4Address | IPv6Address | None:
