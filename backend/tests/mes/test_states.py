@@ -227,4 +227,8 @@ def orders_named(connection: Connection, id: str) -> JobOrder:
 
 
 def test_the_life_of_an_order_is_that_of_the_table(database: Database) -> None:
-    run_state_machine_as_test(lambda: Orders(database), settings=examples(10))
+    class Here(Orders):
+        def __init__(self) -> None:
+            super().__init__(database)
+
+    run_state_machine_as_test(Here, settings=examples(10))

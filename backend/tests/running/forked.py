@@ -212,18 +212,31 @@ class Hall:
         self._wire = Wire(station)
         self._durable = 0
         self._shown: list[object] = []
+        self.killed = True
         self.seen: Counter[str] = Counter()
         with contextlib.closing(Database.open(self._url)) as database:
             database.upgrade()
             self._kept = Kept(database)
 
+    def child(self, line: socket.socket, number: int) -> Child:
+        """What a life of the controller is."""
+        return Child(self._url, line, f"{self._seed}.{number}")
+
+    def heard(self, what: str, about: list[object]) -> None:
+        """It has said something that nobody here knows of."""
+
+    def goes_on(self, worked: bool) -> bool:
+        """Whether it is not time to kill it, if it has `worked` by now."""
+        return not worked
+
     def live(self, number: int, *, kill: bool = True) -> None:
         """One life of the controller. AssertionError when it does no work, or something is lost by its death."""
+        self.killed = kill
         line, theirs = socket.socketpair()
         child = os.fork()
         if child == 0:
             line.close()
-            _be_child(Child(self._url, theirs, f"{self._seed}.{number}"))
+            _be_child(self.child(theirs, number))
         theirs.close()
         try:
             how = "after work" if not kill or self._chance.random() < 0.8 else "at any moment"
@@ -256,7 +269,8 @@ class Hall:
                 if data != last or now >= due:
                     said[topic] = now + REPORT_EVERY, data
                     line.sendall(json.dumps([topic, data.hex()]).encode() + b"\n")
-            if self._take(line) and end is None:
+            worked = self._take(line)
+            if end is None and not self.goes_on(worked):
                 end = time.monotonic() + self._chance.uniform(0, UNTIL_KILLED)
 
     def _take(self, line: socket.socket) -> bool:
@@ -287,6 +301,8 @@ class Hall:
                 self._shown = about
             elif what == "seen":
                 self.seen[about[0]] += 1
+            else:
+                self.heard(what, about)
             worked = worked or what == "worked"
         return worked
 
@@ -322,10 +338,10 @@ def lives(seed: str, kills: int) -> Counter[str]:
         return hall.judged()
 
 
-def apart(seed: str, kills: int) -> Counter[str]:
-    """The same in a process of its own, which has no threads and can be forked."""
+def apart(seed: str, kills: int, what: str = "running.forked") -> Counter[str]:
+    """The same in a process of its own, which has no threads and can be forked; `what` is the module of the lives."""
     done = subprocess.run(
-        [sys.executable, "-m", "running.forked", seed, str(kills)],
+        [sys.executable, "-m", what, seed, str(kills)],
         env={**os.environ, "PYTHONPATH": ":".join(sys.path)},
         capture_output=True,
         text=True,
@@ -336,9 +352,14 @@ def apart(seed: str, kills: int) -> Counter[str]:
     return Counter(found)
 
 
-if __name__ == "__main__":
+def log_to_standard_error() -> None:
+    """Standard output is for what was found."""
     structlog.configure(
         wrapper_class=structlog.make_filtering_bound_logger(logging.WARNING),
         logger_factory=structlog.PrintLoggerFactory(sys.stderr),
     )
+
+
+if __name__ == "__main__":
+    log_to_standard_error()
     sys.stdout.write(json.dumps(lives(sys.argv[1], int(sys.argv[2]))) + "\n")

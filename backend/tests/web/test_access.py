@@ -99,6 +99,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "POST /api/v1/production/start": ("operator", None),
     "POST /api/v1/restart/enter": ("operator", None),
     "POST /api/v1/restart/leave": ("operator", None),
+    "PUT /api/v1/work-by-order": ("operator", None),
     "PUT /api/v1/stepping": ("engineer", None),
     "POST /api/v1/stepping/step": ("engineer", None),
     "PUT /api/v1/service/{of}/{name}": ("operator", None),

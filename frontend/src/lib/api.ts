@@ -2285,6 +2285,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/work-by-order": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        /**
+         * Set By Order
+         * @description Let operations of work masters be active for job orders only, or whenever they can be. It takes control.
+         */
+        put: operations["set_by_order_api_v1_work_by_order_put"];
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/healthz": {
         parameters: {
             query?: never;
@@ -2784,6 +2804,16 @@ export interface components {
             seconds: number;
         };
         /**
+         * ByOrderBody
+         * @description Whether the station is to work by order, and why.
+         */
+        ByOrderBody: {
+            /** On */
+            on: boolean;
+            /** Reason */
+            reason: string;
+        };
+        /**
          * CallView
          * @description A service or an action: who answers it and who asks, by node; null stands for one that does not tell its name.
          */
@@ -2803,6 +2833,8 @@ export interface components {
          *     station works on orders: it is for people there to let it.
          */
         CapabilitiesAnswer: {
+            /** By Order */
+            by_order: boolean;
             /** Equipment */
             equipment: {
                 [key: string]: components["schemas"]["EquipmentAnswer"];
@@ -11934,6 +11966,47 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    set_by_order_api_v1_work_by_order_put: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["ByOrderBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];

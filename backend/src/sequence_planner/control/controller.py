@@ -37,6 +37,7 @@ from sequence_planner.control.forcing import Forcing
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.involving import Surroundings
 from sequence_planner.control.job_desk import JobDesk
+from sequence_planner.control.kept_jobs import KeptJobs
 from sequence_planner.control.known import Known
 from sequence_planner.control.mode_desk import ModeDesk
 from sequence_planner.control.moment import Moment
@@ -96,6 +97,7 @@ class Controller:
         self._release = Release(
             self.execution, lambda: self._recorder.last, self.devices.publish, lambda: bool(commander.owed)
         )
+        self._jobs = KeptJobs(self.execution, lambda: self._recorder.last)
         self.desk = TaskDesk(automaton, station.pipelines.feeds)
         self._outside = Outside(self.execution)
         self._alarms = Alarms(self.execution, self._outside, feeds, network, commander, self._note, known)
@@ -184,7 +186,8 @@ class Controller:
         alarms = self._alarms.current(self._questions.trouble, moment)
         overrides, control = self.devices.overrides.view(moment), self._orders.in_control.view()
         doubts = Doubts(self._doubting.undecided, list(self._doubting.questions), self._corrections.last)
-        return self._viewing.view(self.desk, self.devices.commander, overrides, alarms, control, doubts, moment)
+        jobs = self._jobs.up_to(self._writer.durable)
+        return self._viewing.view(self.desk, self.devices.commander, overrides, alarms, control, doubts, jobs, moment)
 
     async def answer(self, ask: Ask) -> View:
         """What is told only when somebody asks for it. Raises `CommandRefused`."""

@@ -13,6 +13,7 @@ from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.heard import TickOutcome
+from sequence_planner.control.jobs import Jobs
 from sequence_planner.control.live_plan import Replacement
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
@@ -126,9 +127,10 @@ class Viewing:
         alarms: dict[str, AlarmView],
         control: ControlView | None,
         doubts: Doubts,
+        jobs: Jobs,
         moment: Moment,
     ) -> StationView:
-        """The whole document."""
+        """The whole document, with the `jobs` as far as they are durable."""
         execution, conduct = self._execution, self._execution.conduct
         return StationView(
             station=self._identity,
@@ -146,8 +148,8 @@ class Viewing:
             variables=self._variables(),
             abilities=self._abilities(),
             operations=self._operations(),
-            by_order=conduct.jobs.by_order,
-            jobs=job_views(execution),
+            by_order=jobs.by_order,
+            jobs=job_views(execution, jobs),
             plan=self._plan(),
             errand=errand_view(execution),
             last_errand=last_errand_view(conduct),

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.hindrances import of_station
 from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
-from sequence_planner.control.jobs import Job
+from sequence_planner.control.jobs import Job, Jobs
 from sequence_planner.control.moment import Moment
 
 
-def job_views(execution: Execution) -> dict[str, JobView]:
-    """Each job by its id, in the order in which they were taken."""
-    return {job.id: _view(execution, job) for job in execution.conduct.jobs.taken}
+def job_views(execution: Execution, jobs: Jobs | None = None) -> dict[str, JobView]:
+    """Each job by its id, in the order in which they were taken: those of the execution, or as they were before."""
+    jobs = execution.conduct.jobs if jobs is None else jobs
+    return {job.id: _view(execution, jobs, job) for job in jobs.taken}
 
 
 def waits_for(execution: Execution, job: Job) -> list[str]:
@@ -27,10 +29,10 @@ def waits_for(execution: Execution, job: Job) -> list[str]:
     return []
 
 
-def awaited_steps(execution: Execution, job: Job, operation: str) -> list[str]:
+def _awaited(jobs: Jobs, job: Job, operation: str, automaton: Automaton) -> list[str]:
     """The operations that have to be completed before this one of the job; those of other jobs as `job/operation`."""
-    others = execution.conduct.jobs.awaited(job, operation)
-    return [*sorted(job.after(operation, execution.automaton)), *(f"{id_}/{name}" for id_, name in sorted(others))]
+    others = sorted(jobs.awaited(job, operation))
+    return [*sorted(job.after(operation, automaton)), *(f"{id_}/{name}" for id_, name in others)]
 
 
 def why_idle(execution: Execution, operation: str) -> str | None:
@@ -51,7 +53,7 @@ def why_idle(execution: Execution, operation: str) -> str | None:
         return f"{job.title} to be resumed"
     if job.state is JobState.WAITING:
         return f"{job.title} to begin, which waits for {' and '.join(waits_for(execution, job)) or 'the next tick'}"
-    before = [_titled(execution, each) for each in awaited_steps(execution, job, operation)]
+    before = [_titled(execution, each) for each in _awaited(jobs, job, operation, automaton)]
     return f"what comes before it for {job.title}: {', '.join(before)}"
 
 
@@ -62,7 +64,7 @@ def _titled(execution: Execution, step: str) -> str:
     return f"{title} of job {job}" if job else title
 
 
-def _view(execution: Execution, job: Job) -> JobView:
+def _view(execution: Execution, jobs: Jobs, job: Job) -> JobView:
     master = execution.automaton.work_masters.get(job.work_master)
     # One that ended before the model was changed can have a work master that is not there any more.
     names = sorted(job.started.keys() | job.completed.keys()) if master is None else list(master.operations)
@@ -75,25 +77,25 @@ def _view(execution: Execution, job: Job) -> JobView:
         begun=_epoch(job.begun),
         ended=_epoch(job.ended),
         waits_for=waits_for(execution, job),
-        steps={name: _step(execution, job, name) for name in names},
+        steps={name: _step(execution, jobs, job, name) for name in names},
     )
 
 
-def _step(execution: Execution, job: Job, name: str) -> JobStepView:
-    state = _state(execution, job, name)
+def _step(execution: Execution, jobs: Jobs, job: Job, name: str) -> JobStepView:
+    state = _state(execution, jobs, job, name)
     waiting = state is JobStepState.WAITING and job.under_way
     return JobStepView(
         state=state,
-        waits_for=awaited_steps(execution, job, name) if waiting else [],
+        waits_for=_awaited(jobs, job, name, execution.automaton) if waiting else [],
         started=_epoch(job.started.get(name)),
         ended=_epoch(job.completed.get(name)),
     )
 
 
-def _state(execution: Execution, job: Job, name: str) -> JobStepState:
+def _state(execution: Execution, jobs: Jobs, job: Job, name: str) -> JobStepState:
     if name in job.completed:
         return JobStepState.COMPLETED
-    if name not in execution.conduct.jobs.eligible(job, execution.automaton):
+    if name not in jobs.eligible(job, execution.automaton):
         return JobStepState.WAITING
     return JobStepState.ACTIVE if name in execution.active else JobStepState.ELIGIBLE
 

@@ -147,12 +147,13 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         office = await run_in_threadpool(IdentityOffice.open, settings.database, demonstration=settings.demonstration)
         app.state.identity = office
-        app.state.order_desk = OrderDesk(controller)
+        app.state.order_desk = desk = OrderDesk(office, controller)
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
         deliverer = Deliverer(office.database, Sender(settings.webhooks))
-        parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller), deliverer)
+        shows = (controller, broadcast, network, flows, watch_show)
+        parts = (*shows, Sweeper(office, controller), desk, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
         if shop is not None:
             running.append(asyncio.create_task(shop.read_ahead()))

@@ -44,6 +44,7 @@ class CapabilitiesAnswer(BaseModel):
 
     station: str
     title: str
+    by_order: bool
     work_masters: dict[str, WorkMasterView]
     equipment: dict[str, EquipmentAnswer]
     personnel: dict[str, EquipmentAnswer]
@@ -71,6 +72,7 @@ async def capabilities(request: Request, identity: Identity, view: LiveView) -> 
     return CapabilitiesAnswer(
         station=view.station.name,
         title=view.station.title,
+        by_order=view.by_order,
         work_masters=masters.work_masters,
         equipment={name: each for name, each in resources.items() if name not in human},
         personnel={name: each for name, each in resources.items() if name in human},

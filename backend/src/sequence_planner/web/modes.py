@@ -11,6 +11,7 @@ from typing import Annotated, Literal
 from fastapi import APIRouter, Path
 from pydantic import Field, StrictBool
 
+from sequence_planner.control.job_commands import SetByOrder
 from sequence_planner.control.production_commands import (
     EnterRestart,
     LeaveRestart,
@@ -64,6 +65,13 @@ class SteppingBody(Body):
     reason: Reason = None
 
 
+class ByOrderBody(Body):
+    """Whether the station is to work by order, and why."""
+
+    on: StrictBool
+    reason: Why
+
+
 class ServiceBody(Body):
     """Whether it is to be in service, and why."""
 
@@ -113,6 +121,12 @@ async def set_stepping(body: SteppingBody, client: Controller, actor: Actor) -> 
 async def take_step(body: ReasonBody, client: Controller, actor: Actor) -> None:
     """Allow one start, as soon as there is one. It takes control."""
     await client.send(TakeStep(actor=actor, reason=body.reason))
+
+
+@router.put("/work-by-order", status_code=204, dependencies=[OPERATOR])
+async def set_by_order(body: ByOrderBody, client: Controller, actor: Actor) -> None:
+    """Let operations of work masters be active for job orders only, or whenever they can be. It takes control."""
+    await client.send(SetByOrder(actor=actor, on=body.on, reason=body.reason))
 
 
 @router.put("/service/{of}/{name}", status_code=204, dependencies=[OPERATOR], responses=refused(404))

@@ -1,0 +1,101 @@
+"""Which of the orders that may start are handed to the station now, and what the others wait for.
+
+Two orders are in each other's way when they share an operation, or a variable that the products of both bring. What is
+in the way of an order that comes before it waits for that one, so that nothing is overtaken for ever.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+
+from sequence_planner.control.view import Mode, Production, StationView
+from sequence_planner.control.work_master_view import WorkMastersView
+from sequence_planner.mes.order import JobOrder
+from sequence_planner.mes.order_of_work import OrderOfWork, order_of_work
+from sequence_planner.mes.states import OrderState
+
+UNHEARD = "the station is not heard"
+_MODES: Mapping[Mode, str] = {
+    Mode.PAUSED: "the station is paused",
+    Mode.HOLD: "the station is held",
+    Mode.RESTART: "the station is in restart mode",
+}
+
+
+@dataclass(frozen=True)
+class Queue:
+    """The orders that the station gets now, in this order, and of each other one that may start what it waits for."""
+
+    next: list[JobOrder] = field(default_factory=list)
+    waits: dict[str, list[str]] = field(default_factory=dict)
+
+
+def queue(
+    orders: Sequence[JobOrder],
+    view: StationView | None,
+    masters: WorkMastersView | None,
+    now: float,
+    sequence: OrderOfWork = order_of_work,
+) -> Queue:
+    """What comes of the orders that are not over. Without a `view` the station is not heard."""
+    found, hindered = Queue(), _station_waits(view)
+    worked = _worked(orders, view)
+    first: dict[str, str] = {}  # by work master, the title of the first that is not worked yet
+    waiting = [each for each in orders if each.state is OrderState.ALLOWED_TO_START and not each.is_at_station]
+    for order in sequence(waiting):
+        waits = [*hindered, *_own_waits(order, masters, now)]
+        if not waits and masters is not None:
+            waits = [
+                f"{title} is being worked" for title, other in worked if in_the_way(masters, order.work_master, other)
+            ] or [
+                f"{title} comes first"
+                for other, title in first.items()
+                if in_the_way(masters, order.work_master, other)
+            ]
+            first.setdefault(order.work_master, order.title)
+        if waits or masters is None:
+            found.waits[order.id] = waits or [UNHEARD]
+        else:
+            found.next.append(order)
+    return found
+
+
+def _worked(orders: Sequence[JobOrder], view: StationView | None) -> list[tuple[str, str]]:
+    """The title and the work master of each job that the station may be working on."""
+    known = {each.id for each in orders}
+    strange = {} if view is None else {id_: job for id_, job in view.jobs.items() if id_ not in known}
+    return [
+        *((each.title, each.work_master) for each in orders if each.is_at_station),
+        *((job.title, job.work_master) for job in strange.values() if not job.state.is_over),
+    ]
+
+
+def in_the_way(masters: WorkMastersView, one: str, other: str) -> bool:
+    """Whether jobs of these work masters cannot be worked at the same time."""
+    first, second = masters.work_masters.get(one), masters.work_masters.get(other)
+    if first is None or second is None:
+        return one == other
+    operations = first.operations.keys() & second.operations.keys()
+    return bool(operations) or not set(first.brought).isdisjoint(second.brought)
+
+
+def _station_waits(view: StationView | None) -> list[str]:
+    if view is None or view.production is Production.PREPARING:
+        return [UNHEARD if view is None else "the station is being prepared"]
+    waits = [] if view.by_order else ["the station works freely"]
+    if view.production is not Production.STARTED:
+        waits.append("production is not started")
+    if (mode := _MODES.get(view.mode)) is not None:
+        waits.append(mode)
+    return waits
+
+
+def _own_waits(order: JobOrder, masters: WorkMastersView | None, now: float) -> list[str]:
+    waits = []
+    if order.earliest is not None and order.earliest > now:
+        waits.append(f"not before {datetime.fromtimestamp(order.earliest, UTC):%Y-%m-%d %H:%M:%S} UTC")
+    if masters is not None and order.work_master not in masters.work_masters:
+        waits.append(f"the station has no work master {order.work_master}")
+    return waits
