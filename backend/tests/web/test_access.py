@@ -151,6 +151,7 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/job-responses/{id}": ("viewer", "orders-read"),
     "GET /api/v1/events": ("viewer", "orders-read"),
     "GET /api/v1/capabilities": ("viewer", "orders-read"),
+    "GET /api/v1/order-of-work": ("viewer", "orders-read"),
     "GET /api/v1/webhooks": ("administrator", "webhooks"),
     "POST /api/v1/webhooks": ("administrator", "webhooks"),
     "DELETE /api/v1/webhooks/{webhook}": ("administrator", "webhooks"),

@@ -1388,6 +1388,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/order-of-work": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read
+         * @description When orders are expected to be worked, in the order in which they are to begin.
+         */
+        get: operations["read_api_v1_order_of_work_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/outputs": {
         parameters: {
             query?: never;
@@ -3710,6 +3730,30 @@ export interface components {
             pipeline: string;
         };
         /**
+         * ExpectedOperation
+         * @description When an operation is expected to start and to end.
+         */
+        ExpectedOperation: {
+            /** End */
+            end: number;
+            /** Operation */
+            operation: string;
+            /** Start */
+            start: number;
+        };
+        /**
+         * ExpectedOrder
+         * @description When an order is expected to be worked, and by how many seconds it is expected to be late.
+         */
+        ExpectedOrder: {
+            /** Id */
+            id: string;
+            /** Late */
+            late: number;
+            /** Operations */
+            operations: components["schemas"]["ExpectedOperation"][];
+        };
+        /**
          * FieldError
          * @description One place in a request that is not as it must be, e.g. `body.mode`, and what was expected there.
          */
@@ -4713,6 +4757,27 @@ export interface components {
          * @enum {string}
          */
         OrderCommand: "Start" | "RevokeStart" | "Pause" | "Resume" | "Stop" | "Abort" | "Cancel" | "Clear";
+        /**
+         * OrderOfWorkAnswer
+         * @description The orders in the order in which they are to begin, as it was found at `time`; null while there is none.
+         *
+         *     It is `optimal` when no other has less weighted tardiness, or with it an earlier end. `fallback` says why it is only
+         *     that of priority and due time; empty if it is not. Times are in seconds since the epoch.
+         */
+        OrderOfWorkAnswer: {
+            /** Bound */
+            bound: number;
+            /** Fallback */
+            fallback: string;
+            /** Job Orders */
+            job_orders: components["schemas"]["ExpectedOrder"][];
+            /** Optimal */
+            optimal: boolean;
+            /** Tardiness */
+            tardiness: number;
+            /** Time */
+            time: number | null;
+        };
         /**
          * OrderState
          * @description Where an order stands.
@@ -10136,6 +10201,38 @@ export interface operations {
                 };
                 content: {
                     "application/json": components["schemas"]["OperationsAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_api_v1_order_of_work_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OrderOfWorkAnswer"];
                 };
             };
             401: components["responses"]["Problem401"];

@@ -43,6 +43,7 @@ from sequence_planner.web import (
     model,
     modes,
     openapi_document,
+    order_of_work,
     people,
     pipelines,
     problems,
@@ -67,6 +68,7 @@ from sequence_planner.web.looking import FlowsShow, NetworkShow
 from sequence_planner.web.openapi_document import describe
 from sequence_planner.web.openapi_refusals import PROBLEM_RESPONSES
 from sequence_planner.web.order_desk import OrderDesk
+from sequence_planner.web.order_of_work import OrderOfWorkDesk
 from sequence_planner.web.problems import LastResort
 from sequence_planner.web.security_headers import SecurityHeaders
 from sequence_planner.web.settings import Settings
@@ -101,6 +103,7 @@ PARTS = (
     keys.bodiless,
     watches.router,
     watch_stream.router,
+    order_of_work.router,
     webhooks.router,
     webhooks.bodiless,
     audit.router,
@@ -148,12 +151,13 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         office = await run_in_threadpool(IdentityOffice.open, settings.database, demonstration=settings.demonstration)
         app.state.identity = office
         app.state.order_desk = desk = OrderDesk(office, controller)
+        app.state.order_of_work = sequencing = OrderOfWorkDesk(office, controller, desk)
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
         deliverer = Deliverer(office.database, Sender(settings.webhooks))
         shows = (controller, broadcast, network, flows, watch_show)
-        parts = (*shows, Sweeper(office, controller), desk, deliverer)
+        parts = (*shows, Sweeper(office, controller), desk, sequencing, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
         if shop is not None:
             running.append(asyncio.create_task(shop.read_ahead()))
