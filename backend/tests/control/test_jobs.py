@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 
 import pytest
 
 from control.bench_of_jobs import STATION, Bench
+from control.test_why_not import Inquirer, found
 from core.actors import EVA, person
 from core.building import predicate_of
 from sequence_planner.actor import SYSTEM, ActorKind
 from sequence_planner.automaton.structure import Automaton, Specification
+from sequence_planner.control.adviser import Adviser
 from sequence_planner.control.belief import Beliefs
 from sequence_planner.control.command_base import CommandRefused
 from sequence_planner.control.commands import COMMAND
 from sequence_planner.control.job_commands import CommandJob, JobOperation, JobWait, SequenceJobs, SetByOrder, TakeJob
+from sequence_planner.control.kept_jobs import KeptJobs
 from sequence_planner.control.view import Mode
-from sequence_planner.control.viewing_jobs import why_idle
+from sequence_planner.control.viewing_jobs import job_views, why_idle
 from sequence_planner.history import restoring
 from sequence_planner.immutable import replace
 from sequence_planner.synthesis.supervision import synthesise
@@ -332,6 +336,42 @@ def test_why_an_operation_is_not_active(on: Bench) -> None:
     assert why("check_it") == "Job a to be resumed"
     on.tell("a", "stop")
     assert why("check_it") == "another job that asks for it: Job a is being stopped"
+
+
+def test_who_asks_why_not_is_told_of_the_job() -> None:
+    async def scenario() -> None:
+        on = Bench()
+        adviser = Adviser(STATION, on.execution.supervisor)
+        try:
+            asked = Inquirer(adviser, on.execution)
+            on.by_order()
+            on.execution.start_production()
+            on.ticks(2)
+            view = await asked.operation("check_it")
+            assert found(view)[0] == (
+                "order",
+                "a job that asks for it: the station works by order, and no job asks for it",
+            )
+            on.take("a", "bottle")
+            on.ticks(2)
+            assert found(await asked.operation("check_it"))[0] == ("order", "what comes before it for Job a: fill_it")
+            assert "order" not in dict(found(await asked.operation("fill_it")))
+        finally:
+            adviser.close()
+
+    asyncio.run(scenario())
+
+
+def test_how_a_job_stands_is_told_once_it_is_durable(on: Bench) -> None:
+    kept = KeptJobs(on.execution, lambda: len(on.records))
+    on.take("a", "box")
+    taken = len(on.records)
+    on.tick()
+    begun = len(on.records)
+    on.tick(packed=True)
+    assert on.jobs["a"].state == "ended"
+    for durable, state in ((taken, "waiting"), (begun, "running"), (len(on.records), "ended")):
+        assert job_views(on.execution, kept.up_to(durable))["a"].state == state
 
 
 def restored(on: Bench, model: Automaton) -> restoring.Restored:

@@ -208,4 +208,4 @@ def _require_responses(mes: Mes, station: Mortal) -> None:
     tightened = next(each for each in urgent["operations"] if each["operation"] == "tighten_bolt_pair(bolt_pair_2)")
     assert tightened["actuals"] == {"bolts[bolt_pair_2]": "tightened"}
     assert tightened["started"] < tightened["ended"]
-    assert any(each["ability"].startswith("smart_nutrunner.") for each in urgent["abilities"])
+    assert any(each["ability"].startswith("nutrunner.run_nut") for each in urgent["abilities"])

@@ -47,6 +47,7 @@ def entries(name: str) -> st.SearchStrategy[dict[str, Any]]:
         "variables": st.fixed_dictionaries({"value": st.none() | VALUES, "domain": st.lists(VALUES, max_size=2)}),
         "abilities": st.fixed_dictionaries({"enabled": st.none() | st.booleans()}),
         "operations": st.fixed_dictionaries({"completed": st.integers(0, 2)}),
+        "jobs": st.fixed_dictionaries({"stopping": st.booleans(), "waits_for": st.lists(NAMES, max_size=2)}),
         "tasks": st.fixed_dictionaries({"revision": st.integers(0, 2)}),
         "topics": st.fixed_dictionaries({"messages": st.integers(0, 2), "last": st.none() | TIMES}),
         "overrides": st.fixed_dictionaries({"fields": st.dictionaries(NAMES, FIELDS, max_size=2)}),

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import shutil
 import threading
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import httpx
@@ -18,6 +20,7 @@ from sequence_planner.web.settings import Settings
 from .bearers import key
 from .running import Loop, Server, until
 from .test_acting import problem
+from .test_docs_curl import snippet, typed
 from .test_looking import Telling
 
 ORDERS = "/api/v1/job-orders"
@@ -238,3 +241,12 @@ def test_orders_are_taken_while_the_controller_is_away(mes: httpx.Client, contro
     problem(mes.get("/api/v1/capabilities"), 503, "controller-unavailable")
     assert store(mes, "4711", start=True)["state"] == "AllowedToStart"
     controller.publishing = True
+
+
+@pytest.mark.skipif(shutil.which("curl") is None, reason="there is no curl here")
+def test_what_the_documentation_types_orders_an_engine(mes: httpx.Client, server: Server, tmp_path: Path) -> None:
+    lines = snippet("docs/mes.md", "job-orders/4711")
+    secret = mes.headers["Authorization"].removeprefix("Bearer ")
+    printed = typed(lines, tmp_path, STATION=server.address, STATION_KEY=secret)
+    assert '"outcome":"aborted"' in printed
+    assert [kind for _, kind, _ in told(mes)] == ["job-order-stored", "job-order-aborted", "job-order-cleared"]

@@ -99,11 +99,11 @@ class WhyNot:
         execution = self._execution
         if operation.name in execution.conduct.out_of(ServiceKind.OPERATION):
             yield Hindrance(HindranceKind.SERVICE, f"{operation.title} to be put back in service")
-        if operation.name in execution.conduct.done:
+        if (idle := why_idle(execution, operation.name)) is not None:
+            yield Hindrance(HindranceKind.ORDER, idle)  # a job lets it be active once more, if it was done
+        elif operation.name in execution.conduct.done:
             text = "a reset: it is completed, and does not become active again by itself"
             yield Hindrance(HindranceKind.SERVICE, text)
-        if (idle := why_idle(execution, operation.name)) is not None:
-            yield Hindrance(HindranceKind.ORDER, idle)
         if evaluate(operation.goal, execution.state) is True:
             undone = Not(operation.goal)
             yield Hindrance(HindranceKind.WRITTEN, f"{print_expression(undone)}: its goal holds", undone)

@@ -38,6 +38,7 @@ LOOK_EVERY = 0.25  # seconds
 ASK_EVERY = 5.0  # seconds after which it is asked again what jobs consist of
 READ_EVERY = 5.0  # seconds after which orders are read again though nobody has changed one here
 TRY_AGAIN = 10.0  # seconds after which an order that the station has refused is given to it again
+SAY_AGAIN = 1.0  # seconds after which a view knows of what was said, as far as that is durable
 UNCERTAIN = REPLY_DEADLINE + 1.0  # seconds in which a job that nobody answered for may still be taken
 
 
@@ -54,7 +55,8 @@ class OrderDesk:
         self._orders: list[JobOrder] = []
         self._queue = Queue()
         self._refused: dict[str, tuple[str, float]] = {}  # why the station has not taken an order, and when
-        self._said: dict[str, float] = {}  # when something was said of a job last; older views do not know of it
+        # What was wished for when something was said of a job last, and when: older views do not know of it.
+        self._said: dict[str, tuple[Wish | None, float]] = {}
         self._trouble = ""
         self.sequence: OrderOfWork = order_of_work
 
@@ -141,7 +143,8 @@ class OrderDesk:
             at_station = [each for each in self._orders if each.is_at_station]
         if view is not None and view.production is not Production.PREPARING:
             for order in at_station:
-                if heard > self._said.get(order.id, float("-inf")):
+                wish, said = self._said.get(order.id, (None, float("-inf")))
+                if wish is not order.wish or heard > said + SAY_AGAIN:
                     await self._look_after(order, view.jobs.get(order.id))
             await self._forget(view)
         self._queue = queue(self._orders, view, masters, self._office.now(), self.sequence)
@@ -158,7 +161,7 @@ class OrderDesk:
             self._orders = await self._office.read(orders.open_orders)
             self._read = now
             known = {each.id for each in self._orders}
-            self._said = {id_: at for id_, at in self._said.items() if id_ in known}
+            self._said = {id_: said for id_, said in self._said.items() if id_ in known}
             self._refused = {id_: why for id_, why in self._refused.items() if id_ in known}
 
     async def _follow(self, masters: WorkMastersView) -> bool:
@@ -201,7 +204,7 @@ class OrderDesk:
                 await self._take_back(order)
             return
         self._refused.pop(order.id, None)
-        self._said[order.id] = time.monotonic()
+        self._said[order.id] = order.wish, time.monotonic()
 
     async def _take_back(self, order: JobOrder) -> None:
         now = self._office.now()
@@ -250,11 +253,12 @@ class OrderDesk:
             if refused.slug not in ("job-ended", "unknown-job"):
                 raise
             return False
-        self._said[order.id] = time.monotonic()
+        self._said[order.id] = order.wish, time.monotonic()
         return True
 
     async def _grant(self, order: JobOrder) -> None:
         now = self._office.now()
+        self._said[order.id] = None, time.monotonic()
 
         def write() -> None:
             with self._office.database.writing() as connection:

@@ -9,11 +9,14 @@ export function standingOf(key: Key, now: number): Standing {
 	return key.expires <= now ? 'expired' : 'valid';
 }
 
+/** What a key of each scope can read, the most telling first. */
+const READS = { read: 'station', audit: 'audit', 'orders-read': 'job-orders' } as const satisfies Partial<Record<KeyScope, string>>;
+
 /**
  * A command line that reads something with a key that is kept in the variable `KEY`, from the server at `origin`. The secret
  * is not one of its arguments, which everybody on the machine may read.
  */
 export function example(scopes: readonly KeyScope[], origin: string): string {
-	const address = scopes.includes('read') ? 'station' : 'audit';
+	const address = Object.entries(READS).find(([scope]) => scopes.some((each) => each === scope))?.[1] ?? 'job-orders';
 	return `curl --header @- ${origin}/api/v1/${address} <<< "Authorization: Bearer $KEY"`;
 }

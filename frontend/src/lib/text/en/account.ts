@@ -130,7 +130,12 @@ export const account = {
 		by: (day: string, name: string): string => `${day} by ${name}`,
 		on: (standing: string, day: string): string => `${standing} on ${day}`,
 		standings: { valid: 'valid', revoked: 'revoked', expired: 'expired' },
-		scopes: { read: 'reads the station, as a viewer does', audit: 'reads the journal' },
+		scopes: {
+			read: 'reads the station, as a viewer does',
+			audit: 'reads the journal',
+			'orders-read': 'reads job orders, responses and events',
+			'orders-write': 'gives, changes and commands job orders'
+		},
 		make: 'Make',
 		makeTitle: 'Make a key',
 		wasMade: (name: string): string => `The key ${name} was made. Keep its secret now: it is not shown again.`,

@@ -135,7 +135,12 @@ export const account: Text['account'] = {
 		by: (day, name) => `${day} av ${name}`,
 		on: (standing, day) => `${standing} ${day}`,
 		standings: { valid: 'giltig', revoked: 'återkallad', expired: 'utgången' },
-		scopes: { read: 'läser stationen, som en betraktare', audit: 'läser journalen' },
+		scopes: {
+			read: 'läser stationen, som en betraktare',
+			audit: 'läser journalen',
+			'orders-read': 'läser jobborder, svar och händelser',
+			'orders-write': 'lägger, ändrar och styr jobborder'
+		},
 		make: 'Skapa',
 		makeTitle: 'Skapa en nyckel',
 		wasMade: (name) => `Nyckeln ${name} har skapats. Spara hemligheten nu: den visas inte igen.`,
