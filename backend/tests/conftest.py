@@ -32,6 +32,7 @@ HEAVY = (
     "history/test_controller.py",
     "history/test_process.py",
     "history/test_rest.py",
+    "mes/test_sequencing_process.py",
     "pipelines/test_speed.py",
     "pipelines/test_stage_python.py",
     "test_tutorial.py",

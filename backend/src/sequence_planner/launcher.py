@@ -28,6 +28,7 @@ from sequence_planner.control.unix_socket import LONGEST_PATH
 from sequence_planner.identity.openid.options import ProviderOptions
 from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED, OVERTAKEN
 from sequence_planner.logs import FORMAT, LogFormat, configure_logs
+from sequence_planner.mes.webhooks.targets import Targets
 from sequence_planner.parts_file import write_restarts
 from sequence_planner.service_manager import ServiceManager
 from sequence_planner.storage.address import PostgresqlServer
@@ -65,6 +66,7 @@ class Launch:
     hot_standby: str | None = None
     provider: ProviderOptions = field(default_factory=ProviderOptions)
     log_format: LogFormat = LogFormat.TEXT
+    webhooks: Targets = field(default_factory=Targets)
 
 
 class Part:
@@ -243,6 +245,8 @@ class _Launcher:
         server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
         server += ["--demonstration"] if request.database is None else []
         server += request.provider.arguments()
+        server += [f"--webhook-host={host}" for host in request.webhooks.written]
+        server += ["--webhook-loopback"] if request.webhooks.loopback else []
         self._server = Part("server", _command("server", *server, *_options(request.endpoint)), database)
         self._emulator = Part("emulated devices", _command("emulate", model, *speed, *transport))
 

@@ -94,7 +94,7 @@ def _unready(server: Server) -> dict[str, Bearer]:
 
 def _keys(server: Server) -> dict[str, Bearer]:
     found = {}
-    orders = ((Scope.ORDERS_READ,), (Scope.ORDERS_WRITE,))
+    orders = ((Scope.ORDERS_READ,), (Scope.ORDERS_WRITE,), (Scope.WEBHOOKS,))
     for scopes in ((Scope.READ,), (Scope.AUDIT,), (Scope.METRICS,), (Scope.READ, Scope.AUDIT), *orders):
         secret, _ = key(server, *scopes)
         found[f"key to {' and '.join(scopes)}"] = Bearer(_bearing(secret), scopes=scopes)

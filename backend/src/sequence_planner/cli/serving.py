@@ -24,6 +24,7 @@ from sequence_planner.configuration import ConfigurationError, has_password, url
 from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
 from sequence_planner.logs import LogFormat
+from sequence_planner.mes.webhooks.targets import TargetRefused, Targets, host_and_port
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
@@ -49,6 +50,18 @@ Names = Annotated[
     typer.Option("--name", metavar="HOST[:PORT]", help="A name by which people open the page; can be repeated."),
 ]
 HOT_STANDBY = re.compile(r"[A-Za-z0-9][A-Za-z0-9.-]{0,59}")
+WebhookHosts = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--webhook-host",
+        metavar="HOST[:PORT]",
+        help="A host that webhooks may go to, by HTTPS and not within a private network; can be repeated.",
+    ),
+]
+WebhookLoopback = Annotated[
+    bool,
+    typer.Option("--webhook-loopback", help="Such a host may be this machine too, and be reached by HTTP there."),
+]
 Demonstration = Annotated[
     bool,
     typer.Option(
@@ -95,6 +108,8 @@ def run(
     oidc_role: Roles = None,
     oidc_others: Others = NO_OTHERS,
     log_format: Annotated[LogFormat, typer.Option(help="Write events as text for people or as JSON.")] = LogFormat.TEXT,
+    webhook_host: WebhookHosts = None,
+    webhook_loopback: WebhookLoopback = False,
 ) -> None:
     """Run a station: controller, server and page."""
     from sequence_planner.launcher import Launch, launch  # noqa: PLC0415
@@ -136,6 +151,7 @@ def run(
     )
     if _provider(provider) is not None and demonstration:
         refuse("--demonstration is for whoever sits here, and nobody signs in: leave --oidc-issuer out, or it")
+    webhooks = _targets(webhook_host, webhook_loopback)
     prepare(model)
     url = None if demonstration else database_url(model, database)
     asked = Launch(
@@ -150,6 +166,7 @@ def run(
         hot_standby=hot_standby,
         provider=provider,
         log_format=log_format,
+        webhooks=webhooks,
     )
     try:
         raise typer.Exit(launch(asked))
@@ -193,6 +210,8 @@ def server(
     oidc_groups_claim: Groups = "groups",
     oidc_role: Roles = None,
     oidc_others: Others = NO_OTHERS,
+    webhook_host: WebhookHosts = None,
+    webhook_loopback: WebhookLoopback = False,
     launched: Launched = False,
 ) -> None:
     """Run the server alone; `run` does this."""
@@ -225,6 +244,7 @@ def server(
                     others=oidc_others,
                 )
             ),
+            webhooks=_targets(webhook_host, webhook_loopback),
         )
     )
 
@@ -235,3 +255,10 @@ def _provider(options: ProviderOptions) -> ProviderSettings | None:
         return options.settings(os.environ)
     except ProviderOptionError as error:
         refuse(str(error))
+
+
+def _targets(hosts: list[str] | None, loopback: bool) -> Targets:
+    try:
+        return Targets(frozenset(map(host_and_port, hosts or ())), loopback)
+    except TargetRefused as refused:
+        refuse(f"--webhook-host: {refused}")

@@ -27,3 +27,4 @@ class Scope(StrEnum):
     ORDERS_READ = "orders-read"  # job orders, what became of them, and what the station can do
     ORDERS_WRITE = "orders-write"  # store and change job orders, and command them
     METRICS = "metrics"  # figures of the system's own, for those who watch over it
+    WEBHOOKS = "webhooks"  # say who is told of events, and where

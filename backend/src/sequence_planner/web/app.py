@@ -20,6 +20,8 @@ from starlette.concurrency import run_in_threadpool
 from starlette.middleware.gzip import GZipMiddleware
 
 from sequence_planner.history.process import HistoryProcess
+from sequence_planner.mes.webhooks.deliverer import Deliverer
+from sequence_planner.mes.webhooks.sending import Sender
 from sequence_planner.storage.location import revisions_folder
 from sequence_planner.web import (
     abilities,
@@ -44,6 +46,7 @@ from sequence_planner.web import (
     model,
     modes,
     openapi_document,
+    order_of_work,
     people,
     pipelines,
     problems,
@@ -55,6 +58,7 @@ from sequence_planner.web import (
     stream,
     watch_stream,
     watches,
+    webhooks,
     why_not,
 )
 from sequence_planner.web.access import check_declared
@@ -70,6 +74,7 @@ from sequence_planner.web.noting import Noted, Noting, known_routes
 from sequence_planner.web.openapi_document import describe
 from sequence_planner.web.openapi_refusals import PROBLEM_RESPONSES
 from sequence_planner.web.order_desk import OrderDesk
+from sequence_planner.web.order_of_work import OrderOfWorkDesk
 from sequence_planner.web.problems import LastResort
 from sequence_planner.web.readiness import Readiness
 from sequence_planner.web.security_headers import SecurityHeaders
@@ -107,6 +112,9 @@ PARTS = (
     keys.bodiless,
     watches.router,
     watch_stream.router,
+    order_of_work.router,
+    webhooks.router,
+    webhooks.bodiless,
     audit.router,
     history.router,
     job_orders.router,
@@ -157,10 +165,13 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         )
         app.state.identity = office
         app.state.order_desk = desk = OrderDesk(office, controller)
+        app.state.order_of_work = sequencing = OrderOfWorkDesk(office, controller, desk)
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
-        parts = (controller, broadcast, network, flows, watch_show, Sweeper(office, controller), desk)
+        deliverer = Deliverer(office.database, Sender(settings.webhooks))
+        shows = (controller, broadcast, network, flows, watch_show)
+        parts = (*shows, Sweeper(office, controller), desk, sequencing, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
         if shop is not None:
             running.append(asyncio.create_task(shop.read_ahead()))
@@ -201,11 +212,16 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     app.include_router(metrics.router)
     check_declared(app.routes)
     app.router.default = PageFiles(settings.page)
+    _surround(app, settings)
+    return app
+
+
+def _surround(app: FastAPI, settings: Settings) -> None:
+    """What each request passes before its route, and each answer after it; the last is outermost."""
     app.add_middleware(GZipMiddleware, minimum_size=LONG, compresslevel=1)
     app.add_middleware(Guard, endpoint=settings)
     if settings.proxies:
         app.add_middleware(Forwarded, proxies=settings.proxies)
     app.add_middleware(LastResort)
     app.add_middleware(Noting, noted=app.state.noted, routes=cache(partial(known_routes, app.routes)))
-    app.add_middleware(SecurityHeaders, https=settings.https)  # the last is outermost
-    return app
+    app.add_middleware(SecurityHeaders, https=settings.https)

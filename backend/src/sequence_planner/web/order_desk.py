@@ -25,6 +25,7 @@ from sequence_planner.control.work_master_view import WorkMastersView
 from sequence_planner.mes import orders
 from sequence_planner.mes.following import Following
 from sequence_planner.mes.order import JobOrder
+from sequence_planner.mes.order_of_work import OrderOfWork, order_of_work
 from sequence_planner.mes.queueing import Queue, queue
 from sequence_planner.mes.refusal import OrderRefused
 from sequence_planner.mes.states import OrderState, Wish
@@ -57,6 +58,12 @@ class OrderDesk:
         # What was wished for when something was said of a job last, and when: older views do not know of it.
         self._said: dict[str, tuple[Wish | None, float]] = {}
         self._trouble = ""
+        self.sequence: OrderOfWork = order_of_work
+
+    @property
+    def orders(self) -> list[JobOrder]:
+        """The orders that are not over, as they were read last."""
+        return self._orders
 
     async def run(self) -> None:
         """Look after orders until cancelled. What fails is tried again and again."""
@@ -140,7 +147,7 @@ class OrderDesk:
                 if wish is not order.wish or heard > said + SAY_AGAIN:
                     await self._look_after(order, view.jobs.get(order.id))
             await self._forget(view)
-        self._queue = queue(self._orders, view, masters, self._office.now())
+        self._queue = queue(self._orders, view, masters, self._office.now(), self.sequence)
         now = time.monotonic()
         for order in self._queue.next:
             _, refused = self._refused.get(order.id, ("", float("-inf")))

@@ -9,6 +9,7 @@ from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 
 from sequence_planner.identity.openid.settings import ProviderSettings
+from sequence_planner.mes.webhooks.targets import Targets
 
 LOCALHOST = "localhost"
 LOOPBACK_NAMES = ("127.0.0.1", LOCALHOST, "[::1]")
@@ -103,7 +104,7 @@ class Settings(Endpoint):
 
     With `transport` the network is joined for what a person wants to attach, as the controller joins it. `database`
     is the URL of where identity and journal are kept. With `demonstration` one may be opened without signing in, with
-    `provider` people may sign in there.
+    `provider` people may sign in there. `webhooks` is where events may be sent to.
     """
 
     controller_socket: Path
@@ -114,6 +115,7 @@ class Settings(Endpoint):
     demonstration: bool = False
     provider: ProviderSettings | None = None
     stream: StreamLimits = field(default_factory=StreamLimits)
+    webhooks: Targets = field(default_factory=Targets)
 
 
 def address_of(host: str) -> IPv4Address | IPv6Address | None:

@@ -1,0 +1,68 @@
+"""How long operations take and what they use is told by the run journal, from wherever the server begins to read."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+
+from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.mes.sequencing.known_times import UNKNOWN_SECONDS, KnownTimes
+
+RESOURCES = {"robot.fetch": "robot", "robot.place": "robot", "press.close": "press"}
+GOAL = frozenset({"table"})
+
+
+def ticks(*told: tuple[float, dict[str, list[str]]]) -> list[RunRecord]:
+    return [RunRecord(number, time, "ticked", json.dumps(what), "") for number, (time, what) in enumerate(told, 1)]
+
+
+def known() -> KnownTimes:
+    return KnownTimes(RESOURCES)
+
+
+def test_before_the_first_run_it_is_what_is_planned_and_what_the_goal_depends_on() -> None:
+    times = known()
+    assert times.seconds("assemble") == UNKNOWN_SECONDS
+    assert times.seconds("assemble", 12.0) == 12.0
+    assert times.resources("assemble", GOAL) == GOAL
+
+
+def test_it_is_the_median_of_the_last_runs_and_all_that_they_used() -> None:
+    times = known()
+    begin = 100.0
+    for number, seconds in enumerate([500.0, 500.0, 1.0, 2.0, 3.0, 4.0, 5.0]):
+        ability = "press.close" if number == 3 else "robot.fetch"
+        ends: dict[str, list[str]] = {"completed": ["assemble"]}
+        times.hear(ticks((begin, {"activated": ["assemble"], "started": [ability]}), (begin + seconds, ends)))
+        begin += 1000
+    assert times.seconds("assemble", 12.0) == 3.0
+    assert times.resources("assemble", GOAL) == {"robot", "press"}
+
+
+def test_one_that_is_completed_and_active_again_in_one_tick_is_two_runs() -> None:
+    times = known()
+    again = {"completed": ["assemble"], "activated": ["assemble"], "started": ["press.close"]}
+    times.hear(ticks((1.0, {"activated": ["assemble"]}), (5.0, again), (7.0, {"completed": ["assemble"]})))
+    assert times.seconds("assemble") == 3.0
+    assert times.resources("assemble", GOAL) == {"press"}, "a run in which nothing started says nothing"
+
+
+def test_a_run_during_which_the_controller_was_started_anew_does_not_count() -> None:
+    times = known()
+    times.hear(ticks((1.0, {"activated": ["assemble"]})))
+    times.hear([RunRecord(2, 5000.0, "begun", "{}", "")])
+    times.hear(ticks((5001.0, {"completed": ["assemble"]})))
+    assert times.seconds("assemble", 12.0) == 12.0
+
+
+def test_a_clock_that_was_set_back_leaves_no_negative_time() -> None:
+    times = known()
+    times.hear(ticks((100.0, {"activated": ["assemble"]}), (50.0, {"completed": ["assemble"]})))
+    assert times.seconds("assemble", 12.0) == 12.0
+
+
+def test_what_is_started_beside_counts_for_all_that_are_active() -> None:
+    times = known()
+    both: Callable[[str], dict[str, list[str]]] = lambda kind: {kind: ["one", "two"]}  # noqa: E731
+    times.hear(ticks((1.0, both("activated")), (2.0, {"started": ["robot.place"]}), (3.0, both("completed"))))
+    assert times.resources("one", GOAL) == times.resources("two", GOAL) == {"robot"}

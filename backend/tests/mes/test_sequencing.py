@@ -1,0 +1,172 @@
+"""The order of work is one that can be worked, the best one where there is proof, and the same every time."""
+
+from __future__ import annotations
+
+import itertools
+from dataclasses import replace
+from math import inf
+
+import pytest
+from hypothesis import example, given, settings
+
+from mes.works import NOW, Exclusive, best, check, objective, questions, shop
+from sequence_planner.mes.sequencing.sequencing import by_rule, sequence
+from sequence_planner.mes.sequencing.waits import waits_among
+from sequence_planner.mes.sequencing.work import Operation, Schedule, Work
+
+ARM = frozenset({"arm"})
+
+
+def one(job: str, seconds: float, due: float | None, priority: int = 0) -> Work:
+    return Work(job, priority, due, None, {"make": Operation(frozenset(), seconds, ARM)})
+
+
+@settings(max_examples=60, deadline=None)
+@given(questions())
+@example(([Work("a", 0, None, None, {})], []))
+@example(([Work("a", 0, NOW - 5, None, {}), one("b", 3, NOW - 2)], [frozenset({"a", "b"})]))
+def test_it_is_the_best_that_there_is(question: tuple[list[Work], Exclusive]) -> None:
+    works, exclusive = question
+    schedule = sequence(works, exclusive, NOW, 20)
+    check(works, exclusive, schedule)
+    tardiness, end = best(works, exclusive)
+    assert tardiness < inf
+    assert objective(works, schedule) == pytest.approx((tardiness, end), abs=1e-4)
+    assert schedule.tardiness == pytest.approx(tardiness, abs=1e-4)
+    assert schedule.optimal
+    assert schedule.bound == pytest.approx(tardiness, abs=1e-4)
+    assert not schedule.fallback
+
+
+@settings(max_examples=60, deadline=None)
+@given(questions(most=9))
+def test_the_order_by_rule_can_be_worked_too(question: tuple[list[Work], Exclusive]) -> None:
+    works, exclusive = question
+    schedule = by_rule(works, exclusive, NOW, "nobody answered")
+    check(works, exclusive, schedule)
+    assert schedule.fallback == "nobody answered"
+    assert not schedule.optimal
+    assert schedule.bound <= schedule.tardiness + 1e-4
+
+
+@settings(max_examples=60, deadline=None)
+@given(questions(most=9))
+def test_what_waits_for_what_is_all_and_no_more_than_is_needed(question: tuple[list[Work], Exclusive]) -> None:
+    works, exclusive = question
+    schedule = by_rule(works, exclusive, NOW, "")
+    for jobs in (None, {"job-0", "job-2"}):
+        waits = waits_among(works, schedule, jobs)
+        among = [work for work in works if jobs is None or work.job in jobs]
+        for step, before in waits.items():
+            for each in before:
+                assert each[0] != step[0]
+                assert schedule.starts[each] <= schedule.starts[step]
+                fewer = {**waits, step: [other for other in before if other != each]}
+                assert each not in _before(among, fewer, step), "it follows from the rest"
+        steps = {(work.job, name): operation for work in among for name, operation in work.operations.items()}
+        for a, b in itertools.permutations(steps, 2):
+            common = a[0] != b[0] and steps[a].resources & steps[b].resources and steps[b].started is None
+            if common and (steps[a].started is not None or schedule.starts[a] < schedule.starts[b]):
+                assert a in _before(among, waits, b)
+
+
+def _before(
+    works: list[Work], waits: dict[tuple[str, str], list[tuple[str, str]]], step: tuple[str, str]
+) -> set[tuple[str, str]]:
+    of = {work.job: work.operations for work in works}
+    pending, found = [step], set[tuple[str, str]]()
+    while pending:
+        job, name = pending.pop()
+        inside = [(job, each) for each in of[job][name].after & of[job].keys()]
+        for each in [*inside, *waits.get((job, name), ())]:
+            if each not in found:
+                found.add(each)
+                pending.append(each)
+    return found
+
+
+def test_what_is_due_first_comes_first_unless_it_weighs_less() -> None:
+    early, late = one("early", 10, NOW + 10), one("late", 10, NOW + 20)
+    assert sequence([late, early], [], NOW, 5).jobs == ["early", "late"]
+    heavy = replace(late, due=NOW + 10, priority=5)
+    schedule = sequence([early, heavy], [], NOW, 5)
+    assert schedule.jobs == ["late", "early"]
+    assert schedule.late == {"early": pytest.approx(10)}
+    assert schedule.waits == {("early", "make"): [("late", "make")]}
+
+
+def test_where_nothing_is_due_priority_decides() -> None:
+    schedule = sequence([one("a", 10, None), one("b", 10, None, 3), one("c", 10, None, 1)], [], NOW, 5)
+    assert schedule.jobs == ["b", "c", "a"]
+    assert schedule.late == {}
+
+
+def test_a_job_that_is_under_way_goes_on_before_those_that_it_excludes() -> None:
+    under_way = Work("old", 0, None, None, {"end": Operation(frozenset(), 50, ARM)}, begun=True)
+    urgent = Work("urgent", 9, NOW + 10, None, {"make": Operation(frozenset(), 10, frozenset({"press"}))})
+    pair = frozenset({"old", "urgent"})
+    assert sequence([under_way, urgent], [pair], NOW, 5).jobs == ["old", "urgent"]
+    assert sequence([replace(under_way, begun=False), urgent], [pair], NOW, 5).jobs == ["urgent", "old"]
+
+
+def test_one_that_takes_longer_than_expected_is_expected_at_once() -> None:
+    running = Work("a", 0, None, None, {"make": Operation(frozenset(), 5, ARM, started=NOW - 60)})
+    schedule = sequence([running, one("b", 10, None)], [], NOW, 5)
+    assert schedule.starts["a", "make"] == (NOW - 60, NOW)
+    assert schedule.starts["b", "make"][0] == NOW
+    assert schedule.waits == {("b", "make"): [("a", "make")]}, "it still waits for its completion"
+
+
+@pytest.mark.parametrize(
+    ("operations", "words"),
+    [
+        ({"a": Operation(frozenset({"b"}), 1, ARM), "b": Operation(frozenset({"a"}), 1, ARM)}, "in a circle"),
+        ({"a": Operation(frozenset(), -1, ARM)}, "cannot take -1 s"),
+        ({"a": Operation(frozenset(), float("nan"), ARM)}, "cannot take nan s"),
+        ({"a": Operation(frozenset(), 1, ARM, started=inf)}, "is no time"),
+    ],
+)
+def test_what_cannot_be_worked_is_refused(operations: dict[str, Operation], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        sequence([Work("j", 0, None, None, operations)], [], NOW, 1)
+
+
+def test_two_jobs_of_one_name_are_refused() -> None:
+    with pytest.raises(ValueError, match="the same id"):
+        sequence([one("a", 1, None), one("a", 1, None)], [], NOW, 1)
+
+
+def test_the_same_question_has_the_same_answer() -> None:
+    works = shop(16, seed=3)
+    answers = [sequence(works, [], NOW, 0.6) for _ in range(2)]
+    assert answers[0] == answers[1]
+
+
+def test_search_is_no_worse_than_the_rules_and_finds_better() -> None:
+    works = shop(12, seed=1)
+    found, rule = sequence(works, [], NOW, 1.0), by_rule(works, [], NOW, "")
+    check(works, [], found)
+    assert found.bound <= found.tardiness + 1e-4
+    assert found.tardiness < rule.tardiness
+
+
+def test_a_thousand_orders_are_put_into_an_order() -> None:
+    works = shop(1000, seed=2)
+    groups = [frozenset(work.job for number, work in enumerate(works) if number % 3 == kind) for kind in range(3)]
+    found = sequence(works, groups, NOW, 1.0)
+    check(works, groups, found)
+    assert found.tardiness <= _rule(works, groups).tardiness
+    assert not found.optimal
+
+
+def _rule(works: list[Work], exclusive: Exclusive) -> Schedule:
+    schedule = by_rule(works, exclusive, NOW, "")
+    check(works, exclusive, schedule)
+    return schedule
+
+
+def test_times_far_away_do_no_harm() -> None:
+    works = [one("a", 1e7, -1e300, 32767), one("b", 0, 1e300), replace(one("c", 1, None), earliest=1e300)]
+    schedule = sequence(works, [], NOW, 5)
+    assert sorted(schedule.jobs) == ["a", "b", "c"]
+    assert schedule.late["a"] > 0

@@ -1,0 +1,104 @@
+"""The order of work of orders: found, shown, and kept to, though the station does not work on them here."""
+
+from __future__ import annotations
+
+import time
+from itertools import pairwise
+
+import httpx
+import pytest
+
+from sequence_planner.control.job_commands import SequenceJobs, TakeJob
+from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
+from sequence_planner.control.view import Mode
+from sequence_planner.control.work_master_view import WorkMastersView, WorkMasterView, WorkOperationView
+from sequence_planner.web import order_of_work
+
+from .example_answers import WORK_MASTERS
+from .running import Server, until
+from .test_job_orders import controller, mes, store, tell
+from .test_looking import Telling
+
+__all__ = ["controller", "mes"]
+
+PLACE = "/api/v1/order-of-work"
+
+
+@pytest.fixture(autouse=True)
+def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(order_of_work, "LOOK_EVERY", 0.05)
+    monkeypatch.setattr(order_of_work, "ASK_EVERY", 0.2)
+    monkeypatch.setattr(order_of_work, "LIMIT", 20.0)
+
+
+def master(title: str) -> WorkMasterView:
+    operation = WorkOperationView(title=title, after=[], goal_reads=["robot.pose"])
+    return WorkMasterView(title=title, brings=[], brought=[], operations={f"work {title}": operation})
+
+
+TWO = WorkMastersView(work_masters={name: master(name) for name in ("left", "right")}, abilities={})
+
+
+def job(title: str, state: JobStepState, started: float | None) -> JobView:
+    step = JobStepView(state=state, waits_for=[], started=started, ended=None)
+    return JobView(
+        title=title,
+        work_master=title,
+        state=JobState.RUNNING,
+        stopping=False,
+        taken=1.0,
+        begun=1.0,
+        ended=None,
+        waits_for=[],
+        steps={f"work {title}": step},
+    )
+
+
+def test_orders_are_to_begin_as_they_are_due(mes: httpx.Client) -> None:
+    assert mes.get(PLACE).json()["time"] is None
+    now = time.time()
+    for name, due in (("late", 300), ("early", 100), ("never", None), ("middle", 200)):
+        store(mes, name, id=name, due=None if due is None else now + due, priority=0, start=True)
+
+    def found() -> list[str]:
+        answer = mes.get(PLACE).raise_for_status().json()
+        return [] if answer["fallback"] else [each["id"] for each in answer["job_orders"]]
+
+    until(lambda: found()[:3] == ["early", "middle", "late"], 30)
+    answer = mes.get(PLACE).json()
+    assert answer["optimal"]
+    assert answer["tardiness"] == answer["bound"] == 0
+    times = [each["operations"][0] for each in answer["job_orders"]]
+    assert all(one["end"] <= other["start"] + 0.01 for one, other in pairwise(times))
+    store(mes, "urgent", id="urgent", due=now + 1, priority=9, start=True)
+    until(lambda: len(found()) == 5, 30)
+    assert mes.get(PLACE).json()["job_orders"][0]["late"] > 0
+    for name in ("late", "early", "never", "middle", "urgent"):
+        assert tell(mes, name, "Abort").status_code == 200
+
+
+def test_the_station_is_told_which_operation_waits_for_which(
+    mes: httpx.Client, controller: Telling, server: Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(WORK_MASTERS.work_masters, "left", TWO.work_masters["left"])
+    monkeypatch.setitem(WORK_MASTERS.work_masters, "right", TWO.work_masters["right"])
+    controller.show(controller.view.model_copy(update={"jobs": {}, "mode": Mode.AUTOMATIC, "by_order": True}))
+    for name in ("left", "right"):
+        store(mes, name, id=name, work_master=name, due=None, start=True)
+    until(lambda: {each.job for each in controller.commands if isinstance(each, TakeJob)} >= {"left", "right"}, 20)
+    jobs = {
+        "left": job("left", JobStepState.ACTIVE, time.time()),
+        "right": job("right", JobStepState.ELIGIBLE, None),
+    }
+    controller.show(controller.view.model_copy(update={"jobs": jobs}))
+
+    def waits() -> list[tuple[str, str]]:
+        said = [each for each in controller.commands if isinstance(each, SequenceJobs)]
+        return [(wait.job, each.job) for wait in said[-1].waits for each in wait.for_] if said else []
+
+    until(lambda: waits() == [("right", "left")], 30)
+    monkeypatch.setattr(order_of_work, "HELD_UP", 0.0)  # as after a while in which it was not begun
+    controller.show(
+        controller.view.model_copy(update={"jobs": jobs | {"left": job("left", JobStepState.ELIGIBLE, None)}})
+    )
+    until(lambda: waits() == [], 20)
