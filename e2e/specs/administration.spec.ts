@@ -4,7 +4,7 @@ import { expect, test } from '../station/test.ts';
 
 test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody' });
 
-test('a key is made, its secret is shown once, and revoked it opens nothing', async ({ browse, station }) => {
+test('a key is made, its secret is shown once, it gets another, and revoked it opens nothing', async ({ browse, station }) => {
 	const ada = await browse(ADA, '/keys');
 	const read = async (secret: string): Promise<number> =>
 		(await fetch(`${station.url}/api/v1/state`, { headers: { Authorization: `Bearer ${secret}` } })).status;
@@ -20,10 +20,20 @@ test('a key is made, its secret is shown once, and revoked it opens nothing', as
 	await expect(ada.locator('[data-key="Dashboard"]')).toContainText('valid');
 	await expect(ada.getByText(secret)).toHaveCount(0);
 
+	await ada.getByRole('button', { name: 'New secret for Dashboard' }).click();
+	const dialog = ada.getByRole('dialog');
+	await dialog.getByRole('button', { name: 'New secret' }).click();
+	const next = await dialog.getByRole('group', { name: 'Secret', exact: true }).innerText();
+	expect([await read(secret), await read(next)]).toEqual([200, 200]);
+	await examine(ada, 'key-rotated');
+	await dialog.getByRole('button', { name: 'I have kept it' }).click();
+	await expect(ada.getByText(next)).toHaveCount(0);
+	await expect(ada.locator('[data-key="Dashboard"]')).toContainText('The secret before works until');
+
 	await ada.getByRole('button', { name: 'Revoke Dashboard' }).click();
 	await ada.getByRole('dialog').getByRole('button', { name: 'Revoke' }).click();
 	await expect(ada.getByRole('status').filter({ hasText: 'The key Dashboard is revoked' })).toBeVisible();
-	expect(await read(secret)).toBe(401);
+	expect([await read(secret), await read(next)]).toEqual([401, 401]);
 });
 
 test('sign-in and account are free of barriers, on every screen and in both themes', async ({ browse }) => {

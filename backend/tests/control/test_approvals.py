@@ -358,8 +358,8 @@ class FourEyes(RuleBasedStateMachine):
 
 
 def test_four_eyes(controller: Controller) -> None:
-    class OfThisStation(FourEyes):
+    class Here(FourEyes):
         def __init__(self) -> None:
             super().__init__(controller)
 
-    run_state_machine_as_test(OfThisStation, settings=examples(100))
+    run_state_machine_as_test(Here, settings=examples(100))

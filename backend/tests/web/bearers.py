@@ -10,8 +10,10 @@ from sqlalchemy import update
 from sequence_planner.actor import SYSTEM, ActorKind
 from sequence_planner.identity import keys, pairing, people, sessions, watches
 from sequence_planner.identity.people import DEMONSTRATOR
+from sequence_planner.identity.provided import open_flow
 from sequence_planner.identity.roles import Role, Scope
-from sequence_planner.identity.tables import SESSIONS
+from sequence_planner.identity.tables import KEYS, SESSIONS
+from sequence_planner.identity.tokens import new_token
 from sequence_planner.identity.watches import Watch
 from sequence_planner.web.cookies import session_cookie, watch_cookie
 
@@ -101,9 +103,22 @@ def _keys(server: Server) -> dict[str, Bearer]:
     secret, revoked = key(server, Scope.READ, Scope.AUDIT)
     with server.identity.database.writing() as connection:
         keys.revoke_key(connection, revoked.id, SYSTEM, time.time())
-    administrator = server.cookie(server.session(server.person(Role.ADMINISTRATOR))[0])
+    token, _ = server.session(server.person(Role.ADMINISTRATOR))
+    administrator = server.cookie(token)
+    before, rotated = key(server, *Scope)
+    over, expired = key(server, *Scope)
+    with server.identity.database.writing() as connection:
+        after, _ = keys.rotate_key(connection, rotated.id, 0, None, SYSTEM, time.time())
+        connection.execute(update(KEYS).where(KEYS.c.id == expired.id).values(expires=time.time()))
+        open_flow(connection, flow := new_token(), "/", time.time())
     return {
         **found,
+        "key, before its rotation": Bearer(_bearing(before)),
+        "key, after its rotation": Bearer(_bearing(after), scopes=tuple(Scope)),
+        "key, expired": Bearer(_bearing(over)),
+        "key in the place of a session": Bearer(server.cookie(after)),
+        "session in the place of a key": Bearer(_bearing(token)),
+        "sign-in under way in the place of a session": Bearer(server.cookie(flow)),
         "key, revoked": Bearer(_bearing(secret)),
         "key, revoked, of an administrator": Bearer(_bearing(secret) | administrator),
         "key, made up": Bearer(_bearing(f"sp_{'0' * 16}_{'x' * 43}")),

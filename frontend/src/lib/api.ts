@@ -1514,6 +1514,26 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/order-of-work": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Read
+         * @description When orders are expected to be worked, in the order in which they are to begin.
+         */
+        get: operations["read_api_v1_order_of_work_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/outputs": {
         parameters: {
             query?: never;
@@ -2334,6 +2354,90 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/webhooks": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * All Webhooks
+         * @description All webhooks, without their secrets, and how it goes with each.
+         */
+        get: operations["all_webhooks_api_v1_webhooks_get"];
+        put?: never;
+        /**
+         * Make
+         * @description Make a webhook. Its secret is answered this once; deliveries are signed with it.
+         */
+        post: operations["make_api_v1_webhooks_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/webhooks/{webhook}": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        post?: never;
+        /**
+         * Remove
+         * @description Tell it of nothing more; what was not delivered yet is not sent any more.
+         */
+        delete: operations["remove_api_v1_webhooks__webhook__delete"];
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/webhooks/{webhook}/dead-letters": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Dead Letters
+         * @description The events that were given up after many attempts, and why.
+         */
+        get: operations["dead_letters_api_v1_webhooks__webhook__dead_letters_get"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/webhooks/{webhook}/dead-letters/again": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Send Again
+         * @description Try events once more that were given up.
+         */
+        post: operations["send_again_api_v1_webhooks__webhook__dead_letters_again_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/why-not/goal": {
         parameters: {
             query?: never;
@@ -2661,6 +2765,22 @@ export interface components {
             revision: number;
             /** Seconds */
             seconds: number;
+        };
+        /**
+         * AgainAnswer
+         * @description How many events are sent again.
+         */
+        AgainAnswer: {
+            /** Events */
+            events: number;
+        };
+        /**
+         * AgainBody
+         * @description The numbers of the events to send again; null: all that were given up.
+         */
+        AgainBody: {
+            /** Events */
+            events?: number[] | null;
         };
         /**
          * AlarmBody
@@ -3376,6 +3496,29 @@ export interface components {
             revision: number;
         };
         /**
+         * DeadLetter
+         * @description An event that was given up, after so many attempts, and what went wrong in the last.
+         */
+        DeadLetter: {
+            /** Attempts */
+            attempts: number;
+            /** Died */
+            died: number;
+            event: components["schemas"]["JobEvent"];
+            /** Trouble */
+            trouble: string;
+        };
+        /**
+         * DeadLettersAnswer
+         * @description Events that were given up, the oldest first; `next` is the `after` with which to ask for what comes then.
+         */
+        DeadLettersAnswer: {
+            /** Dead Letters */
+            dead_letters: components["schemas"]["DeadLetter"][];
+            /** Next */
+            next: number;
+        };
+        /**
          * DecisionBody
          * @description Variables with their values, and why.
          */
@@ -3791,7 +3934,7 @@ export interface components {
                 [key: string]: components["schemas"]["JsonValue"];
             };
             /** @default done */
-            outcome: components["schemas"]["sequence_planner__journal__entry__Outcome"];
+            outcome: components["schemas"]["Outcome"];
             /** Reason */
             reason?: string | null;
             /**
@@ -3891,6 +4034,30 @@ export interface components {
             name?: string | null;
             /** Pipeline */
             pipeline: string;
+        };
+        /**
+         * ExpectedOperation
+         * @description When an operation is expected to start and to end.
+         */
+        ExpectedOperation: {
+            /** End */
+            end: number;
+            /** Operation */
+            operation: string;
+            /** Start */
+            start: number;
+        };
+        /**
+         * ExpectedOrder
+         * @description When an order is expected to be worked, and by how many seconds it is expected to be late.
+         */
+        ExpectedOrder: {
+            /** Id */
+            id: string;
+            /** Late */
+            late: number;
+            /** Operations */
+            operations: components["schemas"]["ExpectedOperation"][];
         };
         /**
          * FieldError
@@ -4269,6 +4436,12 @@ export interface components {
             /** Time */
             time: number;
         };
+        /**
+         * JobOutcome
+         * @description How an order ended.
+         * @enum {string}
+         */
+        JobOutcome: "completed" | "stopped" | "aborted";
         /**
          * JobState
          * @description Where a job stands.
@@ -4673,6 +4846,15 @@ export interface components {
             work_master: string;
         };
         /**
+         * NewWebhookAnswer
+         * @description A webhook and its secret, which is shown this once.
+         */
+        NewWebhookAnswer: {
+            /** Secret */
+            secret: string;
+            webhook: components["schemas"]["Webhook"];
+        };
+        /**
          * NodeView
          * @description A node, and the names of what it uses and serves.
          */
@@ -4924,6 +5106,27 @@ export interface components {
          */
         OrderCommand: "Start" | "RevokeStart" | "Pause" | "Resume" | "Stop" | "Abort" | "Cancel" | "Clear";
         /**
+         * OrderOfWorkAnswer
+         * @description The orders in the order in which they are to begin, as it was found at `time`; null while there is none.
+         *
+         *     It is `optimal` when no other has less weighted tardiness, or with it an earlier end. `fallback` says why it is only
+         *     that of priority and due time; empty if it is not. Times are in seconds since the epoch.
+         */
+        OrderOfWorkAnswer: {
+            /** Bound */
+            bound: number;
+            /** Fallback */
+            fallback: string;
+            /** Job Orders */
+            job_orders: components["schemas"]["ExpectedOrder"][];
+            /** Optimal */
+            optimal: boolean;
+            /** Tardiness */
+            tardiness: number;
+            /** Time */
+            time: number | null;
+        };
+        /**
          * OrderState
          * @description Where an order stands.
          * @enum {string}
@@ -4939,6 +5142,12 @@ export interface components {
             /** Next */
             next: number | null;
         };
+        /**
+         * Outcome
+         * @description How far an act has come. A command on the station is recorded before its effect, and again when it is known.
+         * @enum {string}
+         */
+        Outcome: "requested" | "done" | "refused" | "failed";
         /**
          * OutputsAct
          * @description Outputs that came back from the journal get these values.
@@ -5958,7 +6167,7 @@ export interface components {
          * @description What the bearer of a key may do.
          * @enum {string}
          */
-        Scope: "read" | "audit" | "orders-read" | "orders-write" | "metrics";
+        Scope: "read" | "audit" | "orders-read" | "orders-write" | "metrics" | "webhooks";
         /**
          * ServiceBody
          * @description Whether it is to be in service, and why.
@@ -6587,7 +6796,7 @@ export interface components {
             number: number;
             /** Operations */
             operations: components["schemas"]["OperationMade"][];
-            outcome: components["schemas"]["sequence_planner__mes__responses__Outcome"];
+            outcome: components["schemas"]["JobOutcome"];
             /** Work Master */
             work_master: string;
         };
@@ -7283,6 +7492,68 @@ export interface components {
             violated: components["schemas"]["SpecificationView"][];
         };
         /**
+         * Webhook
+         * @description Who is told, without the secret.
+         *
+         *     Events up to `position` were delivered, or wait, or were given up; `waiting` and `given_up` say how many. `failures`
+         *     counts attempts since the last delivery, after which nothing is sent before `held_until`; `trouble` is what went
+         *     wrong in the last of them. No `kinds` are all kinds of events.
+         */
+        Webhook: {
+            /** Created */
+            created: number;
+            /** Created By */
+            created_by: string;
+            /** Delivered */
+            delivered: number;
+            /** Failures */
+            failures: number;
+            /** Given Up */
+            given_up: number;
+            /** Held Until */
+            held_until: number;
+            /** Id */
+            id: string;
+            /** Kinds */
+            kinds: components["schemas"]["EventKind"][];
+            /** Last Delivered */
+            last_delivered: number | null;
+            /** Position */
+            position: number;
+            /** Title */
+            title: string;
+            /** Trouble */
+            trouble: string | null;
+            /** Url */
+            url: string;
+            /** Waiting */
+            waiting: number;
+        };
+        /**
+         * WebhookBody
+         * @description A new webhook: what people call it, where events are sent to, and of which kinds; none are all.
+         *
+         *     It is told of the events after the one with the number `after`; without, of those that are still to come.
+         */
+        WebhookBody: {
+            /** After */
+            after?: number | null;
+            /** Kinds */
+            kinds?: components["schemas"]["EventKind"][];
+            /** Title */
+            title: string;
+            /** Url */
+            url: string;
+        };
+        /**
+         * WebhooksAnswer
+         * @description All webhooks, the newest first.
+         */
+        WebhooksAnswer: {
+            /** Webhooks */
+            webhooks: components["schemas"]["Webhook"][];
+        };
+        /**
          * WhatIfBody
          * @description For how many seconds, and from which record of the past on; without one from the present.
          */
@@ -7444,18 +7715,6 @@ export interface components {
             /** Then */
             then: boolean | number | string;
         };
-        /**
-         * Outcome
-         * @description How far an act has come. A command on the station is recorded before its effect, and again when it is known.
-         * @enum {string}
-         */
-        sequence_planner__journal__entry__Outcome: "requested" | "done" | "refused" | "failed";
-        /**
-         * Outcome
-         * @description How an order ended.
-         * @enum {string}
-         */
-        sequence_planner__mes__responses__Outcome: "completed" | "stopped" | "aborted";
         /**
          * Standing
          * @description Whether something of a pipeline is sound.
@@ -10703,6 +10962,38 @@ export interface operations {
             };
         };
     };
+    read_api_v1_order_of_work_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["OrderOfWorkAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
     decide_api_v1_outputs_put: {
         parameters: {
             query?: never;
@@ -12329,6 +12620,197 @@ export interface operations {
             404: components["responses"]["Problem404"];
             408: components["responses"]["Problem408"];
             409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    all_webhooks_api_v1_webhooks_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["WebhooksAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    make_api_v1_webhooks_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["WebhookBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            201: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NewWebhookAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    remove_api_v1_webhooks__webhook__delete: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                webhook: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            204: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    dead_letters_api_v1_webhooks__webhook__dead_letters_get: {
+        parameters: {
+            query?: {
+                after?: number;
+                limit?: number;
+            };
+            header?: never;
+            path: {
+                webhook: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["DeadLettersAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    send_again_api_v1_webhooks__webhook__dead_letters_again_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                webhook: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["AgainBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["AgainAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];

@@ -19,7 +19,7 @@ from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.ledger import JobMade, Ledger, News
 from sequence_planner.mes.order import JobOrder
-from sequence_planner.mes.responses import JobResponse, OperationMade, Outcome
+from sequence_planner.mes.responses import JobOutcome, JobResponse, OperationMade
 from sequence_planner.mes.run_reading import read
 from sequence_planner.mes.states import OrderState
 from sequence_planner.mes.tables import JOB_LEDGER
@@ -28,9 +28,9 @@ from sequence_planner.storage.database import Database
 _PAGE: Final = 500  # records read at once
 _KEEP_EVERY: Final = 2000  # records after which it is kept how far they were read, though nothing has come of them
 _OUTCOMES: Final = {
-    JobState.ENDED: (Outcome.COMPLETED, OrderState.ENDED, EventKind.ENDED),
-    JobState.STOPPED: (Outcome.STOPPED, OrderState.ENDED, EventKind.ENDED),
-    JobState.ABORTED: (Outcome.ABORTED, OrderState.ABORTED, EventKind.ABORTED),
+    JobState.ENDED: (JobOutcome.COMPLETED, OrderState.ENDED, EventKind.ENDED),
+    JobState.STOPPED: (JobOutcome.STOPPED, OrderState.ENDED, EventKind.ENDED),
+    JobState.ABORTED: (JobOutcome.ABORTED, OrderState.ABORTED, EventKind.ABORTED),
 }
 
 
@@ -72,6 +72,9 @@ class Following:
                 happened.append((news, response(news.job, masters) if news.what == "over" else None))
         if happened or ledger.number - self._kept >= _KEEP_EVERY:
             with self._database.writing() as connection:
+                if _number(connection) != self._kept:  # where several stations share it another one has read on
+                    self._ledger = None
+                    return False, True
                 for news, made in happened:
                     note(connection, news, made)
                 _keep(connection, ledger)
@@ -129,6 +132,11 @@ def _over(connection: Connection, order: JobOrder, news: News, made: JobResponse
     told: dict[str, JsonValue] = {"state": state.value, "outcome": outcome.value, "response": number}
     told |= {} if order.wish is None else {"reason": order.wished_because}
     events.append(connection, kind, order.id, news.time, told)
+
+
+def _number(connection: Connection) -> int:
+    """Up to which record the database knows."""
+    return connection.execute(select(JOB_LEDGER.c.number)).scalar_one_or_none() or 0
 
 
 def _load(connection: Connection) -> Ledger:

@@ -139,7 +139,8 @@ export const account = {
 			audit: 'reads the journal',
 			metrics: 'reads figures for monitoring',
 			'orders-read': 'reads job orders, responses and events',
-			'orders-write': 'gives, changes and commands job orders'
+			'orders-write': 'gives, changes and commands job orders',
+			webhooks: 'says who is told of events, and where'
 		},
 		make: 'Make',
 		makeTitle: 'Make a key',

@@ -17,7 +17,6 @@ export const door = {
 		pair: 'Pair a watch'
 	},
 	provider: {
-		or: 'or',
 		title: (provider: string): string => `Sign in with ${provider}`,
 		under: (provider: string): string => `Going to ${provider}`,
 		finishing: (provider: string): string => `${provider} has answered. Signing in`,

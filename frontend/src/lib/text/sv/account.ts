@@ -144,7 +144,8 @@ export const account: Text['account'] = {
 			audit: 'läser journalen',
 			metrics: 'läser mätvärden för övervakning',
 			'orders-read': 'läser jobborder, svar och händelser',
-			'orders-write': 'lägger, ändrar och styr jobborder'
+			'orders-write': 'lägger, ändrar och styr jobborder',
+			webhooks: 'bestämmer vem som får veta om händelser, och var'
 		},
 		make: 'Skapa',
 		makeTitle: 'Skapa en nyckel',

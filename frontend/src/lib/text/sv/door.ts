@@ -18,7 +18,6 @@ export const door: Text['door'] = {
 		pair: 'Para ihop en klocka'
 	},
 	provider: {
-		or: 'eller',
 		title: (provider) => `Logga in med ${provider}`,
 		under: (provider) => `Går till ${provider}`,
 		finishing: (provider) => `${provider} har svarat. Loggar in`,
