@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
+import itertools
 import time
-from collections.abc import Iterator
 
 import httpx
 import pytest
 
 from sequence_planner.control.job_commands import SequenceJobs, TakeJob
 from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.view import Mode
 from sequence_planner.control.work_master_view import WorkMastersView, WorkMasterView, WorkOperationView
 from sequence_planner.web import order_of_work
 
@@ -68,7 +68,7 @@ def test_orders_are_to_begin_as_they_are_due(mes: httpx.Client) -> None:
     assert answer["optimal"]
     assert answer["tardiness"] == answer["bound"] == 0
     times = [each["operations"][0] for each in answer["job_orders"]]
-    assert all(one["end"] <= other["start"] + 0.01 for one, other in zip(times, times[1:], strict=False))
+    assert all(one["end"] <= other["start"] + 0.01 for one, other in itertools.pairwise(times))
     store(mes, "urgent", id="urgent", due=now + 1, priority=9, start=True)
     until(lambda: len(found()) == 5, 30)
     assert mes.get(PLACE).json()["job_orders"][0]["late"] > 0
