@@ -46,6 +46,7 @@ class Mortal:
     chance: random.Random
     url: str = ""
     standby: str | None = None
+    server: tuple[str, ...] = ()  # more options of it
     port: int = field(default_factory=free_port)
     seen: Counter[str] = field(default_factory=Counter)
     _parts: dict[str, subprocess.Popen[bytes]] = field(default_factory=dict)
@@ -61,7 +62,7 @@ class Mortal:
         arguments = {
             "emulate": ("--speed", str(SPEED)),
             "controller": (*socket, "--emulated", *(("--hot-standby", self.standby) if self.standby else ())),
-            "server": (*socket, "--page", str(self.folder), "--port", str(self.port)),
+            "server": (*socket, "--page", str(self.folder), "--port", str(self.port), *self.server),
         }[part]
         model = ("--model", str(MODEL)) if part == "server" else (str(MODEL),)
         with (self.folder / f"{part}.log").open("ab") as log:
@@ -251,15 +252,15 @@ class Mortal:
 
 
 @contextlib.contextmanager
-def mortal(seed: str) -> Iterator[Mortal]:
-    """The bolt tightening station with devices of its own, about to start."""
+def mortal(seed: str, *server: str) -> Iterator[Mortal]:
+    """The bolt tightening station with devices of its own, about to start; `server` are more options of that."""
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         database = Database.open(f"sqlite:///{folder}/station.sqlite")
         stack.callback(database.close)
         database.upgrade()
         wire = stack.enter_context(listening(truck_engine()[0]))
-        station = Mortal(folder, database, wire, random.Random(seed))
+        station = Mortal(folder, database, wire, random.Random(seed), server)
         stack.callback(station.end)
         for part in ("emulate", "server", "controller"):
             station.start(part)

@@ -169,7 +169,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
-        deliverer = Deliverer(office.database, Sender(settings.webhooks))
+        deliverer = Deliverer(office.database, Sender(settings.webhooks), stands_by=lambda: controller.stands_by)
         shows = (controller, broadcast, network, flows, watch_show)
         parts = (*shows, Sweeper(office, controller), desk, sequencing, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]

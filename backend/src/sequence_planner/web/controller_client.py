@@ -75,6 +75,12 @@ class ControllerClient:
         return self._writer is not None
 
     @property
+    def stands_by(self) -> bool:
+        """Whether another station commands, with which this one shares its database."""
+        standby = None if self.view is None else self.view.standby
+        return standby is not None and not standby.active
+
+    @property
     def heard(self) -> bool:
         """Whether a view came within the last two seconds."""
         return self.last_heard is not None and self._clock() - self.last_heard <= SILENCE

@@ -43,9 +43,8 @@ async def workshop(connection: HTTPConnection) -> Workshop:
     Who stands by has a folder of its own, which may be older than the draft that all share.
     """
     client: ControllerClient = connection.app.state.controller
-    standby = None if client.view is None else client.view.standby
-    if standby is not None and not standby.active:
-        detail = f"The model is edited at the station that commands, {standby.holder or 'another one'}. Open its page."
+    if client.stands_by:
+        detail = "The model is edited at the station that commands. Open its page."
         raise ProblemFound(503, "stands-by", "This station stands by", detail)
     found: Workshop | None = connection.app.state.workshop
     if found is None:

@@ -135,7 +135,7 @@ class OrderDesk:
     async def _look(self) -> None:
         # The view before the orders: a job that it does not show and that is still to be made was not forgotten.
         view, heard = self._view, self._controller.last_heard or 0.0
-        if view is not None and view.standby is not None and not view.standby.active:
+        if self._controller.stands_by:
             return  # the station that commands looks after orders
         masters = await self.work_masters()
         await self._read_orders()

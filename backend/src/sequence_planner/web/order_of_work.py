@@ -114,7 +114,7 @@ class OrderOfWorkDesk:
     async def _look(self) -> None:
         view = self._controller.view if self._controller.heard else None
         masters = await self._desk.work_masters()
-        if view is None or masters is None:
+        if view is None or masters is None or self._controller.stands_by:
             return
         question = asked(self._desk.orders, view, masters, await self._times(view))
         if len(question.works) < 2:

@@ -27,16 +27,22 @@ T = TypeVar("T")
 
 
 class Deliverer:
-    """Looks twice a second for what is to be delivered."""
+    """Looks twice a second for what is to be delivered, unless it `stands_by` for another that does."""
 
     def __init__(
-        self, database: Database, sender: Sender, pace: Pace | None = None, now: Callable[[], float] = time.time
+        self,
+        database: Database,
+        sender: Sender,
+        pace: Pace | None = None,
+        now: Callable[[], float] = time.time,
+        stands_by: Callable[[], bool] = lambda: False,
     ) -> None:
         self._database = database
         self._sender = sender
         self._seal = Seal(key_file(database.place))
         self._pace = pace or Pace()
         self._now = now
+        self._stands_by = stands_by
         self._under_way: dict[str, asyncio.Task[None]] = {}
         self._in_trouble = False
 
@@ -44,7 +50,8 @@ class Deliverer:
         """Deliver until cancelled. What fails is tried again and again."""
         try:
             while True:
-                await self._look()
+                if not self._stands_by():
+                    await self._look()
                 await asyncio.sleep(LOOK_EVERY)
         finally:
             for task in self._under_way.values():
