@@ -260,7 +260,7 @@ def mortal(seed: str, *server: str) -> Iterator[Mortal]:
         stack.callback(database.close)
         database.upgrade()
         wire = stack.enter_context(listening(truck_engine()[0]))
-        station = Mortal(folder, database, wire, random.Random(seed), server)
+        station = Mortal(folder, database, wire, random.Random(seed), server=server)
         stack.callback(station.end)
         for part in ("emulate", "server", "controller"):
             station.start(part)

@@ -10,7 +10,7 @@ from enum import StrEnum
 from typing import Final
 
 from pydantic import BaseModel, ConfigDict, JsonValue
-from sqlalchemy import Connection, func, insert, select
+from sqlalchemy import Connection, Select, func, insert, select
 
 from sequence_planner.control.view_part import Value
 from sequence_planner.mes.order import JobOrder
@@ -136,16 +136,31 @@ def page(connection: Connection, after: int, limit: int) -> list[StoredResponse]
     return _chosen(connection, after, limit, None)
 
 
+def latest(connection: Connection, before: int | None, limit: int) -> list[StoredResponse]:
+    """Up to `limit` responses with numbers below `before` (None: the last), the newest first; see `page`."""
+    chosen = _shown().order_by(JOB_RESPONSES.c.number.desc()).limit(limit)
+    if before is not None:
+        chosen = chosen.where(JOB_RESPONSES.c.number < before)
+    return _read(connection, chosen)
+
+
 def _chosen(connection: Connection, after: int, limit: int, job_order: str | None) -> list[StoredResponse]:
-    chosen = (
-        select(JOB_RESPONSES.c.number, JOB_RESPONSES.c.content)
-        .join(JOB_ORDERS, JOB_ORDERS.c.id == JOB_RESPONSES.c.job_order)
-        .where(JOB_RESPONSES.c.number > after, JOB_ORDERS.c.removed.is_(None))
-        .order_by(JOB_RESPONSES.c.number)
-        .limit(limit)
-    )
+    chosen = _shown().where(JOB_RESPONSES.c.number > after).order_by(JOB_RESPONSES.c.number).limit(limit)
     if job_order is not None:
         chosen = chosen.where(JOB_RESPONSES.c.job_order == job_order)
+    return _read(connection, chosen)
+
+
+def _shown() -> Select[int, str]:
+    """The responses of orders that are not cleared."""
+    return (
+        select(JOB_RESPONSES.c.number, JOB_RESPONSES.c.content)
+        .join(JOB_ORDERS, JOB_ORDERS.c.id == JOB_RESPONSES.c.job_order)
+        .where(JOB_ORDERS.c.removed.is_(None))
+    )
+
+
+def _read(connection: Connection, chosen: Select[int, str]) -> list[StoredResponse]:
     found = []
     for number, content in connection.execute(chosen):
         response = JobResponse.model_validate_json(content)

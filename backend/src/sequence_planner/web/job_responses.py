@@ -6,6 +6,7 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel
+from sqlalchemy import Connection
 
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.mes import responses
@@ -35,11 +36,18 @@ async def read(
     identity: Identity,
     cursor: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
     limit: Annotated[int, Query(ge=1, le=MOST_RESPONSES)] = 10,
+    newest: Annotated[bool, Query()] = False,
 ) -> ResponsesAnswer:
     """What was made of the orders that are over, in the order in which they were; orders that are cleared are left
-    out.
+    out. With `newest` it goes back from the last one.
     """
-    found = await identity.read(lambda connection: responses.page(connection, cursor, limit + 1))
+
+    def chosen(connection: Connection) -> list[StoredResponse]:
+        if newest:
+            return responses.latest(connection, cursor or None, limit + 1)
+        return responses.page(connection, cursor, limit + 1)
+
+    found = await identity.read(chosen)
     shown = found[:limit]
     return ResponsesAnswer(job_responses=shown, next=shown[-1].number if len(found) > limit else None)
 

@@ -1,0 +1,87 @@
+import { describe, expect, test } from 'vitest';
+import type { JobOrder, OrderOfWork } from '#lib/contract.ts';
+import { viewOf } from '#lib/testing/view.ts';
+import { inOrder, lateOf, localIn, progressOf, secondsOf, titleOf } from './orders.ts';
+
+function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
+	return {
+		id,
+		work_master: 'truck_engine',
+		description: '',
+		priority: 0,
+		due: null,
+		earliest: null,
+		state: 'AllowedToStart',
+		commanded: null,
+		allowed: [],
+		revision: 1,
+		stored: 0,
+		stored_by: 'MES',
+		changed: 0,
+		began: null,
+		ended: null,
+		waits_for: [],
+		...rest
+	};
+}
+
+const FOUND: OrderOfWork = {
+	time: 1,
+	job_orders: [
+		{ id: 'c', late: 12, operations: [] },
+		{ id: 'a', late: 0, operations: [] }
+	],
+	tardiness: 12,
+	bound: 12,
+	optimal: true,
+	fallback: ''
+};
+
+describe('orders are listed', () => {
+	const ids = (orders: readonly JobOrder[], found: OrderOfWork | null): string => inOrder(orders, found).map(({ id }) => id).join(' ');
+
+	test('those that are worked on first, then as they are to begin', () => {
+		const orders = [order('a'), order('b', { state: 'Running' }), order('c'), order('d', { state: 'NotAllowedToStart', priority: 9 })];
+		expect(ids(orders, FOUND)).toBe('b c a d');
+	});
+
+	test('by priority, time and age where no order of work was found', () => {
+		const orders = [order('late', { due: 20 }), order('old'), order('soon', { due: 10 }), order('urgent', { priority: 5 }), order('new', { stored: 9 })];
+		expect(ids(orders, null)).toBe('urgent soon late old new');
+	});
+});
+
+test('an order without a description is called by its id', () => {
+	expect(titleOf(order('e-1', { description: '  ' }))).toBe('e-1');
+	expect(titleOf(order('e-1', { description: 'Engine 1' }))).toBe('Engine 1');
+});
+
+test('how late an order is expected to be', () => {
+	expect(lateOf(FOUND, 'c')).toBe(12);
+	expect(lateOf(FOUND, 'x')).toBe(0);
+	expect(lateOf(null, 'c')).toBe(0);
+});
+
+test('how far an order has come is told by its job', () => {
+	const step = { waits_for: [], started: null, ended: null };
+	const job = {
+		title: 'e-1',
+		work_master: 'truck_engine',
+		state: 'running' as const,
+		stopping: false,
+		taken: 0,
+		begun: 0,
+		ended: null,
+		waits_for: [],
+		steps: { place: { ...step, state: 'completed' as const }, tighten: { ...step, state: 'active' as const } }
+	};
+	expect(progressOf(viewOf({ jobs: { 'e-1': job } }), 'e-1')).toEqual({ done: 1, all: 2, active: ['tighten'] });
+	expect(progressOf(viewOf({}), 'e-1')).toBeNull();
+	expect(progressOf(null, 'e-1')).toBeNull();
+});
+
+test('a local time means the moment that it names here', () => {
+	const now = Date.UTC(2026, 10, 22, 12, 30);
+	expect(secondsOf(localIn(60, now))).toBe(now / 1000 + 3600);
+	expect(secondsOf('')).toBeNull();
+});
