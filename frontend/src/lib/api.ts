@@ -3485,7 +3485,7 @@ export interface components {
                 [key: string]: components["schemas"]["JsonValue"];
             };
             /** @default done */
-            outcome: components["schemas"]["sequence_planner__journal__entry__Outcome"];
+            outcome: components["schemas"]["Outcome"];
             /** Reason */
             reason?: string | null;
             /**
@@ -3931,6 +3931,12 @@ export interface components {
             /** Time */
             time: number;
         };
+        /**
+         * JobOutcome
+         * @description How an order ended.
+         * @enum {string}
+         */
+        JobOutcome: "completed" | "stopped" | "aborted";
         /**
          * JobState
          * @description Where a job stands.
@@ -4597,6 +4603,12 @@ export interface components {
             /** Next */
             next: number | null;
         };
+        /**
+         * Outcome
+         * @description How far an act has come. A command on the station is recorded before its effect, and again when it is known.
+         * @enum {string}
+         */
+        Outcome: "requested" | "done" | "refused" | "failed";
         /**
          * OverrideBody
          * @description The values of the fields that are to be set; others are as they come.
@@ -6103,7 +6115,7 @@ export interface components {
             number: number;
             /** Operations */
             operations: components["schemas"]["OperationMade"][];
-            outcome: components["schemas"]["sequence_planner__mes__responses__Outcome"];
+            outcome: components["schemas"]["JobOutcome"];
             /** Work Master */
             work_master: string;
         };
@@ -6958,18 +6970,6 @@ export interface components {
             /** Then */
             then: boolean | number | string;
         };
-        /**
-         * Outcome
-         * @description How far an act has come. A command on the station is recorded before its effect, and again when it is known.
-         * @enum {string}
-         */
-        sequence_planner__journal__entry__Outcome: "requested" | "done" | "refused" | "failed";
-        /**
-         * Outcome
-         * @description How an order ended.
-         * @enum {string}
-         */
-        sequence_planner__mes__responses__Outcome: "completed" | "stopped" | "aborted";
         /**
          * Standing
          * @description Whether something of a pipeline is sound.

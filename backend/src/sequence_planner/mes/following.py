@@ -19,7 +19,7 @@ from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.ledger import JobMade, Ledger, News
 from sequence_planner.mes.order import JobOrder
-from sequence_planner.mes.responses import JobResponse, OperationMade, Outcome
+from sequence_planner.mes.responses import JobResponse, OperationMade, JobOutcome
 from sequence_planner.mes.run_reading import read
 from sequence_planner.mes.states import OrderState
 from sequence_planner.mes.tables import JOB_LEDGER
@@ -28,9 +28,9 @@ from sequence_planner.storage.database import Database
 _PAGE: Final = 500  # records read at once
 _KEEP_EVERY: Final = 2000  # records after which it is kept how far they were read, though nothing has come of them
 _OUTCOMES: Final = {
-    JobState.ENDED: (Outcome.COMPLETED, OrderState.ENDED, EventKind.ENDED),
-    JobState.STOPPED: (Outcome.STOPPED, OrderState.ENDED, EventKind.ENDED),
-    JobState.ABORTED: (Outcome.ABORTED, OrderState.ABORTED, EventKind.ABORTED),
+    JobState.ENDED: (JobOutcome.COMPLETED, OrderState.ENDED, EventKind.ENDED),
+    JobState.STOPPED: (JobOutcome.STOPPED, OrderState.ENDED, EventKind.ENDED),
+    JobState.ABORTED: (JobOutcome.ABORTED, OrderState.ABORTED, EventKind.ABORTED),
 }
 
 
