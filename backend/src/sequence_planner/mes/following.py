@@ -19,7 +19,7 @@ from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.ledger import JobMade, Ledger, News
 from sequence_planner.mes.order import JobOrder
-from sequence_planner.mes.responses import JobResponse, OperationMade, JobOutcome
+from sequence_planner.mes.responses import JobOutcome, JobResponse, OperationMade
 from sequence_planner.mes.run_reading import read
 from sequence_planner.mes.states import OrderState
 from sequence_planner.mes.tables import JOB_LEDGER
