@@ -16,7 +16,8 @@ from sequence_planner.web import order_of_work
 
 from .example_answers import WORK_MASTERS
 from .running import Server, until
-from .test_job_orders import Telling, controller, mes, store, tell
+from .test_job_orders import controller, mes, store, tell
+from .test_looking import Telling
 
 __all__ = ["controller", "mes"]
 
