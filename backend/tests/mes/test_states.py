@@ -9,16 +9,27 @@ from dataclasses import dataclass, field
 
 import pytest
 from hypothesis import strategies as st
-from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
+from hypothesis.stateful import (
+    RuleBasedStateMachine,
+    initialize,
+    invariant,
+    precondition,
+    rule,
+    run_state_machine_as_test,
+)
 from sqlalchemy import Connection, delete, select
 
 from core.budget import examples
 from sequence_planner.actor import Actor, ActorKind
+from sequence_planner.control.job_view import JobState
+from sequence_planner.control.work_master_view import WorkMastersView
 from sequence_planner.journal import audit
 from sequence_planner.mes import events, orders, responses
+from sequence_planner.mes.following import note, response
+from sequence_planner.mes.ledger import JobMade, News
 from sequence_planner.mes.order import JobOrder, OrderContent
 from sequence_planner.mes.refusal import OrderRefused
-from sequence_planner.mes.states import OrderCommand, OrderState
+from sequence_planner.mes.states import OrderCommand, OrderState, Wish, allowed
 from sequence_planner.mes.tables import JOB_EVENTS, JOB_ORDERS, JOB_RESPONSES
 from sequence_planner.storage.database import Database
 
@@ -94,6 +105,7 @@ class Orders(RuleBasedStateMachine):
         names = list(self.expected)
         return (names[which % len(names)], self.expected[names[which % len(names)]]) if names else None
 
+    @precondition(lambda self: len(self.expected) < 3)  # few, so that each comes far
     @rule(start=st.booleans(), named=st.booleans())
     def store(self, start: bool, named: bool) -> None:
         self.now += 1
@@ -112,12 +124,14 @@ class Orders(RuleBasedStateMachine):
             orders.store(connection, OrderContent(work_master="engine"), MES, self.now, id=picked[0], start=True)
         assert refused.value.slug == "job-order-exists"
 
-    @rule(which=st.integers(0, 9), given=st.sampled_from(OrderCommand))
-    def command(self, which: int, given: OrderCommand) -> None:
+    @rule(which=st.integers(0, 9), number=st.integers(0, 7), sensible=st.booleans())
+    def command(self, which: int, number: int, sensible: bool) -> None:
         if (picked := self.pick(which)) is None:
             return
         id, expected = picked
         self.now += 1
+        able = sorted(expected.allowed() if sensible else OrderCommand) or list(OrderCommand)
+        given = OrderCommand(able[number % len(able)])
         try:
             with self.database.writing() as connection:
                 orders.command(connection, id, given, MES, "as planned", self.now)
@@ -187,6 +201,58 @@ class Orders(RuleBasedStateMachine):
                 expected.state, expected.wish = ABORTED, None
                 expected.told.append("job-order-aborted")
 
+    @rule(which=st.integers(0, 9))
+    def station_takes(self, which: int) -> None:
+        if (picked := self.pick(which)) is None or not picked[1].at_station:
+            return
+        id, expected = picked
+        with self.database.writing() as connection:
+            note(connection, News("taken", made(id), self.now), None)
+        if expected.state == READY:
+            expected.state = RUNNING
+            expected.revision += 1
+            expected.told.append("job-order-running")
+
+    @rule(which=st.integers(0, 9))
+    def station_pauses_or_resumes(self, which: int) -> None:
+        if (picked := self.pick(which)) is None or picked[1].wish not in ("pause", "resume"):
+            return
+        id, expected = picked
+        with self.database.writing() as connection:
+            assert orders.granted(connection, orders_named(connection, id), self.now) is not None
+        pausing = expected.wish == "pause"
+        expected.state, expected.wish = INTERRUPTED if pausing else RUNNING, None
+        expected.revision += 1
+        expected.told.append("job-order-interrupted" if pausing else "job-order-running")
+
+    @rule(which=st.integers(0, 9))
+    def station_refuses_what_is_wished_for(self, which: int) -> None:
+        if (picked := self.pick(which)) is None or picked[1].wish is None:
+            return
+        id, expected = picked
+        with self.database.writing() as connection:
+            orders.refused(connection, orders_named(connection, id), self.now)
+        expected.wish = None
+        expected.revision += 1
+
+    @rule(which=st.integers(0, 9), how=st.sampled_from((JobState.ENDED, JobState.STOPPED, JobState.ABORTED)))
+    def job_ends(self, which: int, how: JobState) -> None:
+        if (picked := self.pick(which)) is None or not picked[1].at_station:
+            return
+        id, expected = picked
+        job = made(id, how)
+        with self.database.writing() as connection:
+            for _ in range(2):  # told twice, it has happened once
+                note(
+                    connection,
+                    News("over", job, self.now),
+                    response(job, WorkMastersView(work_masters={}, abilities={})),
+                )
+        expected.state = ABORTED if how is JobState.ABORTED else ENDED
+        expected.at_station, expected.wish = False, None
+        expected.revision += 1
+        expected.told.append(f"job-order-{expected.state.lower()}")
+
     @invariant()
     def every_order_is_as_it_should_be_and_everything_is_told_once(self) -> None:
         with self.database.reading() as connection:
@@ -219,11 +285,27 @@ class Orders(RuleBasedStateMachine):
             assert orders.count_open(connection) == len(shown) - len(over)
 
 
+def made(id: str, state: JobState = JobState.RUNNING) -> JobMade:
+    """The job of an order."""
+    return JobMade(job=id, work_master="engine", state=state, taken=5.0, ended=6.0 if state.is_over else None)
+
+
 def orders_named(connection: Connection, id: str) -> JobOrder:
     """The order as somebody read it before."""
     found = orders.find(connection, id)
     assert found is not None
     return found
+
+
+@pytest.mark.parametrize("state", OrderState)
+@pytest.mark.parametrize("wish", [None, *Wish])
+def test_each_state_allows_what_the_table_says(state: OrderState, wish: Wish | None) -> None:
+    over = state.value in (ENDED, ABORTED)
+    if wish is None and state.value not in (RUNNING, INTERRUPTED):
+        assert set(allowed(state, handed_over=over, wish=None)) == Expected(state.value).allowed()
+    if state.value in (READY, RUNNING, INTERRUPTED):
+        expected = Expected(state.value, at_station=True, wish=wish)
+        assert set(allowed(state, handed_over=True, wish=wish)) == expected.allowed()
 
 
 def test_the_life_of_an_order_is_that_of_the_table(database: Database) -> None:

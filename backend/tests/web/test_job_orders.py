@@ -18,6 +18,7 @@ from sequence_planner.mes import answers
 from sequence_planner.web.settings import Settings
 
 from .bearers import key
+from .example_view import example_view
 from .running import Loop, Server, until
 from .test_acting import problem
 from .test_docs_curl import snippet, typed
@@ -29,8 +30,9 @@ ENGINE = {"work_master": "truck_engine", "priority": 3, "due": 2000.5, "descript
 
 @pytest.fixture
 def controller(loop: Loop, settings: Settings) -> Iterator[Telling]:
-    """A controller that knows what jobs consist of."""
+    """A controller that knows what jobs consist of; the station works freely, so orders wait."""
     controller = Telling(loop, settings.controller_socket)
+    controller.view = example_view(by_order=False, jobs={})
     controller.link = ControllerLink(settings.controller_socket, controller.handle, controller.answer)
     controller.start()
     yield controller
@@ -70,6 +72,7 @@ def test_an_order_is_stored_started_and_told(mes: httpx.Client, server: Server) 
     started = tell(mes, "engine-4711", "Start", "the shift begins")
     assert (started.status_code, started.json()["state"]) == (200, "AllowedToStart")
     assert started.headers["etag"] == '"2"' == mes.get(f"{ORDERS}/engine-4711").headers["etag"]
+    until(lambda: mes.get(f"{ORDERS}/engine-4711").json()["waits_for"] == ["the station works freely"])
     assert told(mes) == [(1, "job-order-stored", "engine-4711"), (2, "job-order-allowed", "engine-4711")]
     assert told(mes, 1) == [(2, "job-order-allowed", "engine-4711")]
     with server.identity.database.reading() as connection:

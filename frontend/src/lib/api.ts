@@ -3628,7 +3628,7 @@ export interface components {
                 [key: string]: components["schemas"]["JsonValue"];
             };
             /** @default done */
-            outcome: components["schemas"]["sequence_planner__journal__entry__Outcome"];
+            outcome: components["schemas"]["Outcome"];
             /** Reason */
             reason?: string | null;
             /**
@@ -4098,6 +4098,12 @@ export interface components {
             /** Time */
             time: number;
         };
+        /**
+         * JobOutcome
+         * @description How an order ended.
+         * @enum {string}
+         */
+        JobOutcome: "completed" | "stopped" | "aborted";
         /**
          * JobState
          * @description Where a job stands.
@@ -4794,6 +4800,12 @@ export interface components {
             /** Next */
             next: number | null;
         };
+        /**
+         * Outcome
+         * @description How far an act has come. A command on the station is recorded before its effect, and again when it is known.
+         * @enum {string}
+         */
+        Outcome: "requested" | "done" | "refused" | "failed";
         /**
          * OverrideBody
          * @description The values of the fields that are to be set; others are as they come.
@@ -6300,7 +6312,7 @@ export interface components {
             number: number;
             /** Operations */
             operations: components["schemas"]["OperationMade"][];
-            outcome: components["schemas"]["sequence_planner__mes__responses__Outcome"];
+            outcome: components["schemas"]["JobOutcome"];
             /** Work Master */
             work_master: string;
         };
@@ -7217,18 +7229,6 @@ export interface components {
             /** Then */
             then: boolean | number | string;
         };
-        /**
-         * Outcome
-         * @description How far an act has come. A command on the station is recorded before its effect, and again when it is known.
-         * @enum {string}
-         */
-        sequence_planner__journal__entry__Outcome: "requested" | "done" | "refused" | "failed";
-        /**
-         * Outcome
-         * @description How an order ended.
-         * @enum {string}
-         */
-        sequence_planner__mes__responses__Outcome: "completed" | "stopped" | "aborted";
         /**
          * Standing
          * @description Whether something of a pipeline is sound.

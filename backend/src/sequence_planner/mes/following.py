@@ -19,7 +19,7 @@ from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.ledger import JobMade, Ledger, News
 from sequence_planner.mes.order import JobOrder
-from sequence_planner.mes.responses import JobResponse, OperationMade, Outcome
+from sequence_planner.mes.responses import JobOutcome, JobResponse, OperationMade
 from sequence_planner.mes.run_reading import read
 from sequence_planner.mes.states import OrderState
 from sequence_planner.mes.tables import JOB_LEDGER
@@ -28,9 +28,9 @@ from sequence_planner.storage.database import Database
 _PAGE: Final = 500  # records read at once
 _KEEP_EVERY: Final = 2000  # records after which it is kept how far they were read, though nothing has come of them
 _OUTCOMES: Final = {
-    JobState.ENDED: (Outcome.COMPLETED, OrderState.ENDED, EventKind.ENDED),
-    JobState.STOPPED: (Outcome.STOPPED, OrderState.ENDED, EventKind.ENDED),
-    JobState.ABORTED: (Outcome.ABORTED, OrderState.ABORTED, EventKind.ABORTED),
+    JobState.ENDED: (JobOutcome.COMPLETED, OrderState.ENDED, EventKind.ENDED),
+    JobState.STOPPED: (JobOutcome.STOPPED, OrderState.ENDED, EventKind.ENDED),
+    JobState.ABORTED: (JobOutcome.ABORTED, OrderState.ABORTED, EventKind.ABORTED),
 }
 
 
@@ -73,7 +73,7 @@ class Following:
         if happened or ledger.number - self._kept >= _KEEP_EVERY:
             with self._database.writing() as connection:
                 for news, made in happened:
-                    _apply(connection, news, made)
+                    note(connection, news, made)
                 _keep(connection, ledger)
             self._kept = ledger.number
         self._ledger = ledger
@@ -99,7 +99,7 @@ def response(job: JobMade, masters: WorkMastersView) -> JobResponse:
     )
 
 
-def _apply(connection: Connection, news: News, made: JobResponse | None) -> None:
+def note(connection: Connection, news: News, made: JobResponse | None) -> None:
     """Let an order be as its job is. Of jobs that nobody has ordered here there is nothing to note."""
     order = orders.find(connection, news.job.job)
     if order is None or order.is_over:

@@ -20,7 +20,7 @@ from sequence_planner.mes.tables import JOB_ORDERS, JOB_RESPONSES
 _FORM: Final = ConfigDict(frozen=True, extra="forbid")
 
 
-class Outcome(StrEnum):
+class JobOutcome(StrEnum):
     """How an order ended."""
 
     COMPLETED = "completed"
@@ -84,7 +84,7 @@ class JobResponse(BaseModel):
     job_order: str
     work_master: str
     description: str
-    outcome: Outcome
+    outcome: JobOutcome
     began: float | None  # when the station began to work on it
     ended: float
     operations: list[OperationMade]
@@ -107,7 +107,7 @@ def nothing_made(order: JobOrder) -> JobResponse:
         job_order=order.id,
         work_master=order.work_master,
         description=order.description,
-        outcome=Outcome.ABORTED,
+        outcome=JobOutcome.ABORTED,
         began=None,
         ended=order.ended,
         operations=[],
