@@ -24,8 +24,8 @@ SUBJECT = Subject(
     f"In each day it gives {ORDERS} orders, some of them twice, and changes, pauses, stops or aborts some. Meanwhile\n"
     f"{TROUBLES} times, at moments drawn by seed, a device has a fault, or `kill -9` ends the server or the\n"
     "controller, which people then bring back to work. In the end all orders must be over, the abilities and\n"
-    "operations of all responses must be exactly those that the run's journal has, each once, and so must those of the\n"
-    "events; and the webhook of an administrator must have been told each event, signed.",
+    "operations of all responses must be exactly those that the run's journal has, each once, and so must those of\n"
+    "the events; and the webhook of an administrator must have been told each event, signed.",
     {"days": Kind(orders, 6, kept_every=1)},
 )
 

@@ -98,7 +98,8 @@ def day(seed: str, orders: int, troubles: int) -> Counter[str]:
             assert of_day.differences() == []
             assert of_day.over == {f"day.{number}" for number in range(orders)}
             _require_told(station, receiver, secret, client)
-            return station.seen + of_day.told
+            seen: Counter[str] = station.seen + of_day.told
+            return seen
 
 
 def _key(station: Mortal) -> str:

@@ -11,7 +11,7 @@ import pytest
 from sequence_planner.control.job_commands import SequenceJobs, TakeJob
 from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
 from sequence_planner.control.view import Mode
-from sequence_planner.control.work_master_view import WorkMastersView, WorkMasterView, WorkOperationView
+from sequence_planner.control.work_master_view import WorkMasterView, WorkOperationView
 from sequence_planner.web import order_of_work
 
 from .example_answers import WORK_MASTERS
@@ -29,14 +29,13 @@ def _soon(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(order_of_work, "LOOK_EVERY", 0.05)
     monkeypatch.setattr(order_of_work, "ASK_EVERY", 0.2)
     monkeypatch.setattr(order_of_work, "LIMIT", 20.0)
+    for name in ("left", "right"):  # before the server asks what there is
+        monkeypatch.setitem(WORK_MASTERS.work_masters, name, master(name))
 
 
 def master(title: str) -> WorkMasterView:
     operation = WorkOperationView(title=title, after=[], goal_reads=["robot.pose"])
     return WorkMasterView(title=title, brings=[], brought=[], operations={f"work {title}": operation})
-
-
-TWO = WorkMastersView(work_masters={name: master(name) for name in ("left", "right")}, abilities={})
 
 
 def job(title: str, state: JobStepState, started: float | None) -> JobView:
@@ -80,8 +79,6 @@ def test_orders_are_to_begin_as_they_are_due(mes: httpx.Client) -> None:
 def test_the_station_is_told_which_operation_waits_for_which(
     mes: httpx.Client, controller: Telling, server: Server, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setitem(WORK_MASTERS.work_masters, "left", TWO.work_masters["left"])
-    monkeypatch.setitem(WORK_MASTERS.work_masters, "right", TWO.work_masters["right"])
     controller.show(controller.view.model_copy(update={"jobs": {}, "mode": Mode.AUTOMATIC, "by_order": True}))
     for name in ("left", "right"):
         store(mes, name, id=name, work_master=name, due=None, start=True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import replace
+from math import inf
 from typing import Final, TypeAlias
 
 from sequence_planner.mes.sequencing.dispatching import RULES, by_priority, dispatch
@@ -22,10 +23,10 @@ def sequence(
     exclusive: Iterable[Collection[str]],
     now: float,
     limit: float,
-    spent: Callable[[], bool] = lambda: False,
+    remaining: Callable[[], float] = lambda: inf,
 ) -> Schedule:
-    """The order of work after at most about `limit` seconds. The same question has the same answer, unless time is
-    `spent` before.
+    """The order of work after at most about `limit` seconds. The same question has the same answer, unless the search
+    ends before because no seconds on the wall are `remaining`.
 
     Of the jobs of one set in `exclusive` no two overlap: pairs, or larger groups. What counts is the tardiness of jobs
     times their weights, then the time at which all is done, then when each job ends. Raises `ValueError` for works that
@@ -35,7 +36,7 @@ def sequence(
 
     problem = instance(works, exclusive, now)
     best = min((dispatch(problem, rule) for rule in RULES), key=lambda starts: cost(problem, starts))
-    found = improve(problem, best, EFFORT * limit, spent)
+    found = improve(problem, best, EFFORT * limit, remaining)
     return replace(_told(works, problem, found.starts, found.bound), optimal=found.proven)
 
 

@@ -8,8 +8,9 @@ measure of work make the same question have the same answer on every machine.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from math import inf
 
 from ortools.sat.python import cp_model
 
@@ -30,18 +31,34 @@ class Solved:
     proven: bool
 
 
-def solve(problem: Instance, jobs: Sequence[int], placed: Iterable[int], given: Starts, work: float) -> Solved:
+def solve(
+    problem: Instance,
+    jobs: Sequence[int],
+    placed: Iterable[int],
+    given: Starts,
+    work: float,
+    remaining: Callable[[], float],
+) -> Solved:
     """The tasks of `jobs` that have not started, put to where they are best; the tasks `placed` stay as in `given`.
 
-    `given` is a schedule, than which this one is no worse for these jobs. `work` is about in seconds.
+    `given` is a schedule, than which this one is no worse for these jobs. `work` is about in seconds; it ends
+    before that when no seconds are `remaining`.
     """
-    return _Solving(problem, jobs, placed, given).run(work)
+    return _Solving(problem, jobs, placed, given, remaining).run(work)
 
 
 class _Solving:
-    def __init__(self, problem: Instance, jobs: Sequence[int], placed: Iterable[int], given: Starts) -> None:
+    def __init__(
+        self,
+        problem: Instance,
+        jobs: Sequence[int],
+        placed: Iterable[int],
+        given: Starts,
+        remaining: Callable[[], float],
+    ) -> None:
         self._problem = problem
         self._jobs = jobs
+        self._remaining = remaining
         self._best = list(given)
         self._tasks = [task for job in jobs for task in problem.movable(job)]
         self._placed = list(placed) + [number for number, task in enumerate(problem.tasks) if task.end is not None]
@@ -84,6 +101,8 @@ class _Solving:
         solver.parameters.interleave_search = True  # the one worker takes turns with all strategies, the local ones too
         solver.parameters.random_seed = 1
         solver.parameters.max_deterministic_time = max(work, 1e-3)
+        if (left := self._remaining()) < inf:  # a machine that is busier than was thought
+            solver.parameters.max_time_in_seconds = max(left, 1e-3)
         status = solver.solve(self._model)
         if status in (cp_model.INFEASIBLE, cp_model.MODEL_INVALID):
             raise RuntimeError(f"the schedule that was given is none of the model: {solver.status_name(status)}")

@@ -30,19 +30,19 @@ class Improved:
     proven: bool
 
 
-def improve(problem: Instance, given: Starts, work: float, spent: Callable[[], bool]) -> Improved:
-    """A schedule no worse than the given one, after about so many seconds of work or as soon as time is `spent`."""
+def improve(problem: Instance, given: Starts, work: float, remaining: Callable[[], float]) -> Improved:
+    """A schedule no worse than the given one, after about so many seconds of work, or when none are `remaining`."""
     starts = list(given)
     waiting = sorted(range(len(problem.jobs)), key=lambda job: _begin(problem, starts, job))
     done: list[int] = []  # jobs that stay
     left = work
-    while waiting and left > 0.0 and not spent():
+    while waiting and left > 0.0 and remaining() > 0.0:
         window = _window(problem, waiting)
         behind = waiting[len(window) :]
         whole = not done and not behind
         share = left if whole else left / 2 if not done else left / 8
         left -= share + _AROUND
-        solved = solve(problem, window, in_order(problem, starts, done), starts, share)
+        solved = solve(problem, window, in_order(problem, starts, done), starts, share, remaining)
         sequence = in_order(problem, solved.starts, [*done, *window]) + in_order(problem, starts, behind)
         candidate = pack(problem, sequence)
         if cost(problem, candidate) <= cost(problem, starts):
