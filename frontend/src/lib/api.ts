@@ -845,7 +845,7 @@ export interface paths {
         /**
          * Read
          * @description What was made of the orders that are over, in the order in which they were; orders that are cleared are left
-         *     out.
+         *     out. With `newest` it goes back from the last one.
          */
         get: operations["read_api_v1_job_responses_get"];
         put?: never;
@@ -9603,6 +9603,7 @@ export interface operations {
             query?: {
                 cursor?: number;
                 limit?: number;
+                newest?: boolean;
             };
             header?: never;
             path?: never;
