@@ -27,6 +27,7 @@ export const GROUPS: readonly [Group, ...Group[]] = [
 			{ address: '/state', title: 'state', role: 'viewer' },
 			{ address: '/alarms', title: 'alarms', role: 'viewer' },
 			{ address: '/history', title: 'history', role: 'operator' },
+			{ address: '/orders', title: 'orders', role: 'viewer' },
 			{ address: '/ros', title: 'ros', role: 'viewer' }
 		]
 	},

@@ -1,12 +1,8 @@
 /** Job orders as they are shown: in which order, what they are called, and what there is to ask of them. */
-import type { JobOrder, OrderCommand, OrderOfWork, StationView } from '#lib/contract.ts';
+import type { JobOrder, OrderOfWork, StationView } from '#lib/contract.ts';
 
 /** The states of an order that is not over, those first that the station works on. */
 export const OPEN = ['Running', 'Interrupted', 'AllowedToStart', 'NotAllowedToStart'] as const;
-/** Commands after which nothing more is made of an order. */
-export const FINAL: ReadonlySet<OrderCommand> = new Set(['Stop', 'Abort', 'Cancel']);
-/** Milliseconds of a minute, to which times are given. */
-const MINUTE = 60_000;
 
 /** What an order is called. */
 export function titleOf({ description, id }: Pick<JobOrder, 'description' | 'id'>): string {
@@ -59,10 +55,4 @@ export function lateOf(found: OrderOfWork | null, id: string): number {
 export function secondsOf(local: string): number | null {
 	const time = Date.parse(local);
 	return Number.isNaN(time) ? null : time / 1000;
-}
-
-/** What a field for local date and time holds `minutes` from now. */
-export function localIn(minutes: number, now: number): string {
-	const at = new Date(now + minutes * MINUTE);
-	return new Date(at.getTime() - at.getTimezoneOffset() * MINUTE).toISOString().slice(0, 16);
 }

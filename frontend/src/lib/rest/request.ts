@@ -13,6 +13,8 @@ export interface Rest {
 	readonly body?: object;
 	/** The revision that the change was made upon, in double quotes. */
 	readonly ifMatch?: string;
+	/** What is sent again with the same is done once. */
+	readonly idempotencyKey?: string;
 	/** Milliseconds after which an answer is no longer waited for. */
 	readonly patience?: number;
 }
@@ -48,11 +50,12 @@ export function aheadOf(header: string | null, now: number): number {
 export async function request<Value = undefined>(
 	method: Method,
 	path: string,
-	{ body, ifMatch, patience = PATIENCE }: Rest = {}
+	{ body, ifMatch, idempotencyKey, patience = PATIENCE }: Rest = {}
 ): Promise<Answer<Value>> {
 	const headers: Record<string, string> = {};
 	if (body !== undefined) headers['Content-Type'] = 'application/json';
 	if (ifMatch !== undefined) headers['If-Match'] = ifMatch;
+	if (idempotencyKey !== undefined) headers['Idempotency-Key'] = idempotencyKey;
 	try {
 		const signal = AbortSignal.timeout(patience);
 		const sent = body === undefined ? {} : { body: JSON.stringify(body) };

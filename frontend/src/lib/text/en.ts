@@ -8,6 +8,7 @@ import { deploy } from './en/deploy.ts';
 import { history } from './en/history.ts';
 import { model } from './en/model.ts';
 import { operate } from './en/operate.ts';
+import { orders } from './en/orders.ts';
 import { pipelines } from './en/pipelines.ts';
 import { restart } from './en/restart.ts';
 import { ros } from './en/ros.ts';
@@ -15,4 +16,4 @@ import { state } from './en/state.ts';
 import { station } from './en/station.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, pipelines, restart, ros, state, station, whatIf };
+export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, orders, pipelines, restart, ros, state, station, whatIf };

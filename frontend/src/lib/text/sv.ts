@@ -8,6 +8,7 @@ import { deploy } from './sv/deploy.ts';
 import { history } from './sv/history.ts';
 import { model } from './sv/model.ts';
 import { operate } from './sv/operate.ts';
+import { orders } from './sv/orders.ts';
 import { pipelines } from './sv/pipelines.ts';
 import { restart } from './sv/restart.ts';
 import { ros } from './sv/ros.ts';
@@ -16,4 +17,4 @@ import { station } from './sv/station.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, pipelines, restart, ros, state, station, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, orders, pipelines, restart, ros, state, station, whatIf };

@@ -5,6 +5,7 @@ export const pages = {
 	state: 'State',
 	alarms: 'Alarms',
 	history: 'History',
+	orders: 'Orders',
 	model: 'Model',
 	pipelines: 'Pipelines',
 	ros: 'ROS',

@@ -6,6 +6,7 @@ export const pages: Text['pages'] = {
 	state: 'Tillstånd',
 	alarms: 'Larm',
 	history: 'Historik',
+	orders: 'Order',
 	model: 'Modell',
 	pipelines: 'Pipelines',
 	ros: 'ROS',
