@@ -34,7 +34,7 @@ export const orders = {
 		Resume: 'Resume',
 		Stop: 'Stop',
 		Abort: 'Abort',
-		Cancel: 'Cancel',
+		Cancel: 'Withdraw',
 		Clear: 'Clear'
 	},
 	commandOf: (command: string, title: string): string => `${command}: ${title}`,

@@ -1,0 +1,108 @@
+import type { Page } from '@playwright/test';
+import { examine, overflow } from '../station/barriers.ts';
+import { picture, takeControl } from '../station/seen.ts';
+import { EVA, VERA } from '../station/station.ts';
+import { expect, test } from '../station/test.ts';
+
+test.use({ shared: 'orders', byItself: false, devices: true, people: 'everybody' });
+
+/** Somebody does what people are asked to do until that is over. */
+async function doTasks(page: Page, until: () => Promise<boolean>): Promise<void> {
+	while (!(await until()))
+		await page.evaluate(async () => {
+			const { tasks } = (await (await fetch('/api/v1/tasks')).json()) as { tasks: Record<string, { revision: number }> };
+			for (const [id, { revision }] of Object.entries(tasks))
+				await fetch(`/api/v1/tasks/${encodeURIComponent(id)}/acknowledgement`, {
+					method: 'POST',
+					headers: { 'Content-Type': 'application/json' },
+					body: JSON.stringify({ revision })
+				});
+			await new Promise((resolve) => setTimeout(resolve, 200));
+		});
+}
+
+test('an order is stored, waits and says why, is worked, interrupted and resumed, and what was made is told', async ({ browse, complaints }) => {
+	const eva = await browse(EVA, '/orders');
+	const row = (title: string) => eva.locator('[data-order]').filter({ hasText: title });
+	const dialog = eva.getByRole('dialog');
+	const form = eva.getByRole('region', { name: 'A new order' });
+	const store = async (description: string, priority: string): Promise<void> => {
+		await form.getByLabel('Description').fill(description);
+		await form.getByLabel('Priority').fill(priority);
+		await form.getByRole('button', { name: 'Store' }).click();
+		await expect(row(description)).toBeVisible();
+	};
+
+	await test.step('what cannot be is not sent, and what was typed stays', async () => {
+		await expect(form.getByLabel('Work master')).toHaveValue('truck_engine');
+		await form.getByLabel('Description').fill('Engine 4711');
+		await form.getByLabel('Priority').fill('-3');
+		await expect(form.getByRole('button', { name: 'Store' })).toHaveAttribute('aria-disabled', 'true');
+		await form.getByLabel('Priority').press('Enter');
+		await expect(form.getByLabel('Description')).toHaveValue('Engine 4711');
+		await expect(eva.locator('[data-order]')).toHaveCount(0);
+	});
+
+	await test.step('an order waits for people, and says so; the more urgent one is to begin first', async () => {
+		await store('Engine 4711', '0');
+		await expect(row('Engine 4711')).toContainText('the station works freely');
+		await expect(row('Engine 4711')).toContainText('production is not started');
+		await store('Engine 4712', '5');
+		await expect(eva.locator('[data-order]').first()).toContainText('Engine 4712');
+		await eva.getByRole('button', { name: 'Work by order' }).click();
+		await dialog.getByLabel('Reason').fill('The MES orders from now on');
+		await expect(dialog).toContainText('Take control first');
+		await dialog.getByRole('button', { name: 'Cancel' }).click();
+		await takeControl(eva);
+		await eva.getByRole('button', { name: 'Work by order' }).click();
+		await dialog.getByLabel('Reason').fill('The MES orders from now on');
+		await dialog.getByRole('button', { name: 'Work by order' }).click();
+		await expect(eva.getByTestId('by-order')).toContainText('It works by order');
+		await examine(eva, 'orders-waiting');
+	});
+
+	await test.step('the first is worked; interrupted it begins nothing, resumed it goes on', async () => {
+		await eva.goto(new URL('/', eva.url()).href);
+		await eva.getByRole('button', { name: 'Start production' }).click();
+		await expect(eva.getByTestId('mode')).toContainText('production started');
+		await eva.goto(new URL('/orders', eva.url()).href);
+		await expect(row('Engine 4712')).toHaveAttribute('data-state', 'Running');
+		await expect(row('Engine 4711')).toContainText('Engine 4712 is being worked');
+		await row('Engine 4712').getByRole('button', { name: 'Pause' }).click();
+		await dialog.getByLabel('Reason').fill('A bolt is missing');
+		await dialog.getByRole('button', { name: 'Pause' }).click();
+		await expect(row('Engine 4712')).toHaveAttribute('data-state', 'Interrupted');
+		await row('Engine 4712').getByRole('button', { name: 'Resume' }).click();
+		await dialog.getByRole('button', { name: 'Resume' }).click();
+		await expect(row('Engine 4712')).toHaveAttribute('data-state', 'Running');
+		await picture(eva, 'orders-1440');
+		await eva.setViewportSize({ width: 320, height: 640 });
+		expect(await overflow(eva), 'pixels to the right of a screen of 320').toBe(0);
+		await picture(eva, 'orders-320');
+		await eva.setViewportSize({ width: 1440, height: 900 });
+	});
+
+	await test.step('a viewer sees the same, and nothing to press', async () => {
+		const vera = await browse(VERA, '/orders');
+		await expect(vera.locator('[data-order]').filter({ hasText: 'Engine 4712' })).toHaveAttribute('data-state', 'Running');
+		await expect(vera.getByRole('button', { name: /Engine 4712/ })).toHaveCount(0);
+		await expect(vera.getByRole('region', { name: 'A new order' })).toHaveCount(0);
+	});
+
+	await test.step('it is worked to its end, and what was made is told', async () => {
+		await row('Engine 4711').getByRole('button', { name: 'Withdraw' }).click();
+		await dialog.getByRole('button', { name: 'Withdraw' }).click();
+		await expect(row('Engine 4711')).toHaveCount(0);
+		const response = eva.locator('[data-response]').filter({ hasText: 'Engine 4712' });
+		await doTasks(eva, async () => (await response.count()) > 0);
+		await expect(response).toContainText('completed');
+		await response.getByText('Engine 4712: completed').click();
+		await expect(response).toContainText('7 of 7 operations completed');
+		await expect(response.locator('tbody tr')).toHaveCount(7);
+		await examine(eva, 'orders-made');
+		await response.getByRole('button', { name: 'Clear' }).click();
+		await dialog.getByRole('button', { name: 'Clear' }).click();
+		await expect(response).toHaveCount(0);
+	});
+	expect(complaints).toEqual([]);
+});
