@@ -179,7 +179,7 @@ def test_a_secret_is_of_no_use_without_the_key_beside_the_database(database: Dat
     moved.rename(file)
 
 
-@settings(max_examples=25, deadline=None)
+@settings(max_examples=12, deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 3), st.booleans(), st.floats(0.0, 30.0)), max_size=40))
 def test_every_event_is_delivered_once_or_given_up(steps: list[tuple[int, bool, float]]) -> None:
     taken: Counter[int] = Counter()
