@@ -46,7 +46,7 @@ test('a specification that cannot be met is found, with a run that plays', async
 	expect(complaints).toEqual([]);
 });
 
-test('a longer run plays by keyboard, each step with what it changes', async ({ drafting, browse, complaints }) => {
+test('a longer run plays by keyboard, each step with what it changes @long', async ({ drafting, browse, complaints }) => {
 	await drafting.change('The first pair is never tightened', FORBIDS('bolts[bolt_pair_1] == tightened'));
 	await drafting.checked();
 	const page = await browse(VERA, '/check');

@@ -87,7 +87,7 @@ test('the station is seen as it was, step by step, and taken along', async ({ op
 	});
 });
 
-test('a link leads to a moment, and nobody is kept from it', async ({ operate, watch, station }) => {
+test('a link leads to a moment, and nobody is kept from it @long', async ({ operate, watch, station }) => {
 	await restsOnPerson(operate, watch); // before that nothing may be recorded
 	await operate.goto(`${station.url}/history?record=3`);
 	await expect(operate.getByTestId('past')).toHaveAttribute('data-record', '3');

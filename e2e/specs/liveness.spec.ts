@@ -36,7 +36,7 @@ test('a view that is no longer live says so within 2 s, on either page @theme', 
 test.describe('when a part of the station dies', () => {
 	test.use({ shared: null });
 
-	test('a controller that is killed is said to be lost, comes back, and waits for a person', async ({
+	test('a controller that is killed is said to be lost, comes back, and waits for a person @long', async ({
 		operate,
 		watch,
 		station

@@ -70,7 +70,7 @@ test('held, into restart mode and out of it, each by an act of its own, and work
 	});
 });
 
-test('an operation is reset by a plan that is looked at first, and refused once the station has moved', async ({
+test('an operation is reset by a plan that is looked at first, and refused once the station has moved @long', async ({
 	operate,
 	watch,
 	station

@@ -6,7 +6,7 @@ const HEARD = ['/smart_nutrunner/state', '/ur10/state', '/ur10/planning_scene/st
 const row = (page: Page, topic: string): Locator => page.locator(`[data-row="${topic}"]`);
 const standing = (page: Page, topic: string): Locator => row(page, topic).locator('[data-standing]');
 
-test('all topics are fresh and have a rate; of a device that falls silent they are named, with what to do', async ({
+test('all topics are fresh and have a rate; of a device that falls silent they are named, with what to do @long', async ({
 	station,
 	operate
 }) => {

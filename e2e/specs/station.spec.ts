@@ -50,7 +50,7 @@ test('from the goal of an operation down to the topic that carries it out, by mo
 	expect(complaints).toEqual([]);
 });
 
-test('usages of anything are found, from the station and from an expression; loose ends and findings are marked', async ({
+test('usages of anything are found, from the station and from an expression; loose ends and findings are marked @long', async ({
 	drafting,
 	browse,
 	complaints

@@ -33,10 +33,10 @@ const test = base.extend<object, { provided: { station: Station } }>({
 				logs: join(import.meta.dirname, `../artefacts/logs/two-people-${info.workerIndex}`),
 				environment: {
 					SEQUENCE_PLANNER_OIDC_ISSUER: `http://127.0.0.1:${port}`,
-					SEQUENCE_PLANNER_OIDC_CLIENT_ID: CLIENT,
+					SEQUENCE_PLANNER_OIDC_CLIENT: CLIENT,
 					SEQUENCE_PLANNER_OIDC_CLIENT_SECRET: SECRET,
 					SEQUENCE_PLANNER_OIDC_TITLE: 'Works ID',
-					SEQUENCE_PLANNER_OIDC_ROLES: 'operator=station-operators'
+					SEQUENCE_PLANNER_OIDC_ROLE: 'operator=station-operators'
 				}
 			});
 			const provider = await Providing.start(port, station.url, { otto: OTTO, nils: NILS });

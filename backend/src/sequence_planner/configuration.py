@@ -22,19 +22,21 @@ from sqlalchemy import make_url
 from sqlalchemy.exc import ArgumentError
 
 from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.identity.openid.options import SECRET
 from sequence_planner.logs import FORMAT, LogFormat
 from sequence_planner.ros.choice import TransportChoice
 from sequence_planner.ros.environment import INTERFACE
 
 PREFIX: Final = "SEQUENCE_PLANNER_"
 FILE: Final = f"{PREFIX}CONFIGURATION"  # the variable that names the file
-_ELSEWHERE: Final = {INTERFACE, FORMAT, FILE}  # variables that others read
-_LISTS: Final = ("proxy", "name")
+_ELSEWHERE: Final = {INTERFACE, FORMAT, FILE, SECRET}  # variables that others read
+_LISTS: Final = ("proxy", "name", "oidc_scope", "oidc_role", "webhook_host")
 _PATHS: Final = (
     "model",
     "certificate",
     "private_key",
     "database_file",
+    "oidc_client_secret_file",
 )  # from the file's folder, where they are relative
 _SECRET: Final = "database"
 
@@ -58,6 +60,17 @@ class Configuration(BaseModel):
     start: bool | None = None
     emulator_speed: Annotated[float, Field(ge=0.1, le=100)] | None = None
     demonstration: bool | None = None
+    hot_standby: str | None = None
+    oidc_issuer: str | None = None
+    oidc_client: str | None = None
+    oidc_client_secret_file: Path | None = None
+    oidc_title: str | None = None
+    oidc_scope: list[str] | None = None
+    oidc_groups_claim: str | None = None
+    oidc_role: list[str] | None = None
+    oidc_others: str | None = None
+    webhook_host: list[str] | None = None
+    webhook_loopback: bool | None = None
     log_format: LogFormat | None = None
 
 

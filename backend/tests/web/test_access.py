@@ -343,7 +343,7 @@ def test_no_other_way_to_write_an_address_gets_past_who_may(scene: Scene, writte
     target = ("127.0.0.1", scene.server.settings.port)
     for place, (role, _) in DECLARED.items():
         method, _, path = place.partition(" ")
-        if role == PUBLIC or method == "WS":
+        if role in (PUBLIC, BESIDE) or method == "WS":
             continue
         path = path.replace("{", "").replace("}", "")
         address = written.format(path, path[1:], path.upper())

@@ -22,7 +22,7 @@ Client = Annotated[
     str | None,
     typer.Option(
         "--oidc-client",
-        envvar=f"{PREFIX}CLIENT_ID",
+        envvar=f"{PREFIX}CLIENT",
         metavar="ID",
         help="As which client the provider knows this station.",
     ),
@@ -49,7 +49,7 @@ Scopes = Annotated[
     list[str] | None,
     typer.Option(
         "--oidc-scope",
-        envvar=f"{PREFIX}SCOPES",
+        envvar=f"{PREFIX}SCOPE",
         metavar="SCOPE",
         help="What is asked for beside openid; can be repeated. By default profile.",
     ),
@@ -67,7 +67,7 @@ Roles = Annotated[
     list[str] | None,
     typer.Option(
         "--oidc-role",
-        envvar=f"{PREFIX}ROLES",
+        envvar=f"{PREFIX}ROLE",
         metavar="ROLE=GROUP",
         help="The role here of people in a group there; can be repeated, and of several the highest counts.",
     ),
