@@ -1,10 +1,20 @@
 import type { Page } from '@playwright/test';
+import { createServer } from 'node:http';
 import { examine, overflow } from '../station/barriers.ts';
 import { picture, takeControl } from '../station/seen.ts';
-import { EVA, VERA } from '../station/station.ts';
+import { ADA, EVA, VERA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
-test.use({ shared: 'orders', byItself: false, devices: true, people: 'everybody' });
+/** Where another system listens for events. */
+const PORT = 21_000 + (process.pid % 4000);
+
+test.use({
+	shared: 'orders',
+	byItself: false,
+	devices: true,
+	people: 'everybody',
+	environment: { SEQUENCE_PLANNER_WEBHOOK_HOST: `127.0.0.1:${PORT}`, SEQUENCE_PLANNER_WEBHOOK_LOOPBACK: 'true' }
+});
 
 /** Somebody does what people are asked to do until that is over. */
 async function doTasks(page: Page, until: () => Promise<boolean>): Promise<void> {
@@ -105,4 +115,50 @@ test('an order is stored, waits and says why, is worked, interrupted and resumed
 		await expect(response).toHaveCount(0);
 	});
 	expect(complaints).toEqual([]);
+});
+
+test('another system is told of orders: made by an administrator, signed, seen to be delivered, and deleted', async ({ browse, complaints }) => {
+	const heard: { readonly kind: string; readonly signature: string }[] = [];
+	const other = createServer((request, response) => {
+		let body = '';
+		request.on('data', (part: Buffer) => (body += part.toString()));
+		request.on('end', () => {
+			heard.push({ kind: (JSON.parse(body) as { kind: string }).kind, signature: String(request.headers['webhook-signature']) });
+			response.writeHead(204).end();
+		});
+	});
+	await new Promise<void>((listens) => other.listen(PORT, '127.0.0.1', listens));
+	try {
+		const ada = await browse(ADA, '/webhooks');
+		const make = async (name: string, url: string): Promise<void> => {
+			await ada.getByLabel('Name').fill(name);
+			await ada.getByLabel('Where events are sent to').fill(url);
+			await ada.getByRole('button', { name: 'Make', exact: true }).click();
+		};
+		await make('MES', 'https://mes.example/events');
+		await expect(ada.getByRole('alert')).toContainText('mes.example');
+		await expect(ada.getByLabel('Where events are sent to')).toHaveValue('https://mes.example/events');
+		await make('MES', `http://127.0.0.1:${PORT}/events`);
+		await expect(ada.getByRole('group', { name: 'Secret with which deliveries are signed' })).toContainText('whsec_');
+		await examine(ada, 'webhooks');
+		await ada.getByRole('button', { name: 'I have kept it' }).click();
+
+		const eva = await browse(EVA, '/orders');
+		await eva.getByRole('region', { name: 'A new order' }).getByLabel('Description').fill('Told');
+		await eva.getByRole('checkbox', { name: 'It may start at once' }).uncheck();
+		await eva.getByRole('button', { name: 'Store' }).click();
+		await expect.poll(() => heard.map(({ kind }) => kind), { timeout: 15_000 }).toContain('job-order-stored');
+		expect(heard[0]?.signature).toMatch(/^v1,/);
+		await expect(ada.locator('[data-webhook="MES"]')).toContainText('all is delivered');
+		await eva.getByRole('button', { name: 'Withdraw: Told' }).click();
+		await eva.getByRole('dialog').getByRole('button', { name: 'Withdraw' }).click();
+
+		await ada.getByRole('button', { name: 'Delete MES' }).click();
+		await ada.getByRole('dialog').getByRole('button', { name: 'Delete' }).click();
+		await expect(ada.getByText('Nobody is told.')).toBeVisible();
+		// A refusal is what a browser writes down about a request that was answered so.
+		expect(complaints.filter((each) => !each.includes('422'))).toEqual([]);
+	} finally {
+		await new Promise((ended) => other.close(ended));
+	}
 });

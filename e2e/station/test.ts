@@ -17,6 +17,8 @@ interface Given {
 	devices: boolean;
 	/** Who can sign in at a station that waits for the test. */
 	people: keyof typeof PEOPLE;
+	/** Further variables of the environment in which the station is started. */
+	environment: Readonly<Record<string, string>>;
 	/**
 	 * The model of which a station has a copy that may be changed; null where it only reads the usual one. The draft of a
 	 * station that is shared is as before after each test.
@@ -64,6 +66,7 @@ export const test = base.extend<Given, { bench: Bench }>({
 	byItself: [true, { option: true }],
 	devices: [false, { option: true }],
 	people: ['Eva', { option: true }],
+	environment: [{}, { option: true }],
 	copied: [null, { option: true }],
 	complaints: async ({}, use) => {
 		await use([]);
@@ -77,10 +80,10 @@ export const test = base.extend<Given, { bench: Bench }>({
 		{ scope: 'worker' }
 	],
 	station: [
-		async ({ bench, shared, byItself, devices, people, copied }, use, info) => {
+		async ({ bench, shared, byItself, devices, people, environment, copied }, use, info) => {
 			const name = shared ?? info.titlePath.join(' ');
 			const logs = logsOf(`${name} ${info.project.name}`);
-			const given = { byItself, devices, people: PEOPLE[people], copied, logs };
+			const given = { byItself, devices, people: PEOPLE[people], environment, copied, logs };
 			const station = shared === null ? await Station.start(given) : await bench.kept(shared, given);
 			const drafting = shared === null || copied === null ? null : await Drafting.of(station);
 			const before = await drafting?.files();

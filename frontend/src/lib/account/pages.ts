@@ -52,7 +52,8 @@ export const MENU: readonly Page[] = [
 	{ address: '/journal', title: 'journal', role: 'operator' },
 	{ address: '/watches', title: 'watches', role: 'operator' },
 	{ address: '/people', title: 'people', role: 'administrator' },
-	{ address: '/keys', title: 'keys', role: 'administrator' }
+	{ address: '/keys', title: 'keys', role: 'administrator' },
+	{ address: '/webhooks', title: 'webhooks', role: 'administrator' }
 ];
 
 const ALL: readonly Page[] = [...GROUPS.flatMap((group) => group.pages), ...MENU];

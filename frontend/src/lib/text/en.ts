@@ -14,6 +14,7 @@ import { restart } from './en/restart.ts';
 import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
 import { station } from './en/station.ts';
+import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, orders, pipelines, restart, ros, state, station, whatIf };
+export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, orders, pipelines, restart, ros, state, station, webhooks, whatIf };

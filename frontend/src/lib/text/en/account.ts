@@ -121,7 +121,7 @@ export const account = {
 		atFirst: 'It has to be changed at the first sign-in.'
 	},
 	keys: {
-		about: 'With a key another system reads the station over its interface. A key never acts.',
+		about: 'With a key another system reads the station over its interface, or gives orders. Whether the station works on those is for people to say.',
 		working: 'Keys that work',
 		overTitle: 'Keys that work no more',
 		revoked: (name: string): string => `The key ${name} is revoked.`,

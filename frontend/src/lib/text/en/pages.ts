@@ -19,5 +19,6 @@ export const pages = {
 	journal: 'Journal',
 	watches: 'Watches',
 	people: 'People',
-	keys: 'Keys'
+	keys: 'Keys',
+	webhooks: 'Webhooks'
 };

@@ -126,7 +126,7 @@ export const account: Text['account'] = {
 		atFirst: 'Det måste bytas vid första inloggningen.'
 	},
 	keys: {
-		about: 'Med en nyckel läser ett annat system stationen genom dess gränssnitt. En nyckel styr aldrig.',
+		about: 'Med en nyckel läser ett annat system stationen genom dess gränssnitt, eller lägger order. Om stationen arbetar på dem avgör människor.',
 		working: 'Nycklar som fungerar',
 		overTitle: 'Nycklar som inte längre fungerar',
 		revoked: (name) => `Nyckeln ${name} är återkallad.`,

@@ -20,5 +20,6 @@ export const pages: Text['pages'] = {
 	journal: 'Journal',
 	watches: 'Klockor',
 	people: 'Personer',
-	keys: 'Nycklar'
+	keys: 'Nycklar',
+	webhooks: 'Webhooks'
 };
