@@ -5079,7 +5079,7 @@ export interface components {
          * OrderBody
          * @description What is ordered: a job of a work master.
          *
-         *     The highest `priority` comes first, then what is `due` first; nothing begins before `earliest`.
+         *     How late it is weighs by its `priority`; nothing begins before `earliest`.
          */
         OrderBody: {
             /**

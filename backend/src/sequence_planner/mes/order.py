@@ -16,7 +16,7 @@ LONGEST_TITLE = 200  # characters
 class OrderContent(BaseModel):
     """What is ordered: a job of a work master.
 
-    The highest `priority` comes first, then what is `due` first; nothing begins before `earliest`. Times are in seconds
+    How late it is weighs by its `priority`; nothing begins before `earliest`. Times are in seconds
     since the epoch.
     """
 

@@ -83,7 +83,7 @@ class OrdersAnswer(BaseModel):
 class OrderBody(Body):
     """What is ordered: a job of a work master.
 
-    The highest `priority` comes first, then what is `due` first; nothing begins before `earliest`.
+    How late it is weighs by its `priority`; nothing begins before `earliest`.
     """
 
     work_master: Annotated[str, Field(min_length=1, max_length=200, pattern=TEXT)]
