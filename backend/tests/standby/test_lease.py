@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager, suppress
+from threading import Thread
 
 import pytest
 from hypothesis import HealthCheck, settings
 from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
-from sqlalchemy import delete, event
+from sqlalchemy import delete, event, select
 
 from sequence_planner.standby.lease import EVERY, LASTS, MARGIN, Lease, open_lease
 from sequence_planner.standby.tables import LEASE, STANDBYS
@@ -66,6 +67,46 @@ def test_who_comes_first_holds_it_and_the_next_takes_it_once_it_was_not_renewed(
         now.seconds += LASTS
         assert second.try_to_take() and second.held and not first.held
         assert not first.renew() and not first.is_ours
+
+
+def test_what_is_being_written_under_it_is_written_before_somebody_else_takes_it(url: str) -> None:
+    now = Now()
+    with stations(url, dict.fromkeys(NAMES[:2], MODEL), now) as opened, closing(Database.open(url)) as database:
+        first, second = opened.values()
+        assert first.try_to_take()
+        assert not second.try_to_take()
+        with database.writing() as connection:
+            assert first.fence(connection)
+            assert first.renew(), "what is written does not keep it from being renewed"
+            assert not second.try_to_take()
+            now.seconds += LASTS
+            taking = Thread(target=second.try_to_take)
+            taking.start()
+            taking.join(0.3)
+            assert not second.is_ours
+        taking.join()
+        assert second.is_ours
+        with database.writing() as connection:
+            assert not first.fence(connection)
+            assert second.fence(connection)
+        second.release()
+        with database.writing() as connection:
+            assert not second.fence(connection)
+
+
+def test_a_writer_that_stands_still_does_not_keep_the_lease_for_ever(url: str) -> None:
+    now = Now()
+    with stations(url, dict.fromkeys(NAMES[:2], MODEL), now) as opened, closing(Database.open(url)) as database:
+        first, second = opened.values()
+        assert first.try_to_take()
+        assert not second.try_to_take()
+        now.seconds += LASTS
+        with pytest.raises(StorageError), database.writing() as connection:
+            assert first.fence(connection)
+            while not second.is_ours:
+                with suppress(StorageError):
+                    second.try_to_take()
+            connection.execute(select(LEASE))
 
 
 def test_who_lets_go_of_it_keeps_nobody_waiting(url: str) -> None:

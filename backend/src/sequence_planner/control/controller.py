@@ -60,6 +60,7 @@ from sequence_planner.control.work_masters import work_masters_view
 from sequence_planner.expressions.types import Value
 from sequence_planner.history.model_digest import model_digest
 from sequence_planner.history.recorder import RunRecorder
+from sequence_planner.journal.group_commit import Fence
 from sequence_planner.journal.run_writer import RunWriter
 from sequence_planner.ros.transport import Sample, Transport
 from sequence_planner.station import ReadyStation
@@ -90,10 +91,11 @@ class Controller:
         transport: Transport,
         database: Database,
         known: Known | None = None,
+        fence: Fence = lambda _: True,
     ) -> None:
         automaton, known = station.automaton, known or Known()
         self.execution = Execution(automaton, supervisor, known.beginning)
-        self._writer, self._figures = RunWriter(database, self._journalled), Figures()
+        self._writer, self._figures = RunWriter(database, self._journalled, fence), Figures()
         self._recorder = RunRecorder(self.execution, self._writer.write, model_digest(automaton), known.beginning)
         self._wake = asyncio.Event()
         self.devices = Devices(station, transport, self._wake.set)

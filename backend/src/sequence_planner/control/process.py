@@ -176,8 +176,12 @@ class _Life:
         if not running.start:
             known = await asyncio.to_thread(what_is_known, self._database, running.station.automaton)
         identity = _identity(running, transport.name)
-        speaking = transport if keeper is None else gated(transport, lambda: keeper.held)
-        controller = Controller(identity, running.station, supervisor, speaking, self._database, known)
+        station, database = running.station, self._database
+        if keeper is None:
+            controller = Controller(identity, station, supervisor, transport, database, known)
+        else:
+            speaking = gated(transport, lambda: keeper.held)
+            controller = Controller(identity, station, supervisor, speaking, database, known, keeper.fence)
         keep_everything()  # a running station must not be held up
         self._preparation.give(controller)
         self._living.create_task(self._take_command(controller, known, alone))

@@ -10,7 +10,7 @@ from itertools import islice
 from typing import Final
 
 import structlog
-from sqlalchemy import insert
+from sqlalchemy import Connection, insert
 from sqlalchemy.exc import SQLAlchemyError
 
 from sequence_planner.journal import chain, run_journal
@@ -30,6 +30,10 @@ _INSERT: Final = insert(RUN)
 _LARGEST_GROUP: Final = 1000  # records in one transaction
 
 
+# Whether records may be written in this transaction.
+Fence = Callable[[Connection], bool]
+
+
 class TakenOver(Exception):
     """Somebody else has written records of the run."""
 
@@ -37,16 +41,23 @@ class TakenOver(Exception):
 class GroupCommit:
     """Writes records behind `end`, in the order in which they are put, from `begin` on.
 
-    `tell` is called in the thread: the number up to which all is durable, and why no more is, or None.
+    `tell` is called in the thread: the number up to which all is durable, and why no more is, or None. Nothing is
+    written in a transaction that `fence` does not let pass.
     """
 
     def __init__(
-        self, database: Database, end: Position, checkpointing: Checkpointing, tell: Callable[[int, str | None], None]
+        self,
+        database: Database,
+        end: Position,
+        checkpointing: Checkpointing,
+        tell: Callable[[int, str | None], None],
+        fence: Fence,
     ) -> None:
         self._database = database
         self._end = end  # what is durable
         self._checkpointing = checkpointing
         self._tell = tell
+        self._fence = fence
         self._queue: deque[RunRecord] = deque()
         self._changed = threading.Condition()  # the queue, or `_until`
         self._until: float | None = None  # the moment of the monotonic clock after which nothing is tried any more
@@ -133,6 +144,8 @@ class GroupCommit:
     def _append(self, group: Sequence[RunRecord], again: bool) -> None:
         last = Position(group[-1].number, group[-1].hash)
         with self._database.writing() as connection:
+            if not self._fence(connection):
+                raise TakenOver
             if chain.move(connection, RUN_END, last, self._end):
                 connection.execute(_INSERT, [vars(record) for record in group])
             elif not again or run_journal.end(connection) != last:  # where it is, only the answer was lost

@@ -19,7 +19,7 @@ from sequence_planner.distribution import Distribution
 from sequence_planner.journal import checkpoints, run_journal
 from sequence_planner.journal.chain import Position, digest
 from sequence_planner.journal.checkpointing import Checkpointing
-from sequence_planner.journal.group_commit import GroupCommit
+from sequence_planner.journal.group_commit import Fence, GroupCommit
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.journal.run_tables import LONGEST_KIND
 from sequence_planner.storage.database import Database, StorageError
@@ -34,6 +34,7 @@ _CLOSING: Final = 5.0  # seconds for what still waits at the end
 
 class RunWriter:
     """Writes records, in order, from `begin` on. It is used from one event loop, on which `told` hears of each change.
+    Nothing is written where `fence` says that somebody else does by now.
 
     Raises `StorageError` if the database cannot be read.
     """
@@ -45,7 +46,7 @@ class RunWriter:
     latency: Distribution
     """How long records took to be durable."""
 
-    def __init__(self, database: Database, told: Callable[[], None]) -> None:
+    def __init__(self, database: Database, told: Callable[[], None], fence: Fence = lambda _: True) -> None:
         with database.reading() as connection:
             end, signed = run_journal.end(connection), checkpoints.signed_up_to(connection)
         if end is None:
@@ -57,7 +58,7 @@ class RunWriter:
         self._loop = asyncio.get_running_loop()
         self._end = end  # of what was given to write
         self._closed = False
-        self._commits = GroupCommit(database, end, Checkpointing(database, signed), self._tell)
+        self._commits = GroupCommit(database, end, Checkpointing(database, signed), self._tell, fence)
 
     def begin(self) -> None:
         """Begin to write, beginning with what has been given until now."""

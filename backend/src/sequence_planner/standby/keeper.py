@@ -13,6 +13,7 @@ import threading
 from dataclasses import dataclass
 
 import structlog
+from sqlalchemy import Connection
 
 from sequence_planner.standby.lease import EVERY, Lease
 from sequence_planner.storage.error import StorageError
@@ -58,6 +59,10 @@ class Keeper:
     def taken_from(self) -> str | None:
         """Who commanded before this station did; None if that was nobody else."""
         return self._lease.taken_from
+
+    def fence(self, connection: Connection) -> bool:
+        """See `Lease.fence`; used from the thread that writes the journal."""
+        return self._lease.fence(connection)
 
     def begin(self) -> None:
         """From now on it waits for the lease, or holds it."""

@@ -5,6 +5,9 @@ longer than the lease lasts may take it, by a write that only succeeds if the co
 its part holds it no longer than that from the moment on at which it began to count up last, less a margin. So no two
 hold it at once, whatever the clocks of the day say: each measures only how long something took, by a clock of its own
 that goes on while its process stands still (Gray and Cheriton, *Leases*, SOSP 1989, with counts for their times).
+
+What its holder writes into the journal passes a `fence` in the same transaction: who takes the lease reads all that was
+written under the one before, and nothing is written under that afterwards.
 """
 
 from __future__ import annotations
@@ -122,6 +125,14 @@ class Lease:
             self._epoch, self._until = None, 0.0
         return renewed
 
+    def fence(self, connection: Connection) -> bool:
+        """Whether it is held in the transaction of `connection`, until whose end nobody else can take it."""
+        # Whoever is stopped while it writes must not keep others from the lease for ever.
+        connection.execute(text(f"SET LOCAL idle_in_transaction_session_timeout = {_MILLISECONDS}"))
+        seen = select(LEASE.c.epoch, LEASE.c.free).where(_THE_ROW)
+        found = connection.execute(seen.with_for_update(read=True, key_share=True)).first()
+        return found is not None and found.epoch == self._epoch and not found.free
+
     def release(self, *, deployed: bool = False) -> None:
         """Let go of it, so that others need not wait; when another model was `deployed` here only those who run it."""
         epoch, self._epoch, self._until = self._epoch, None, 0.0
@@ -170,6 +181,8 @@ class Lease:
                     (LEASE.c.epoch == seen.epoch) & (LEASE.c.renewals == seen.renewals) & (LEASE.c.free == seen.free)
                 )
                 values = {**mine, "epoch": seen.epoch + 1}
+                # Whoever has passed the fence writes first: taking waits for that, and renewing does not.
+                connection.execute(select(LEASE.c.id).where(_THE_ROW).with_for_update())
                 taken = connection.execute(update(LEASE).where(_THE_ROW & as_seen).values(values)).rowcount == 1
         if taken:
             self.taken_from = None if seen is None or seen.holder == self.name else seen.holder
