@@ -75,7 +75,10 @@ def controller(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Controller]
         return Controller(IDENTITY, station, supervisor, transport, database)
 
     with journal() as database:
-        yield asyncio.run(made())
+        one = asyncio.run(made())
+        yield one
+        for each in (one._questions, one._doubting, one._adviser):  # its life was never begun, which would end them
+            each.close()
 
 
 @dataclass

@@ -45,6 +45,11 @@ describe('orders are listed', () => {
 		expect(ids(orders, FOUND)).toBe('b c a d');
 	});
 
+	test('once, as it was last, though two lists have it', () => {
+		const orders = [order('a', { state: 'Running', revision: 3 }), order('a', { revision: 2 }), order('b')];
+		expect(inOrder(orders, null).map(({ id, state }) => `${id} ${state}`)).toEqual(['a Running', 'b AllowedToStart']);
+	});
+
 	test('by priority, time and age where no order of work was found', () => {
 		const orders = [order('late', { due: 20 }), order('old'), order('soon', { due: 10 }), order('urgent', { priority: 5 }), order('new', { stored: 9 })];
 		expect(ids(orders, null)).toBe('urgent soon late old new');

@@ -9,6 +9,13 @@ export function titleOf({ description, id }: Pick<JobOrder, 'description' | 'id'
 	return description.trim() || id;
 }
 
+/** Each once, as it was last: lists that were read one after the other may have the same one in two states. */
+function newest(orders: readonly JobOrder[]): JobOrder[] {
+	const known = new Map<string, JobOrder>();
+	for (const order of orders) if ((known.get(order.id)?.revision ?? -1) < order.revision) known.set(order.id, order);
+	return [...known.values()];
+}
+
 /** As they are to begin: what is worked on, then by the order of work that was found, then by priority and time. */
 export function inOrder(orders: readonly JobOrder[], found: OrderOfWork | null): JobOrder[] {
 	const places = new Map((found?.job_orders ?? []).map(({ id }, place) => [id, place]));
@@ -20,7 +27,7 @@ export function inOrder(orders: readonly JobOrder[], found: OrderOfWork | null):
 		order.due ?? Infinity,
 		order.stored
 	];
-	return [...orders].sort((one, other) => {
+	return newest(orders).sort((one, other) => {
 		const [mine, theirs] = [of(one), of(other)];
 		const at = mine.findIndex((each, place) => each !== theirs[place]);
 		return at < 0 ? 0 : (mine[at] ?? 0) < (theirs[at] ?? 0) ? -1 : 1;
