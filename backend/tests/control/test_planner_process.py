@@ -9,6 +9,7 @@ import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
@@ -27,7 +28,9 @@ from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.planning.engines import LANES
 from sequence_planner.planning.plan import Circumstances, Goal, PlanAnswer, PlanRequest, Verdict, goals_of
 from sequence_planner.planning.questions import Answer
+from sequence_planner.planning.racing.companion import Companion, Ended, Word
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest, correction_text, member_text
+from sequence_planner.planning.worker import work
 
 
 @dataclass
@@ -245,3 +248,18 @@ def test_nothing_is_left_of_it_when_its_parent_is_killed(how: signal.Signals) ->
     while any(Path(f"/proc/{pid}").exists() for pid in left):
         assert time.monotonic() < end, "it has not ended"
         time.sleep(0.05)
+
+
+def test_a_word_that_cannot_be_sent_ends_the_process_so_that_nobody_waits_for_ever() -> None:
+    heard: list[Word] = []
+    over = threading.Event()
+
+    def hear(word: Word) -> None:
+        heard.append(word)
+        if isinstance(word, Ended):
+            over.set()
+
+    nothing_to_send = lambda: None  # noqa: E731 - what has no name cannot be sent
+    planner: Companion[object, object] = Companion(work, nothing_to_send, hear, "planner", daemon=False)
+    assert over.wait(30)
+    planner.close()

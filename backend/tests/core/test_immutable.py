@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 from collections.abc import Mapping
+from functools import cached_property
 from typing import Any
 
 import pytest
@@ -156,3 +157,34 @@ def test_the_planner_is_imported_without_the_slow_parts_of_the_standard_library(
     code = "import sys, sequence_planner.planning.planner; print(*sys.modules)"
     ended = subprocess.run((sys.executable, "-c", code), check=True, timeout=60, capture_output=True, text=True)
     assert not {"dataclasses", "inspect", "logging", "numpy", "pydantic"} & set(ended.stdout.split())
+
+
+class _Asks:
+    """Something of which a pickle is made; meanwhile something is found of the value that has it."""
+
+    def __init__(self) -> None:
+        self.owner: _Owner | None = None
+
+    def __reduce__(self) -> tuple[type[_Asks], tuple[()]]:
+        if self.owner is not None:
+            assert self.owner.found == 1
+        return _Asks, ()
+
+
+class _Owner(Immutable):
+    """A value with something that is found of it."""
+
+    part: _Asks
+    name: str
+
+    @cached_property
+    def found(self) -> int:
+        """One."""
+        return len(self.name)
+
+
+def test_something_is_found_of_a_value_while_a_pickle_is_made_of_it() -> None:
+    part = _Asks()
+    part.owner = owner = _Owner(part, "x")
+    again = pickle.loads(pickle.dumps(owner))
+    assert (again.name, again.found) == ("x", 1)

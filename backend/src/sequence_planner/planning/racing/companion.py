@@ -115,7 +115,14 @@ class Companion(Generic[Model, Content]):
     def _write(self) -> None:
         with contextlib.suppress(OSError):  # it has ended, which the reading thread hears
             while (word := self._words.get()) is not None:
-                self._connection.send(word)
+                try:
+                    self._connection.send(word)
+                except OSError:
+                    raise
+                except Exception:  # without this word whoever asked would wait for ever
+                    traceback.print_exc()
+                    self._process.kill()
+                    return
 
     def _read(self) -> None:
         with contextlib.suppress(Exception):  # whatever is wrong with what comes out of the pipe
