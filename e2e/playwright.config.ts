@@ -2,7 +2,7 @@
  * End-to-end tests: a real Chromium, the real server, and emulated devices that speak real DDS.
  *
  * Each station has a free port and a DDS domain of its own (`station/station.ts`); tests that do not disturb one another
- * share one (`station/bench.ts`). What a theme can change is tagged `@theme` and runs in both; `@long` runs in campaigns.
+ * share one (`station/bench.ts`). What a theme can change is tagged `@theme` and runs in both in campaigns, where `@long` runs too.
  */
 import { defineConfig } from '@playwright/test';
 import { chromium } from './station/chromium.ts';
@@ -38,6 +38,7 @@ export default defineConfig({
 	},
 	projects: [
 		{ name: 'light', use: { colorScheme: 'light' } },
-		{ name: 'dark', use: { colorScheme: 'dark' }, grep: /@theme/ }
+		// What a test examines it examines in both themes; all else in the dark is for campaigns.
+		...(process.env['LONG'] ? [{ name: 'dark', use: { colorScheme: 'dark' as const }, grep: /@theme/ }] : [])
 	]
 });

@@ -9,7 +9,7 @@ test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody
 /** Milliseconds within which everybody sees who has control. */
 const SOON = { timeout: 2000 };
 
-test('one person has control: it is taken, taken over and given up in the sight of all', async ({ browse }) => {
+test('one person has control: it is taken, taken over and given up in the sight of all @long', async ({ browse }) => {
 	const [eva, adam] = [await browse(EVA, '/'), await browse(ADAM, '/')];
 	const button = (page: Page, name: string) => page.getByRole('button', { name });
 	const mode = (page: Page) => page.getByTestId('mode');

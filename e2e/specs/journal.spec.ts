@@ -9,7 +9,7 @@ test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody
 const SOON = { timeout: 2000 };
 const WATCH = 'Watch at the engine';
 
-test('a bolt pair is tightened with a paired watch, and the journal names who did what', async ({
+test('a bolt pair is tightened with a paired watch, and the journal names who did what @long', async ({
 	browse,
 	operate,
 	station

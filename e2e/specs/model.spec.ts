@@ -137,7 +137,7 @@ test('what is written in the file is in the form, with its comments, and the for
 	await expect(field(page, 'title').getByRole('textbox')).not.toHaveAttribute('readonly');
 });
 
-test('two engineers at once: the form follows, and where both write the same both versions are shown', async ({ browse }) => {
+test('two engineers at once: the form follows, and where both write the same both versions are shown @long', async ({ browse }) => {
 	const address = at(ROBOT, 'abilities', 'move_to_previous');
 	const [ina, ivo] = await Promise.all([browse(INA, address), browse(IVO, address)]);
 	await Promise.all([ready(ina), ready(ivo)]);

@@ -83,7 +83,7 @@ test('the graph is live; a stage is added where it fits, set right, proven by an
 	expect(complaints).toEqual([]);
 });
 
-test('a pipeline is edited by keyboard alone; a viewer sees it all and can edit nothing', async ({ browse }) => {
+test('a pipeline is edited by keyboard alone; a viewer sees it all and can edit nothing @long', async ({ browse }) => {
 	const page = await browse(INA, STATE);
 	await expect(steps(page)).toBeVisible({ timeout: 30_000 });
 	await steps(page).getByRole('button', { name: 'Add a stage at record 3' }).press('Enter');

@@ -67,7 +67,7 @@ test('signing out leaves nothing of the station in sight, neither by Back nor in
 	await expectEmpty(eva);
 });
 
-test('a server that starts again does not sign anybody out', async ({ browse, station }) => {
+test('a server that starts again does not sign anybody out @long', async ({ browse, station }) => {
 	const eva = await browse(EVA, '/');
 	await expect(eva.getByTestId('live-age')).toContainText('live');
 	station.server.killPart('server');

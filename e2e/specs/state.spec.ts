@@ -71,7 +71,7 @@ test('a variable is found by words of it, and seen to change @theme', async ({ o
 	}
 });
 
-test('an estimate is corrected after what follows was seen, and that is taken back', async ({ operate, watch, browse }) => {
+test('an estimate is corrected after what follows was seen, and that is taken back @long', async ({ operate, watch, browse }) => {
 	await restsOnPerson(operate, watch);
 	const [state, other] = [await browse(null, '/state?kind=estimated'), await browse(null, '/state?kind=estimated')];
 	const row = state.locator('[data-row]').filter({ has: state.locator('[data-value="empty"]') }).first();

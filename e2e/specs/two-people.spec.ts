@@ -60,7 +60,7 @@ async function beAtProvider(page: Page, login: string): Promise<void> {
 	await page.locator('button[type="submit"]').click();
 }
 
-test('who signs in with the provider comes to the page that was asked for, and signs out of both', async ({
+test('who signs in with the provider comes to the page that was asked for, and signs out of both @long', async ({
 	browse,
 	station
 }) => {

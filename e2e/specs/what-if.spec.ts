@@ -5,7 +5,7 @@ import { expect, test } from '../station/test.ts';
 /** The server prepares the model, then simulates, with what the machine has to spare. */
 const SIMULATED = { timeout: 60_000 };
 
-test('how the station would go on is simulated from now and from a record, and nothing of it happens', async ({
+test('how the station would go on is simulated from now and from a record, and nothing of it happens @long', async ({
 	operate,
 	watch,
 	station
