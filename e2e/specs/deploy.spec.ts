@@ -47,7 +47,7 @@ async function holdsTool(station: Station): Promise<void> {
 	await expect.poll(holds, { timeout: 40_000 }).toBe('true');
 }
 
-test('a changed model is saved, compared, refused while at work, deployed when held, and rolled back', async ({
+test('a changed model is saved, compared, refused while at work, deployed when held, and rolled back @long', async ({
 	station,
 	drafting,
 	browse,

@@ -12,7 +12,7 @@ interface Told {
 	readonly past: { readonly values: Record<string, unknown> };
 }
 
-test('the station is seen as it was, step by step, and taken along', async ({ operate, watch }) => {
+test('the station is seen as it was, step by step, and taken along @long', async ({ operate, watch }) => {
 	const slider = operate.getByRole('slider', { name: 'Moment that is shown' });
 	const past = operate.getByTestId('past');
 	const chosen = operate.locator('[role="row"] button[aria-pressed="true"]');

@@ -11,7 +11,7 @@ const chosen = (page: Page): Locator => page.getByRole('complementary', { name: 
 const above = (page: Page): Locator => chosen(page).getByRole('region', { name: /^Above/ });
 const below = (page: Page): Locator => chosen(page).getByRole('region', { name: /^Below/ });
 
-test('from the goal of an operation down to the topic that carries it out, by mouse and by keyboard', async ({
+test('from the goal of an operation down to the topic that carries it out, by mouse and by keyboard @long', async ({
 	browse,
 	complaints
 }) => {
