@@ -34,6 +34,22 @@ export default defineConfig({
 			version: { name: manifest.version, pollInterval: 0 }
 		})
 	],
+	environments: {
+		client: {
+			build: {
+				rolldownOptions: {
+					output: {
+						// What pages share comes in few files: each one more takes longer to ask for than to bring.
+						codeSplitting: {
+							groups: [{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 20_000 }]
+						},
+						// Those are called after all pages that share them, which are no folders.
+						sanitizeFileName: (name) => name.replace(/^shared~.*/, 'shared').replace(/[^\w./-]/g, '_')
+					}
+				}
+			}
+		}
+	},
 	server: { proxy: { '/api': { target: server, ws: true, changeOrigin: true } } },
 	// What is tested keeps nothing to itself, so one process does for all files: that takes a fraction of the time.
 	test: { include: ['src/**/*.test.ts'], setupFiles: ['src/lib/testing/texts.ts'], isolate: false }
