@@ -25,7 +25,7 @@ class EventsAnswer(BaseModel):
 
 
 @router.get("")
-async def read(
+async def read_events(
     identity: Identity,
     after: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,

@@ -115,7 +115,7 @@ class CommandBody(Body):
 
 
 @bodiless.get("")
-async def read(
+async def read_job_orders(
     request: Request,
     identity: Identity,
     state: Annotated[OrderState | None, Query()] = None,
@@ -132,7 +132,7 @@ async def read(
 
 
 @bodiless.get("/{id}", responses={200: TAGGED, **refused(404)})
-async def one(id: OrderId, request: Request, identity: Identity, response: Response) -> OrderAnswer:
+async def read_job_order(id: OrderId, request: Request, identity: Identity, response: Response) -> OrderAnswer:
     """An order, and why nothing is done for it now."""
     order = await identity.read(lambda connection: orders.get(connection, id))
     response.headers["ETag"] = _tag(order)
@@ -140,7 +140,7 @@ async def one(id: OrderId, request: Request, identity: Identity, response: Respo
 
 
 @router.post("", status_code=201, response_model=OrderAnswer, responses={201: TAGGED, **refused(409)})
-async def store(
+async def store_job_order(
     body: NewOrderBody, request: Request, identity: Identity, actor: Actor, idempotency_key: NewKey
 ) -> Response:
     """Store an order; with `start` it may begin at once.
@@ -168,7 +168,7 @@ async def store(
 
 
 @router.put("/{id}", responses={200: TAGGED, **refused(404, 409, 412, 428)})
-async def change(
+async def change_job_order(
     id: OrderId,
     body: OrderBody,
     request: Request,
@@ -199,7 +199,7 @@ async def change(
 
 
 @router.post("/{id}/commands", responses={200: TAGGED, **refused(404, 409)})
-async def command(
+async def command_job_order(
     id: OrderId, body: CommandBody, request: Request, identity: Identity, actor: Actor, response: Response
 ) -> OrderAnswer:
     """Start, RevokeStart, Pause, Resume, Stop, Abort, Cancel or Clear an order.

@@ -177,7 +177,7 @@ class OrderOfWorkDesk:
 
 
 @router.get("")
-async def read(request: Request) -> OrderOfWorkAnswer:
+async def read_order_of_work(request: Request) -> OrderOfWorkAnswer:
     """When orders are expected to be worked, in the order in which they are to begin."""
     desk: OrderOfWorkDesk = request.app.state.order_of_work
     if desk.found is None:
