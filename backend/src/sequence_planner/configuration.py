@@ -22,14 +22,14 @@ from sqlalchemy import make_url
 from sqlalchemy.exc import ArgumentError
 
 from sequence_planner.expressions.resolution import suggestion
-from sequence_planner.identity.openid.options import SECRET
 from sequence_planner.logs import FORMAT, LogFormat
 from sequence_planner.ros.choice import TransportChoice
 from sequence_planner.ros.environment import INTERFACE
+from sequence_planner.secret_variables import CLIENT_SECRET
 
 PREFIX: Final = "SEQUENCE_PLANNER_"
 FILE: Final = f"{PREFIX}CONFIGURATION"  # the variable that names the file
-_ELSEWHERE: Final = {INTERFACE, FORMAT, FILE, SECRET}  # variables that others read
+_ELSEWHERE: Final = {INTERFACE, FORMAT, FILE, CLIENT_SECRET}  # variables that others read
 _LISTS: Final = ("proxy", "name", "oidc_scope", "oidc_role", "webhook_host")
 _PATHS: Final = (
     "model",
