@@ -12,8 +12,8 @@ from typing import Annotated
 from fastapi import APIRouter, Request, Response
 from pydantic import AfterValidator, BaseModel, Field
 
+from sequence_planner.identity.openid.flow import FLOW_LIFE
 from sequence_planner.identity.openid.provider import Answer
-from sequence_planner.identity.provided import FLOW_LIFE
 from sequence_planner.identity.provider_sign_in import ProviderSignIn
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
