@@ -31,6 +31,10 @@ _GRANTED: Final = {
     Wish.PAUSE: (OrderState.INTERRUPTED, EventKind.INTERRUPTED),
     Wish.RESUME: (OrderState.RUNNING, EventKind.RUNNING),
 }
+_GIVEN_UP: Final[dict[Wish | None, tuple[OrderState, EventKind]]] = {
+    Wish.ABORT: (OrderState.ABORTED, EventKind.ABORTED),
+    Wish.STOP: (OrderState.ENDED, EventKind.ENDED),
+}
 _EVENTS: Final = {
     OrderCommand.START: EventKind.ALLOWED,
     OrderCommand.REVOKE_START: EventKind.REVOKED,
@@ -131,17 +135,25 @@ def hand_over(connection: Connection, order: JobOrder, now: float) -> JobOrder |
 
 
 def take_back(connection: Connection, order: JobOrder, now: float) -> JobOrder | None:
-    """The station has refused an order: it waits again, or is aborted if that was wished for meanwhile."""
+    """The station has no job of an order: that waits again, or is over if that was wished for meanwhile."""
     current = find(connection, order.id)
-    if current is None or current.handed_over is None or current.state is not OrderState.ALLOWED_TO_START:
+    if current is None or not current.is_at_station:
         return None
-    if current.wish is None:
-        return _set(connection, current, now, {"handed_over": None})
-    over = {**_NO_WISH, "handed_over": None, "state": OrderState.ABORTED.value, "ended": now}
+    if (found := _GIVEN_UP.get(current.wish)) is None:
+        waits = current.state is OrderState.ALLOWED_TO_START
+        return _set(connection, current, now, {"handed_over": None}) if waits else None
+    state, kind = found
+    over = {**_NO_WISH, "handed_over": None, "state": state.value, "ended": now}
     changed = _set(connection, current, now, over)
-    response = responses.write(connection, responses.nothing_made(changed), now)
-    told: dict[str, JsonValue] = {"state": changed.state.value, "reason": current.wished_because, "response": response}
-    events.append(connection, EventKind.ABORTED, current.id, now, told)
+    made = responses.nothing_made(changed)
+    told: dict[str, JsonValue] = {
+        "state": state.value,
+        "reason": current.wished_because,
+        "response": responses.write(connection, made, now),
+    }
+    if current.began is not None:
+        told["outcome"] = made.outcome.value
+    events.append(connection, kind, current.id, now, told)
     return changed
 
 

@@ -78,7 +78,10 @@ class CorrectionMade(BaseModel):
 
 
 class JobResponse(BaseModel):
-    """What was made of an order. Times are in seconds since the epoch."""
+    """What was made of an order. Times are in seconds since the epoch.
+
+    Of very many `deviations` the first are told, and how many were left out.
+    """
 
     model_config = _FORM
     job_order: str
@@ -90,6 +93,7 @@ class JobResponse(BaseModel):
     operations: list[OperationMade]
     abilities: list[AbilityMade]
     deviations: list[Deviation]
+    deviations_left_out: int = 0
     corrections: list[CorrectionMade]
 
 
@@ -100,15 +104,15 @@ class StoredResponse(JobResponse):
 
 
 def nothing_made(order: JobOrder) -> JobResponse:
-    """The response to an order that was aborted before the station worked on it."""
-    assert order.state is OrderState.ABORTED
+    """The response to an order that is over and of which the station has no job."""
+    assert order.is_over
     assert order.ended is not None
     return JobResponse(
         job_order=order.id,
         work_master=order.work_master,
         description=order.description,
-        outcome=JobOutcome.ABORTED,
-        began=None,
+        outcome=JobOutcome.ABORTED if order.state is OrderState.ABORTED else JobOutcome.STOPPED,
+        began=order.began,
         ended=order.ended,
         operations=[],
         abilities=[],
