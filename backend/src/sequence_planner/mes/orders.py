@@ -25,7 +25,8 @@ from sequence_planner.mes.tables import JOB_ORDERS
 MOST_OPEN: Final = 10_000  # orders that are not over
 
 _SHOWN = JOB_ORDERS.c.removed.is_(None)
-_OPEN = JOB_ORDERS.c.state.not_in([str(each) for each in OVER]) & _SHOWN
+# The states one by one, as the index has them: what is over is left out without being looked at.
+_OPEN = JOB_ORDERS.c.state.in_([str(each) for each in OrderState if each not in OVER]) & _SHOWN
 _NO_WISH: Final = {"wish": None, "wished_by": None, "wished_because": None}
 _GRANTED: Final = {
     Wish.PAUSE: (OrderState.INTERRUPTED, EventKind.INTERRUPTED),
@@ -116,6 +117,7 @@ def command(
         return _set(connection, order, now, wished)
     if given in (OrderCommand.CANCEL, OrderCommand.CLEAR):
         changed = _set(connection, order, now, {"removed": now})
+        responses.remove(connection, id, now)
     else:
         state = AT_ONCE[given]
         changed = _set(connection, order, now, {"state": state.value, "ended": now if state in OVER else None})

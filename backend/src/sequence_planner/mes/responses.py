@@ -10,12 +10,12 @@ from enum import StrEnum
 from typing import Final
 
 from pydantic import BaseModel, ConfigDict, JsonValue
-from sqlalchemy import Connection, Select, func, insert, select
+from sqlalchemy import Connection, Select, func, insert, select, update
 
 from sequence_planner.control.view_part import Value
 from sequence_planner.mes.order import JobOrder
 from sequence_planner.mes.states import OrderState
-from sequence_planner.mes.tables import JOB_ORDERS, JOB_RESPONSES
+from sequence_planner.mes.tables import JOB_RESPONSES
 
 _FORM: Final = ConfigDict(frozen=True, extra="forbid")
 
@@ -130,6 +130,11 @@ def write(connection: Connection, response: JobResponse, now: float) -> int:
     return number
 
 
+def remove(connection: Connection, job_order: str, now: float) -> None:
+    """Show the response to an order no more, if there is one."""
+    connection.execute(update(JOB_RESPONSES).where(JOB_RESPONSES.c.job_order == job_order).values(removed=now))
+
+
 def get(connection: Connection, job_order: str) -> StoredResponse | None:
     """The response to an order; None where there is none, or the order was cleared."""
     return next(iter(_chosen(connection, 0, 1, job_order)), None)
@@ -157,11 +162,7 @@ def _chosen(connection: Connection, after: int, limit: int, job_order: str | Non
 
 def _shown() -> Select[int, str]:
     """The responses of orders that are not cleared."""
-    return (
-        select(JOB_RESPONSES.c.number, JOB_RESPONSES.c.content)
-        .join(JOB_ORDERS, JOB_ORDERS.c.id == JOB_RESPONSES.c.job_order)
-        .where(JOB_ORDERS.c.removed.is_(None))
-    )
+    return select(JOB_RESPONSES.c.number, JOB_RESPONSES.c.content).where(JOB_RESPONSES.c.removed.is_(None))
 
 
 def _read(connection: Connection, chosen: Select[int, str]) -> list[StoredResponse]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from sqlalchemy import Column, Double, Index, Integer, String, Table, Text
+from sqlalchemy import Column, Double, Index, Integer, String, Table, Text, text
 
 from sequence_planner.journal.chain import NUMBER
 from sequence_planner.storage.metadata import METADATA
@@ -16,6 +16,8 @@ from sequence_planner.storage.metadata import METADATA
 LONGEST_ID: Final = 64  # characters
 ORDER: Final = String(LONGEST_ID)
 NAME: Final = String(200)
+# Of an index that has only what is shown: in the end nearly all orders are cleared.
+SHOWN: Final = {"sqlite_where": text("removed IS NULL"), "postgresql_where": text("removed IS NULL")}
 
 JOB_ORDERS: Final = Table(
     "job_orders",
@@ -39,7 +41,8 @@ JOB_ORDERS: Final = Table(
     Column("wished_by", Text, nullable=True),  # JSON of the actor
     Column("wished_because", Text, nullable=True),
     Column("removed", Double, nullable=True),  # when it was cancelled or cleared
-    Index("ix_job_orders_state_number", "state", "number"),
+    Index("ix_job_orders_shown", "number", **SHOWN),
+    Index("ix_job_orders_shown_state", "state", "number", **SHOWN),
 )
 
 JOB_EVENTS: Final = Table(
@@ -59,6 +62,8 @@ JOB_RESPONSES: Final = Table(
     Column("job_order", ORDER, nullable=False, unique=True),
     Column("time", Double, nullable=False),
     Column("content", Text, nullable=False),  # JSON
+    Column("removed", Double, nullable=True),  # as of its order
+    Index("ix_job_responses_shown", "number", **SHOWN),
 )
 
 JOB_LEDGER: Final = Table(
