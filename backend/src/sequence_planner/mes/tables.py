@@ -16,8 +16,13 @@ from sequence_planner.storage.metadata import METADATA
 LONGEST_ID: Final = 64  # characters
 ORDER: Final = String(LONGEST_ID)
 NAME: Final = String(200)
-# Of an index that has only what is shown: in the end nearly all orders are cleared.
-SHOWN: Final = {"sqlite_where": text("removed IS NULL"), "postgresql_where": text("removed IS NULL")}
+SHOWN: Final = text("removed IS NULL")
+
+
+def _shown(name: str, *columns: str) -> Index:
+    """An index of what is shown alone: in the end nearly all orders are cleared."""
+    return Index(name, *columns, sqlite_where=SHOWN, postgresql_where=SHOWN)
+
 
 JOB_ORDERS: Final = Table(
     "job_orders",
@@ -41,8 +46,8 @@ JOB_ORDERS: Final = Table(
     Column("wished_by", Text, nullable=True),  # JSON of the actor
     Column("wished_because", Text, nullable=True),
     Column("removed", Double, nullable=True),  # when it was cancelled or cleared
-    Index("ix_job_orders_shown", "number", **SHOWN),
-    Index("ix_job_orders_shown_state", "state", "number", **SHOWN),
+    _shown("ix_job_orders_shown", "number"),
+    _shown("ix_job_orders_shown_state", "state", "number"),
 )
 
 JOB_EVENTS: Final = Table(
@@ -63,7 +68,7 @@ JOB_RESPONSES: Final = Table(
     Column("time", Double, nullable=False),
     Column("content", Text, nullable=False),  # JSON
     Column("removed", Double, nullable=True),  # as of its order
-    Index("ix_job_responses_shown", "number", **SHOWN),
+    _shown("ix_job_responses_shown", "number"),
 )
 
 JOB_LEDGER: Final = Table(
