@@ -769,6 +769,8 @@ export interface paths {
         /**
          * Read
          * @description The orders as they were stored, only those in a state where one is named. Those that come meanwhile are last.
+         *
+         *     With `sort=work` those that are not over, as they are to begin; pages may then overlap while that changes.
          */
         get: operations["read_api_v1_job_orders_get"];
         put?: never;
@@ -1523,7 +1525,7 @@ export interface paths {
         };
         /**
          * Read
-         * @description When orders are expected to be worked, in the order in which they are to begin.
+         * @description When orders are expected to be worked, in the order in which they are to begin; only the first `limit`.
          */
         get: operations["read_api_v1_order_of_work_get"];
         put?: never;
@@ -5134,7 +5136,7 @@ export interface components {
         OrderState: "NotAllowedToStart" | "AllowedToStart" | "Running" | "Interrupted" | "Ended" | "Aborted";
         /**
          * OrdersAnswer
-         * @description Orders as they were stored; `next` is the `cursor` with which later ones follow, null when there are none.
+         * @description Orders in a row; `next` is the `cursor` with which later ones follow, null when there are none.
          */
         OrdersAnswer: {
             /** Job Orders */
@@ -6342,6 +6344,12 @@ export interface components {
             revision: number;
         };
         /**
+         * Sort
+         * @description In which order orders are answered: as they were `stored`, or as they are to begin, by the order of `work`.
+         * @enum {string}
+         */
+        Sort: "stored" | "work";
+        /**
          * SourceOfferView
          * @description A topic or flow that a flow could have as a further source; `edits` make it so.
          */
@@ -6788,6 +6796,11 @@ export interface components {
             description: string;
             /** Deviations */
             deviations: components["schemas"]["Deviation"][];
+            /**
+             * Deviations Left Out
+             * @default 0
+             */
+            deviations_left_out: number;
             /** Ended */
             ended: number;
             /** Job Order */
@@ -9385,6 +9398,7 @@ export interface operations {
                 state?: components["schemas"]["OrderState"] | null;
                 cursor?: number;
                 limit?: number;
+                sort?: components["schemas"]["Sort"];
             };
             header?: never;
             path?: never;
@@ -10965,7 +10979,9 @@ export interface operations {
     };
     read_api_v1_order_of_work_get: {
         parameters: {
-            query?: never;
+            query?: {
+                limit?: number;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -10983,6 +10999,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {

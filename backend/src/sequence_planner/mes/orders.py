@@ -201,9 +201,11 @@ def page(connection: Connection, state: OrderState | None, after: int, limit: in
     return [JobOrder.of(row) for row in connection.execute(chosen).mappings()]
 
 
-def open_orders(connection: Connection) -> list[JobOrder]:
-    """All orders that are not over, as they were stored."""
+def open_orders(connection: Connection, state: OrderState | None = None) -> list[JobOrder]:
+    """All orders that are not over, as they were stored; only those in a state, if one is named."""
     chosen = select(JOB_ORDERS).where(_OPEN).order_by(JOB_ORDERS.c.number)
+    if state is not None:
+        chosen = chosen.where(JOB_ORDERS.c.state == state.value)
     return [JobOrder.of(row) for row in connection.execute(chosen).mappings()]
 
 

@@ -62,6 +62,7 @@ class OrderDesk:
     async def run(self) -> None:
         """Look after orders until cancelled. What fails is tried again and again."""
         while True:
+            began = time.monotonic()
             try:
                 await self._look()
                 self._trouble = ""
@@ -71,12 +72,15 @@ class OrderDesk:
                 if repr(error) != self._trouble:
                     LOG.exception("orders cannot be looked after")
                 self._trouble = repr(error)
-            await self._rest()
+            await self._rest(time.monotonic() - began)
 
-    async def _rest(self) -> None:
-        """Until the next look: at once when somebody has changed an order, but for where it would fail again."""
+    async def _rest(self, took: float) -> None:
+        """Until the next look: soon when somebody has changed an order, but for where it would fail again.
+
+        A look at thousands of orders takes a while: at least as long is left to those who bring them.
+        """
+        await asyncio.sleep(LOOK_EVERY if self._trouble else min(took, LOOK_EVERY))
         if self._trouble:
-            await asyncio.sleep(LOOK_EVERY)
             return
         with contextlib.suppress(TimeoutError):
             async with asyncio.timeout(LOOK_EVERY):
