@@ -555,6 +555,8 @@ export interface paths {
         /**
          * Read
          * @description The events with higher numbers than `after`. They are numbered without gaps and never change.
+         *
+         *     409 `event-not-known` where there is no event `after` yet: a station that was restored from a backup numbers anew.
          */
         get: operations["read_api_v1_events_get"];
         put?: never;
@@ -8991,6 +8993,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
