@@ -84,6 +84,13 @@ def test_an_order_is_stored_started_and_told(mes: httpx.Client, server: Server) 
     assert (newest.actor.name, newest.subject, newest.reason) == ("MES", "job order engine-4711", "the shift begins")
 
 
+def test_who_has_read_further_than_a_restored_station_is_told_so(mes: httpx.Client) -> None:
+    store(mes, "4711")
+    assert mes.get("/api/v1/events", params={"after": 1}).json() == {"events": [], "next": 1}
+    told = problem(mes.get("/api/v1/events", params={"after": 2}), 409, "event-not-known")
+    assert "the newest is 1" in told["detail"]
+
+
 def test_without_an_id_an_order_is_given_one(mes: httpx.Client) -> None:
     one, two = store(mes, "one", start=True), store(mes, "two")
     assert one["id"] != two["id"]

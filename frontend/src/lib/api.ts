@@ -555,6 +555,8 @@ export interface paths {
         /**
          * Read Events
          * @description The events with higher numbers than `after`. They are numbered without gaps and never change.
+         *
+         *     409 `event-not-known` where there is no event `after` yet: a station that was restored from a backup numbers anew.
          */
         get: operations["read_events"];
         put?: never;
@@ -769,6 +771,8 @@ export interface paths {
         /**
          * Read Job Orders
          * @description The orders as they were stored, only those in a state where one is named. Those that come meanwhile are last.
+         *
+         *     With `sort=work` those that are not over, as they are to begin; pages may then overlap while that changes.
          */
         get: operations["read_job_orders"];
         put?: never;
@@ -1523,7 +1527,7 @@ export interface paths {
         };
         /**
          * Read Order Of Work
-         * @description When orders are expected to be worked, in the order in which they are to begin.
+         * @description When orders are expected to be worked, in the order in which they are to begin; only the first `limit`.
          */
         get: operations["read_order_of_work"];
         put?: never;
@@ -5129,7 +5133,7 @@ export interface components {
         OrderState: "NotAllowedToStart" | "AllowedToStart" | "Running" | "Interrupted" | "Ended" | "Aborted";
         /**
          * OrdersAnswer
-         * @description Orders as they were stored; `next` is the `cursor` with which later ones follow, null when there are none.
+         * @description Orders in a row; `next` is the `cursor` with which later ones follow, null when there are none.
          */
         OrdersAnswer: {
             /** Job Orders */
@@ -6337,6 +6341,12 @@ export interface components {
             revision: number;
         };
         /**
+         * Sort
+         * @description In which order orders are answered: as they were `stored`, or as they are to begin, by the order of `work`.
+         * @enum {string}
+         */
+        Sort: "stored" | "work";
+        /**
          * Soundness
          * @description Whether something of a pipeline is sound.
          * @enum {string}
@@ -6795,6 +6805,11 @@ export interface components {
             description: string;
             /** Deviations */
             deviations: components["schemas"]["Deviation"][];
+            /**
+             * Deviations Left Out
+             * @default 0
+             */
+            deviations_left_out: number;
             /** Ended */
             ended: number;
             /** Job Order */
@@ -8955,6 +8970,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
@@ -9362,6 +9378,7 @@ export interface operations {
                 state?: components["schemas"]["OrderState"] | null;
                 cursor?: number;
                 limit?: number;
+                sort?: components["schemas"]["Sort"];
             };
             header?: never;
             path?: never;
@@ -10942,7 +10959,9 @@ export interface operations {
     };
     read_order_of_work: {
         parameters: {
-            query?: never;
+            query?: {
+                limit?: number;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -10960,6 +10979,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
