@@ -125,7 +125,8 @@ class Passwords:
 
 def _give_way() -> None:
     with contextlib.suppress(OSError):
-        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _KINDER)
+        own = os.getpriority(os.PRIO_PROCESS, 0)
+        os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), own + _KINDER)
 
 
 def _bytes(password: str) -> bytes:
