@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from typing import Final
+from urllib.parse import urlsplit
 
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import Connection, RowMapping, delete, func, insert, select
@@ -84,7 +85,9 @@ def make(
         "held_until": 0.0,
     }
     connection.execute(insert(WEBHOOKS), row)
-    record(connection, by, "webhook-created", f"webhook {row['title']}", now, id=id, url=url, kinds=asked)
+    # Of the URL only where it leads: more people read the journal than webhooks, and a path or query may be a secret.
+    to = urlsplit(url).netloc
+    record(connection, by, "webhook-created", f"webhook {row['title']}", now, id=id, to=to, kinds=asked)
     return secret, get(connection, id)
 
 
