@@ -85,9 +85,7 @@ def make(
         "held_until": 0.0,
     }
     connection.execute(insert(WEBHOOKS), row)
-    # Of the URL only where it leads: more people read the journal than webhooks, and a path or query may be a secret.
-    to = urlsplit(url).netloc
-    record(connection, by, "webhook-created", f"webhook {row['title']}", now, id=id, to=to, kinds=asked)
+    record(connection, by, "webhook-created", f"webhook {row['title']}", now, id=id, to=_host(url), kinds=asked)
     return secret, get(connection, id)
 
 
@@ -112,7 +110,13 @@ def remove(connection: Connection, id: str, by: Actor, now: float) -> None:
     connection.execute(delete(WEBHOOK_DELIVERIES).where(WEBHOOK_DELIVERIES.c.webhook == id))
     connection.execute(delete(WEBHOOKS).where(WEBHOOKS.c.id == id))
     left = webhook.waiting + webhook.given_up
-    record(connection, by, "webhook-deleted", f"webhook {webhook.title}", now, id=id, url=webhook.url, undelivered=left)
+    to = _host(webhook.url)
+    record(connection, by, "webhook-deleted", f"webhook {webhook.title}", now, id=id, to=to, undelivered=left)
+
+
+def _host(url: str) -> str:
+    """All that the journal has of a URL: more people read that than webhooks, and a path or a query may be a secret."""
+    return urlsplit(url).netloc
 
 
 def _counts(connection: Connection) -> dict[tuple[str, bool], int]:
