@@ -17,7 +17,7 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -74,13 +74,20 @@ class Part:
     """A process of the station, which is started again when it dies. It gets the environment `given`, or one without
     secrets.
 
-    One that `has_spare` is followed at once by another process that was started before.
+    One that `has_spare` is followed at once by another process that was started before. Whenever it is started after
+    the first time it is told `again`.
     """
 
     def __init__(
-        self, name: str, command: list[str], given: Mapping[str, str] | None = None, has_spare: bool = False
+        self,
+        name: str,
+        command: list[str],
+        given: Mapping[str, str] | None = None,
+        has_spare: bool = False,
+        again: Sequence[str] = (),
     ) -> None:
         self.name = name
+        self._told_again = again
         self._has_spare = has_spare
         self.spare: subprocess.Popen[bytes] | None = None
         self._spare_due = 0.0
@@ -116,7 +123,7 @@ class Part:
         now = time.monotonic()
         if self.process is None:
             if now >= self._due:
-                self.spawn()
+                self.spawn(*self._told_again)
             return 0
         code = self.process.poll()
         if code is None:
@@ -133,7 +140,7 @@ class Part:
             if code == OVERTAKEN:
                 _say("another station has taken the command, and this one stands by")
             if not self._follow(now):
-                self.spawn()
+                self.spawn(*self._told_again)
             return 0
         self.restarts += 1
         if self._follow(now):
@@ -244,7 +251,9 @@ class _Launcher:
         # Not as an argument: the URL may hold a password, and everybody on this machine may read what `ps` shows.
         of_controller = {**environment(PASSWORD), DATABASE: url}
         of_server = {**environment(PASSWORD, CLIENT_SECRET), DATABASE: url}
-        self._controller = Part("controller", _command("controller", *controller), of_controller, has_spare=True)
+        self._controller = Part(
+            "controller", _command("controller", *controller), of_controller, has_spare=True, again=("--again",)
+        )
         server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
         server += ["--demonstration"] if request.database is None else []
         server += request.provider.arguments()
