@@ -331,6 +331,50 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/backups": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * All Backups
+         * @description Which backups there are, what is being done, and what would be in the way of another.
+         */
+        get: operations["all_backups_api_v1_backups_get"];
+        put?: never;
+        /**
+         * Make
+         * @description Make a backup in the background. Whoever asks while one is being made gets that one.
+         */
+        post: operations["make_api_v1_backups_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/backups/{file}/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Check
+         * @description Read a backup as a whole in the background, as if it were to be restored, but put nothing in place.
+         */
+        post: operations["check_api_v1_backups__file__check_post"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/capabilities": {
         parameters: {
             query?: never;
@@ -2972,6 +3016,21 @@ export interface components {
             topic: string;
         };
         /**
+         * AttemptAnswer
+         * @description How what was done last ended: `requested` where the server ended before.
+         */
+        AttemptAnswer: {
+            /** By */
+            by: string;
+            doing: components["schemas"]["Doing"];
+            /** File */
+            file: string;
+            outcome: components["schemas"]["Outcome"];
+            /** Time */
+            time: number;
+            trouble: components["schemas"]["TroubleAnswer"] | null;
+        };
+        /**
          * AuditAnswer
          * @description Records, newest first; `next` is the `before` with which older ones follow, null when there are none.
          */
@@ -3026,6 +3085,51 @@ export interface components {
             timeouts: components["schemas"]["TimeoutsView"];
             /** Title */
             title: string;
+        };
+        /**
+         * BackupAnswer
+         * @description A file in the folder, and the commands that restore it; `content` is null, and `wrong` says why, where the file
+         *     cannot be read.
+         */
+        BackupAnswer: {
+            checked: components["schemas"]["CheckedAnswer"] | null;
+            content: components["schemas"]["ContentAnswer"] | null;
+            /** File */
+            file: string;
+            restoring: components["schemas"]["Instructions"] | null;
+            /** Size */
+            size: number;
+            /** Wrong */
+            wrong: string | null;
+        };
+        /**
+         * BackupsAnswer
+         * @description Backups, the newest first, and where and how they are kept. `free` is in bytes, `every` in hours.
+         *
+         *     The newest is old when it is older than `old_after` (seconds). `trouble` is what keeps one from being made, `last`
+         *     how the last attempt ended, `user` who runs the station on its machine. With `same_disk` the disk of the database
+         *     keeps its backups as well.
+         */
+        BackupsAnswer: {
+            /** Backups */
+            backups: components["schemas"]["BackupAnswer"][];
+            busy: components["schemas"]["BusyAnswer"] | null;
+            /** Every */
+            every: number | null;
+            /** Folder */
+            folder: string;
+            /** Free */
+            free: number | null;
+            /** Kept */
+            kept: number;
+            last: components["schemas"]["AttemptAnswer"] | null;
+            /** Old After */
+            old_after: number;
+            /** Same Disk */
+            same_disk: boolean;
+            trouble: components["schemas"]["TroubleAnswer"] | null;
+            /** User */
+            user: string;
         };
         /**
          * BeginBody
@@ -3102,6 +3206,20 @@ export interface components {
             records: components["schemas"]["RunRecordView"][];
             /** Seconds */
             seconds: number;
+        };
+        /**
+         * BusyAnswer
+         * @description What is done just now; `step` is null until it has begun.
+         */
+        BusyAnswer: {
+            /** Begun */
+            begun: number;
+            /** By */
+            by: string;
+            doing: components["schemas"]["Doing"];
+            /** File */
+            file: string;
+            step: components["schemas"]["Step"] | null;
         };
         /**
          * ByOrderBody
@@ -3240,6 +3358,20 @@ export interface components {
             summary: components["schemas"]["SummaryView"] | null;
         };
         /**
+         * CheckedAnswer
+         * @description How a backup was found when it was last read as a whole, which is also done when it is made.
+         */
+        CheckedAnswer: {
+            /** By */
+            by: string;
+            /** Detail */
+            detail: string;
+            /** Time */
+            time: number;
+            /** Whole */
+            whole: boolean;
+        };
+        /**
          * Checkpoint
          * @description A signed statement: `content` is its text, as it was signed with Ed25519; key and signature are in hex.
          */
@@ -3341,6 +3473,33 @@ export interface components {
             reads: components["schemas"]["ReadValueView"][];
             /** Text */
             text: string;
+        };
+        /**
+         * ContentAnswer
+         * @description What a backup says of itself. `how` and `by` are null where it does not tell who made it.
+         *
+         *     `time` is in seconds since the epoch; `audit` and `run` are the last records of who did what, and of what happened.
+         */
+        ContentAnswer: {
+            /** Audit */
+            audit: number;
+            /** By */
+            by: string | null;
+            /** Database */
+            database: string;
+            how: components["schemas"]["How"] | null;
+            /** Model Files */
+            model_files: number;
+            /** Program */
+            program: string;
+            /** Revisions */
+            revisions: boolean;
+            /** Run */
+            run: number;
+            /** Station */
+            station: string;
+            /** Time */
+            time: number;
         };
         /**
          * Contract
@@ -3625,6 +3784,12 @@ export interface components {
             /** Safe */
             safe: boolean | number | string;
         };
+        /**
+         * Doing
+         * @description What is done with a backup, as the journal calls it.
+         * @enum {string}
+         */
+        Doing: "make-backup" | "check-backup";
         /**
          * DraftEdgeView
          * @description An edge: the types of a record's fields, null where nobody can say; `id` stays when others come and go.
@@ -4394,6 +4559,22 @@ export interface components {
             type: string | null;
         };
         /**
+         * How
+         * @description How it came that a backup was made.
+         * @enum {string}
+         */
+        How: "asked" | "schedule" | "command-line";
+        /**
+         * Instructions
+         * @description Commands: the first moves away what there is, keys excepted; the second puts the backup in its place.
+         */
+        Instructions: {
+            /** Away */
+            away: string;
+            /** Restore */
+            restore: string;
+        };
+        /**
          * InvolvedView
          * @description A variable that decides a condition. With one of the values `wanted`, and nothing else different, it would hold.
          *
@@ -4872,11 +5053,6 @@ export interface components {
             /** Vendor */
             vendor: string | null;
         };
-        /**
-         * NothingBody
-         * @description Nothing more is to be said.
-         */
-        NothingBody: Record<string, never>;
         /**
          * OfferAnswer
          * @description A pairing that nobody has redeemed yet. Its code is not told again.
@@ -6729,6 +6905,12 @@ export interface components {
             way_back: components["schemas"]["WayBackView"] | null;
         };
         /**
+         * Step
+         * @description How far the making of a backup has come.
+         * @enum {string}
+         */
+        Step: "copying" | "writing" | "checking";
+        /**
          * StepDocument
          * @description A step of a trace: what happens (`kind` and `names`), what changes, and the specifications that forbid the state
          *     after it; `text` says it in a line.
@@ -7199,6 +7381,21 @@ export interface components {
             due: number | null;
             /** Name */
             name: string;
+        };
+        /**
+         * Trouble
+         * @description Kinds of trouble that people remedy in different ways.
+         * @enum {string}
+         */
+        Trouble: "no-space" | "no-folder" | "not-writable" | "no-program" | "not-whole" | "other";
+        /**
+         * TroubleAnswer
+         * @description What is in the way: of which kind, and in words with what to do.
+         */
+        TroubleAnswer: {
+            /** Detail */
+            detail: string;
+            kind: components["schemas"]["Trouble"];
         };
         /**
          * TypeKind
@@ -7715,6 +7912,16 @@ export interface components {
             /** Then */
             then: boolean | number | string;
         };
+        /**
+         * NothingBody
+         * @description Nothing has to be said.
+         */
+        sequence_planner__web__backups__NothingBody: Record<string, never>;
+        /**
+         * NothingBody
+         * @description Nothing more is to be said.
+         */
+        sequence_planner__web__model__NothingBody: Record<string, never>;
         /**
          * Standing
          * @description Whether something of a pipeline is sound.
@@ -8498,6 +8705,126 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    all_backups_api_v1_backups_get: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BackupsAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    make_api_v1_backups_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["sequence_planner__web__backups__NothingBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BusyAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    check_api_v1_backups__file__check_post: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                file: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["sequence_planner__web__backups__NothingBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BusyAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
@@ -10582,7 +10909,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["NothingBody"];
+                "application/json": components["schemas"]["sequence_planner__web__model__NothingBody"];
             };
         };
         responses: {
@@ -10819,7 +11146,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["NothingBody"];
+                "application/json": components["schemas"]["sequence_planner__web__model__NothingBody"];
             };
         };
         responses: {
