@@ -3016,21 +3016,6 @@ export interface components {
             topic: string;
         };
         /**
-         * AttemptAnswer
-         * @description How what was done last ended: `requested` where the server ended before.
-         */
-        AttemptAnswer: {
-            /** By */
-            by: string;
-            doing: components["schemas"]["Doing"];
-            /** File */
-            file: string;
-            outcome: components["schemas"]["Outcome"];
-            /** Time */
-            time: number;
-            trouble: components["schemas"]["TroubleAnswer"] | null;
-        };
-        /**
          * AuditAnswer
          * @description Records, newest first; `next` is the `before` with which older ones follow, null when there are none.
          */
@@ -3092,15 +3077,94 @@ export interface components {
          *     cannot be read.
          */
         BackupAnswer: {
-            checked: components["schemas"]["CheckedAnswer"] | null;
-            content: components["schemas"]["ContentAnswer"] | null;
+            checked: components["schemas"]["BackupCheckedAnswer"] | null;
+            content: components["schemas"]["BackupContentAnswer"] | null;
             /** File */
             file: string;
-            restoring: components["schemas"]["Instructions"] | null;
+            restoring: components["schemas"]["RestoreInstructions"] | null;
             /** Size */
             size: number;
             /** Wrong */
             wrong: string | null;
+        };
+        /**
+         * BackupAttemptAnswer
+         * @description How what was done last ended: `requested` where the server ended before.
+         */
+        BackupAttemptAnswer: {
+            /** By */
+            by: string;
+            doing: components["schemas"]["Doing"];
+            /** File */
+            file: string;
+            outcome: components["schemas"]["Outcome"];
+            /** Time */
+            time: number;
+            trouble: components["schemas"]["BackupTroubleAnswer"] | null;
+        };
+        /**
+         * BackupBusyAnswer
+         * @description What is done just now; `step` is null until it has begun.
+         */
+        BackupBusyAnswer: {
+            /** Begun */
+            begun: number;
+            /** By */
+            by: string;
+            doing: components["schemas"]["Doing"];
+            /** File */
+            file: string;
+            step: components["schemas"]["Step"] | null;
+        };
+        /**
+         * BackupCheckedAnswer
+         * @description How a backup was found when it was last read as a whole, which is also done when it is made.
+         */
+        BackupCheckedAnswer: {
+            /** By */
+            by: string;
+            /** Detail */
+            detail: string;
+            /** Time */
+            time: number;
+            /** Whole */
+            whole: boolean;
+        };
+        /**
+         * BackupContentAnswer
+         * @description What a backup says of itself. `how` and `by` are null where it does not tell who made it.
+         *
+         *     `time` is in seconds since the epoch; `audit` and `run` are the last records of who did what, and of what happened.
+         */
+        BackupContentAnswer: {
+            /** Audit */
+            audit: number;
+            /** By */
+            by: string | null;
+            /** Database */
+            database: string;
+            how: components["schemas"]["How"] | null;
+            /** Model Files */
+            model_files: number;
+            /** Program */
+            program: string;
+            /** Revisions */
+            revisions: boolean;
+            /** Run */
+            run: number;
+            /** Station */
+            station: string;
+            /** Time */
+            time: number;
+        };
+        /**
+         * BackupTroubleAnswer
+         * @description What is in the way: of which kind, and in words with what to do.
+         */
+        BackupTroubleAnswer: {
+            /** Detail */
+            detail: string;
+            kind: components["schemas"]["Trouble"];
         };
         /**
          * BackupsAnswer
@@ -3113,7 +3177,7 @@ export interface components {
         BackupsAnswer: {
             /** Backups */
             backups: components["schemas"]["BackupAnswer"][];
-            busy: components["schemas"]["BusyAnswer"] | null;
+            busy: components["schemas"]["BackupBusyAnswer"] | null;
             /** Every */
             every: number | null;
             /** Folder */
@@ -3122,12 +3186,12 @@ export interface components {
             free: number | null;
             /** Kept */
             kept: number;
-            last: components["schemas"]["AttemptAnswer"] | null;
+            last: components["schemas"]["BackupAttemptAnswer"] | null;
             /** Old After */
             old_after: number;
             /** Same Disk */
             same_disk: boolean;
-            trouble: components["schemas"]["TroubleAnswer"] | null;
+            trouble: components["schemas"]["BackupTroubleAnswer"] | null;
             /** User */
             user: string;
         };
@@ -3206,20 +3270,6 @@ export interface components {
             records: components["schemas"]["RunRecordView"][];
             /** Seconds */
             seconds: number;
-        };
-        /**
-         * BusyAnswer
-         * @description What is done just now; `step` is null until it has begun.
-         */
-        BusyAnswer: {
-            /** Begun */
-            begun: number;
-            /** By */
-            by: string;
-            doing: components["schemas"]["Doing"];
-            /** File */
-            file: string;
-            step: components["schemas"]["Step"] | null;
         };
         /**
          * ByOrderBody
@@ -3358,20 +3408,6 @@ export interface components {
             summary: components["schemas"]["SummaryView"] | null;
         };
         /**
-         * CheckedAnswer
-         * @description How a backup was found when it was last read as a whole, which is also done when it is made.
-         */
-        CheckedAnswer: {
-            /** By */
-            by: string;
-            /** Detail */
-            detail: string;
-            /** Time */
-            time: number;
-            /** Whole */
-            whole: boolean;
-        };
-        /**
          * Checkpoint
          * @description A signed statement: `content` is its text, as it was signed with Ed25519; key and signature are in hex.
          */
@@ -3473,33 +3509,6 @@ export interface components {
             reads: components["schemas"]["ReadValueView"][];
             /** Text */
             text: string;
-        };
-        /**
-         * ContentAnswer
-         * @description What a backup says of itself. `how` and `by` are null where it does not tell who made it.
-         *
-         *     `time` is in seconds since the epoch; `audit` and `run` are the last records of who did what, and of what happened.
-         */
-        ContentAnswer: {
-            /** Audit */
-            audit: number;
-            /** By */
-            by: string | null;
-            /** Database */
-            database: string;
-            how: components["schemas"]["How"] | null;
-            /** Model Files */
-            model_files: number;
-            /** Program */
-            program: string;
-            /** Revisions */
-            revisions: boolean;
-            /** Run */
-            run: number;
-            /** Station */
-            station: string;
-            /** Time */
-            time: number;
         };
         /**
          * Contract
@@ -4564,16 +4573,6 @@ export interface components {
          * @enum {string}
          */
         How: "asked" | "schedule" | "command-line";
-        /**
-         * Instructions
-         * @description Commands: the first moves away what there is, keys excepted; the second puts the backup in its place.
-         */
-        Instructions: {
-            /** Away */
-            away: string;
-            /** Restore */
-            restore: string;
-        };
         /**
          * InvolvedView
          * @description A variable that decides a condition. With one of the values `wanted`, and nothing else different, it would hold.
@@ -6166,6 +6165,16 @@ export interface components {
             number: number;
         };
         /**
+         * RestoreInstructions
+         * @description Commands: the first moves away what there is, keys excepted; the second puts the backup in its place.
+         */
+        RestoreInstructions: {
+            /** Away */
+            away: string;
+            /** Restore */
+            restore: string;
+        };
+        /**
          * Resync
          * @description The client wants a new snapshot.
          */
@@ -7388,15 +7397,6 @@ export interface components {
          * @enum {string}
          */
         Trouble: "no-space" | "no-folder" | "not-writable" | "no-program" | "not-whole" | "other";
-        /**
-         * TroubleAnswer
-         * @description What is in the way: of which kind, and in words with what to do.
-         */
-        TroubleAnswer: {
-            /** Detail */
-            detail: string;
-            kind: components["schemas"]["Trouble"];
-        };
         /**
          * TypeKind
          * @description What values a type has.
@@ -8770,7 +8770,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["BusyAnswer"];
+                    "application/json": components["schemas"]["BackupBusyAnswer"];
                 };
             };
             400: components["responses"]["Problem400"];
@@ -8814,7 +8814,7 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["BusyAnswer"];
+                    "application/json": components["schemas"]["BackupBusyAnswer"];
                 };
             };
             400: components["responses"]["Problem400"];

@@ -15,14 +15,14 @@ from sequence_planner.storage.location import revisions_folder
 _BESIDE = ("-wal", "-shm")  # what SQLite leaves where a station did not end in good order
 
 
-class Instructions(BaseModel):
+class RestoreInstructions(BaseModel):
     """Commands: the first moves away what there is, keys excepted; the second puts the backup in its place."""
 
     away: str
     restore: str
 
 
-def instructions(file: Path, url: str, model: Path) -> Instructions:
+def instructions(file: Path, url: str, model: Path) -> RestoreInstructions:
     """The commands for the station in the folder `model`, without any password. Raises `StorageError`."""
     place, revisions = address(url), revisions_folder(url, model)
     sequence_planner = Path(sys.executable).with_name("sequence-planner")
@@ -42,7 +42,7 @@ def instructions(file: Path, url: str, model: Path) -> Instructions:
         )
         named = _text(bare)
     words = (program, "restore", str(file), str(model.resolve()), "--database", named)
-    return Instructions(away=away, restore=" ".join(map(quote, words)))
+    return RestoreInstructions(away=away, restore=" ".join(map(quote, words)))
 
 
 def _moved(files: list[Path]) -> str:

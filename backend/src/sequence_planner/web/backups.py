@@ -14,7 +14,7 @@ from sequence_planner.backup.trouble import trouble_in
 from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import allowed
 from sequence_planner.web.backup_desk import BackupDesk, Busy, CannotBeginError, FolderSilentError, OtherBusyError
-from sequence_planner.web.backups_answer import BackupsAnswer, BusyAnswer, backups_answer, busy_answer
+from sequence_planner.web.backups_answer import BackupBusyAnswer, BackupsAnswer, backups_answer, busy_answer
 from sequence_planner.web.body import Body, Identifier
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor
@@ -54,7 +54,7 @@ async def all_backups(desk: Desk) -> BackupsAnswer:
 
 
 @router.post("", status_code=202)
-async def make(body: NothingBody, desk: Desk, actor: Actor) -> BusyAnswer:
+async def make(body: NothingBody, desk: Desk, actor: Actor) -> BackupBusyAnswer:
     """Make a backup in the background. Whoever asks while one is being made gets that one."""
     try:
         return busy_answer(await desk.make(actor))
@@ -68,7 +68,7 @@ async def make(body: NothingBody, desk: Desk, actor: Actor) -> BusyAnswer:
 
 
 @router.post("/{file}/check", status_code=202, responses=refused(404))
-async def check(file: Identifier, body: NothingBody, desk: Desk, actor: Actor) -> BusyAnswer:
+async def check(file: Identifier, body: NothingBody, desk: Desk, actor: Actor) -> BackupBusyAnswer:
     """Read a backup as a whole in the background, as if it were to be restored, but put nothing in place."""
     try:
         busy = await desk.check(file, actor)

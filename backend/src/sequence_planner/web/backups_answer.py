@@ -5,7 +5,7 @@ from __future__ import annotations
 from pydantic import BaseModel
 
 from sequence_planner.backup.archive import How, Manifest
-from sequence_planner.backup.instructions import Instructions, instructions
+from sequence_planner.backup.instructions import RestoreInstructions, instructions
 from sequence_planner.backup.keeping import Kept, Looked, Shelf, what_is_in
 from sequence_planner.backup.making import Step
 from sequence_planner.backup.recording import Attempt, Doing, Recorded
@@ -16,14 +16,14 @@ from sequence_planner.user import user_name
 from sequence_planner.web.backup_desk import Busy
 
 
-class TroubleAnswer(BaseModel):
+class BackupTroubleAnswer(BaseModel):
     """What is in the way: of which kind, and in words with what to do."""
 
     kind: Trouble
     detail: str
 
 
-class ContentAnswer(BaseModel):
+class BackupContentAnswer(BaseModel):
     """What a backup says of itself. `how` and `by` are null where it does not tell who made it.
 
     `time` is in seconds since the epoch; `audit` and `run` are the last records of who did what, and of what happened.
@@ -41,7 +41,7 @@ class ContentAnswer(BaseModel):
     revisions: bool
 
 
-class CheckedAnswer(BaseModel):
+class BackupCheckedAnswer(BaseModel):
     """How a backup was found when it was last read as a whole, which is also done when it is made."""
 
     time: float
@@ -57,13 +57,13 @@ class BackupAnswer(BaseModel):
 
     file: str
     size: int
-    content: ContentAnswer | None
+    content: BackupContentAnswer | None
     wrong: str | None
-    checked: CheckedAnswer | None
-    restoring: Instructions | None
+    checked: BackupCheckedAnswer | None
+    restoring: RestoreInstructions | None
 
 
-class BusyAnswer(BaseModel):
+class BackupBusyAnswer(BaseModel):
     """What is done just now; `step` is null until it has begun."""
 
     doing: Doing
@@ -73,7 +73,7 @@ class BusyAnswer(BaseModel):
     step: Step | None
 
 
-class AttemptAnswer(BaseModel):
+class BackupAttemptAnswer(BaseModel):
     """How what was done last ended: `requested` where the server ended before."""
 
     doing: Doing
@@ -81,7 +81,7 @@ class AttemptAnswer(BaseModel):
     time: float
     by: str
     outcome: Outcome
-    trouble: TroubleAnswer | None
+    trouble: BackupTroubleAnswer | None
 
 
 class BackupsAnswer(BaseModel):
@@ -100,9 +100,9 @@ class BackupsAnswer(BaseModel):
     every: float | None
     old_after: float
     user: str
-    busy: BusyAnswer | None
-    last: AttemptAnswer | None
-    trouble: TroubleAnswer | None
+    busy: BackupBusyAnswer | None
+    last: BackupAttemptAnswer | None
+    trouble: BackupTroubleAnswer | None
 
 
 def backups_answer(shelf: Shelf, looked: Looked, recorded: Recorded, busy: Busy | None) -> BackupsAnswer:
@@ -123,9 +123,9 @@ def backups_answer(shelf: Shelf, looked: Looked, recorded: Recorded, busy: Busy 
     )
 
 
-def busy_answer(busy: Busy) -> BusyAnswer:
+def busy_answer(busy: Busy) -> BackupBusyAnswer:
     """What is done just now."""
-    return BusyAnswer(doing=busy.doing, file=busy.file, begun=busy.begun, by=busy.by.name, step=busy.step)
+    return BackupBusyAnswer(doing=busy.doing, file=busy.file, begun=busy.begun, by=busy.by.name, step=busy.step)
 
 
 def _backup(shelf: Shelf, kept: Kept, checked: Attempt | None) -> BackupAnswer:
@@ -140,9 +140,9 @@ def _backup(shelf: Shelf, kept: Kept, checked: Attempt | None) -> BackupAnswer:
     )
 
 
-def _content(manifest: Manifest) -> ContentAnswer:
+def _content(manifest: Manifest) -> BackupContentAnswer:
     files, revisions = what_is_in(manifest)
-    return ContentAnswer(
+    return BackupContentAnswer(
         time=manifest.time,
         how=None if manifest.maker is None else manifest.maker.how,
         by=None if manifest.maker is None else manifest.maker.name,
@@ -156,22 +156,22 @@ def _content(manifest: Manifest) -> ContentAnswer:
     )
 
 
-def _checked(attempt: Attempt) -> CheckedAnswer:
+def _checked(attempt: Attempt) -> BackupCheckedAnswer:
     whole = attempt.outcome is Outcome.DONE
-    return CheckedAnswer(time=attempt.time, by=attempt.by.name, whole=whole, detail=attempt.why)
+    return BackupCheckedAnswer(time=attempt.time, by=attempt.by.name, whole=whole, detail=attempt.why)
 
 
-def _attempt(attempt: Attempt) -> AttemptAnswer:
+def _attempt(attempt: Attempt) -> BackupAttemptAnswer:
     failed = attempt.outcome is Outcome.FAILED
-    return AttemptAnswer(
+    return BackupAttemptAnswer(
         doing=attempt.doing,
         file=attempt.file,
         time=attempt.time,
         by=attempt.by.name,
         outcome=attempt.outcome,
-        trouble=TroubleAnswer(kind=attempt.trouble, detail=attempt.why) if failed else None,
+        trouble=BackupTroubleAnswer(kind=attempt.trouble, detail=attempt.why) if failed else None,
     )
 
 
-def _trouble(error: StorageError) -> TroubleAnswer:
-    return TroubleAnswer(kind=trouble_in(error), detail=str(error))
+def _trouble(error: StorageError) -> BackupTroubleAnswer:
+    return BackupTroubleAnswer(kind=trouble_in(error), detail=str(error))
