@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import shutil
+import signal
 import subprocess
-import threading
 import time
 from collections.abc import Iterator
+from multiprocessing import active_children
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,6 @@ import httpx
 import pytest
 
 from cli.commands import CELL
-from journal.acts import filled
 from sequence_planner.actor import SYSTEM
 from sequence_planner.backup import postgresql_programs
 from sequence_planner.backup.settings import Keeping
@@ -23,6 +24,7 @@ from sequence_planner.identity import people
 from sequence_planner.identity.roles import Role
 from sequence_planner.journal import audit
 from sequence_planner.storage.database import Database
+from sequence_planner.storage.location import mark_of
 from sequence_planner.web import backup_desk
 from sequence_planner.web.settings import Settings
 
@@ -201,14 +203,16 @@ def test_a_server_that_ends_leaves_no_process_and_no_part_of_a_backup(
 ) -> None:
     server = Server(loop, settings)
     server.start()
-    with contextlib.closing(Database.open(settings.database)) as database:
-        filled(database, 3000)
     with ada_at(server) as ada:
         ada.post(BACKUPS, json={})
-        until(lambda: (shown(ada)["busy"] or {}).get("step") is not None, SECONDS)
+        until(lambda: any(each.name == "backup" for each in active_children()))
+        (process,) = [each for each in active_children() if each.name == "backup"]
+        assert process.pid is not None
+        os.kill(process.pid, signal.SIGSTOP)  # so that it cannot come to its end
     server.stop()
-    assert not [each for each in threading.enumerate() if each.name == "backup"]
-    assert [each for each in there(folder) if not each.startswith(".")] == []
+    assert not process.is_alive()
+    assert settings.model is not None
+    (folder / f".{mark_of(settings.model)}-20261123T000000Z-left").mkdir()
     again = Server(loop, settings)
     again.start()
     try:

@@ -97,7 +97,7 @@ class Shelf:
             raise not_writable(folder, "permission denied")
         free = shutil.disk_usage(folder).free
         if free < (needed := _AT_ONCE * self._size()):
-            raise no_space(folder, f"{needed / 1e6:.0f} MB are needed, and {free / 1e6:.0f} MB free")
+            raise no_space(folder, f"{needed / 1e6:.1f} MB are needed, and {free / 1e6:.1f} MB free")
         return free
 
     def prepare(self) -> None:
@@ -138,7 +138,7 @@ class Shelf:
     def _size(self) -> int:
         """The bytes that a copy has, as far as this machine can see; what `pg_dump` writes is not known before."""
         place = address(self.url)
-        files = [place.path] if isinstance(place, SqliteFile) else []
+        files = [place.path, place.path.with_name(f"{place.path.name}-wal")] if isinstance(place, SqliteFile) else []
         files += [each for each in revisions_folder(self.url, self.model).rglob("*") if each.is_file()]
         sizes = 0
         for each in files:

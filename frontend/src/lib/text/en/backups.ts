@@ -38,7 +38,7 @@ export const backups = {
 	folder: 'Folder',
 	free: 'Free there',
 	kept: 'Kept',
-	keptMeans: (count: number): string => `the newest ${count}; an older one goes only after a newer one was read again and is whole`,
+	keptMeans: (count: number): string => `${count === 1 ? 'the newest' : `the newest ${count}`}; an older one goes only after a newer one was read again and is whole`,
 	schedule: 'By itself',
 	everyHours: (hours: number): string => (hours === 1 ? 'every hour' : `every ${hours} hours`),
 	never: 'never, as the station was started without --backup-every',

@@ -39,7 +39,7 @@ export const backups: Text['backups'] = {
 	folder: 'Mapp',
 	free: 'Ledigt där',
 	kept: 'Behålls',
-	keptMeans: (count) => `de ${count} nyaste; en äldre tas bort först när en nyare har lästs igen och är hel`,
+	keptMeans: (count) => `${count === 1 ? 'den nyaste' : `de ${count} nyaste`}; en äldre tas bort först när en nyare har lästs igen och är hel`,
 	schedule: 'Av sig själv',
 	everyHours: (hours) => (hours === 1 ? 'varje timme' : `med ${hours} timmars mellanrum`),
 	never: 'aldrig, eftersom stationen startades utan --backup-every',
