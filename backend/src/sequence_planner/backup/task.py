@@ -17,11 +17,12 @@ def do(task: Task, tell: Callable[[Step], None]) -> Finished:
     Raises `StorageError`. What was made and is not whole is not kept.
     """
     shelf = Shelf(task.url, task.model, task.keeping)
-    shelf.prepare()
     if task.maker is None:
+        shelf.clear()
         tell(Step.CHECKING)
         verify_backup(task.file, shelf.scratch)
         return Finished(())
+    shelf.prepare()
     back_up(task.url, task.model, task.file, task.maker, tell)
     tell(Step.CHECKING)
     try:

@@ -59,7 +59,7 @@ export const backups = {
 	records: (run: number, audit: number): string => `the journal up to record ${run} of what happened and ${audit} of who did what`,
 	files: (count: number, revisions: boolean): string => `${count === 1 ? '1 file' : `${count} files`} of the model${revisions ? ' and its revisions' : ''}`,
 	program: 'Version',
-	whole: 'Whole?',
+	whole: 'Checked',
 	isWhole: (since: string): string => `whole, read ${since}`,
 	isNotWhole: (since: string): string => `not whole, read ${since}`,
 	notChecked: 'not checked',

@@ -60,7 +60,7 @@ export const backups: Text['backups'] = {
 	records: (run, audit) => `journalen till och med post ${run} om vad som hänt och ${audit} om vem som gjort vad`,
 	files: (count, revisions) => `${count === 1 ? '1 fil' : `${count} filer`} i modellen${revisions ? ' och dess revisioner' : ''}`,
 	program: 'Version',
-	whole: 'Hel?',
+	whole: 'Kontrollerad',
 	isWhole: (since) => `hel, läst ${since}`,
 	isNotWhole: (since) => `inte hel, läst ${since}`,
 	notChecked: 'inte kontrollerad',
