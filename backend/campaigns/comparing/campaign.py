@@ -18,13 +18,15 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).parents[3]
 KEPT_EVERY = 100  # of a kind
+LARGEST = "most "
 
 
 @dataclass(frozen=True)
 class Kind:
     """What is compared: one random model by its seed, which says what has been met or raises; and how many of them.
 
-    What has been found is kept after every `kept_every` of them.
+    What has been found is kept after every `kept_every` of them. Of what begins with `most` the report has the largest
+    number, and of all else the sum.
     """
 
     compare: Callable[[str], Counter[str]]
@@ -61,7 +63,7 @@ class Campaign:
             for each in range(first, min(first + kind.kept_every, number)):
                 seed = f"{name}.{self.seed}.{each}"
                 try:
-                    seen += kind.compare(seed)
+                    seen = merged(seen, kind.compare(seed))
                 except Exception as error:
                     self.disagreements.append(f"`{seed}`: {type(error).__name__}: {error}")
                     print(self.disagreements[-1], flush=True)
@@ -104,6 +106,12 @@ def main(subject: Subject) -> int:
     report.write_text(campaign.report(subject), encoding="utf-8")
     print(campaign.report(subject))
     return 1 if campaign.disagreements else 0
+
+
+def merged(one: Counter[str], other: Counter[str]) -> Counter[str]:
+    """What was met by both."""
+    largest = {what: max(one[what], number) for what, number in other.items() if what.startswith(LARGEST)}
+    return Counter({**(one + other), **largest})
 
 
 def commit() -> str:

@@ -30,6 +30,7 @@ SPEED = 10.0  # of the devices
 UNTIL_KILLED = 1.5  # seconds for which it works at most, until it is killed
 PATIENCE = 240.0  # on a machine that is busy with much else
 AT_WORK, AT_ONCE = "while it worked", "while it started"
+PARTS = {"server": ("server",), "controller": ("controller",), "both": ("controller", "server")}
 STANDSTILL = 1.0  # seconds in which nothing may happen while nothing can be recorded
 
 
@@ -37,16 +38,19 @@ STANDSTILL = 1.0  # seconds in which nothing may happen while nothing can be rec
 class Mortal:
     """The station in front of its operator. `seen` is what has been met.
 
-    Its database is a file in its folder, or where `url` says; with `standby` it shares that with others.
+    Its database is a file in its folder, or where `url` says; with `standby` it shares that with others. Its devices
+    are emulated, unless they are real ones of another `model`; then nobody listens on the wire.
     """
 
     folder: Path
     database: Database
-    wire: Wire
+    wire: Wire | None
     chance: random.Random
     url: str = ""
     standby: str | None = None
     server: tuple[str, ...] = ()  # more options of it
+    model: Path = MODEL
+    emulated: bool = True
     port: int = field(default_factory=free_port)
     seen: Counter[str] = field(default_factory=Counter)
     _parts: dict[str, subprocess.Popen[bytes]] = field(default_factory=dict)
@@ -54,17 +58,18 @@ class Mortal:
     def __post_init__(self) -> None:
         self.kept = Kept(self.database)
         self.url = self.url or f"sqlite:///{self.folder}/station.sqlite"
-        self.browser = signed_in(REPOSITORY / MODEL, self.port, self.url)
+        self.browser = signed_in(REPOSITORY / self.model, self.port, self.url)
 
     def start(self, part: str) -> None:
         """Start one of its processes."""
         socket = ("--socket", str(self.folder / "socket"))
+        standby = ("--hot-standby", self.standby) if self.standby else ()
         arguments = {
             "emulate": ("--speed", str(SPEED)),
-            "controller": (*socket, "--emulated", *(("--hot-standby", self.standby) if self.standby else ())),
+            "controller": (*socket, *(("--emulated",) if self.emulated else ()), *standby),
             "server": (*socket, "--page", str(self.folder), "--port", str(self.port), *self.server),
         }[part]
-        model = ("--model", str(MODEL)) if part == "server" else (str(MODEL),)
+        model = ("--model", str(self.model)) if part == "server" else (str(self.model),)
         with (self.folder / f"{part}.log").open("ab") as log:
             self._parts[part] = subprocess.Popen(
                 command(part, *model, *arguments),
@@ -87,6 +92,14 @@ class Mortal:
         self._parts[part].send_signal(signal.SIGKILL)
         self._parts[part].wait()
 
+    def kill_and_start(self, what: str) -> None:
+        """One of `PARTS` is killed, and started again."""
+        for part in PARTS[what]:
+            self.kill(part)
+            self.seen[f"{part}s killed"] += 1
+        for part in PARTS[what]:
+            self.start(part)
+
     def end(self) -> None:
         """All processes end in good order."""
         for each in self._parts.values():
@@ -107,6 +120,15 @@ class Mortal:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(worker, signal.SIGKILL)
                 self.seen["workers killed"] += 1
+
+    def memory(self, part: str) -> int:
+        """The resident memory of one of its processes, in MB."""
+        status = Path(f"/proc/{self._parts[part].pid}/status").read_text(encoding="ascii")
+        return int(status.partition("VmRSS:")[2].split()[0]) // 1000
+
+    def metrics(self) -> str:
+        """The station in figures."""
+        return self.browser.get(f"http://127.0.0.1:{self.port}/metrics").raise_for_status().text
 
     def production(self) -> str | None:
         """What the station says of production; None while nobody answers."""
@@ -222,14 +244,24 @@ class Mortal:
         try:
             self.wait(lambda: "unjournalled" in self.alarms(), "nobody is told that nothing can be recorded")
             self.kept.look()
-            heard = sum(map(len, self.wire.heard.values()))
+            heard = self.commands
             time.sleep(STANDSTILL)
             assert not self.kept.look(), "something was recorded on a full disk"
-            assert sum(map(len, self.wire.heard.values())) == heard, "something was commanded that is not recorded"
+            assert self.commands == heard, "something was commanded that is not recorded"
         finally:
             unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
             resource.prlimit(controller, resource.RLIMIT_FSIZE, unlimited)
         self.wait(lambda: "unjournalled" not in self.alarms(), "nothing can be recorded, though there is room again")
+
+    @property
+    def commands(self) -> int:
+        """How many commands were heard on the wire."""
+        return sum(map(len, self._wire.heard.values()))
+
+    @property
+    def _wire(self) -> Wire:
+        assert self.wire is not None, "nobody listens"
+        return self.wire
 
     def alarms(self) -> set[str]:
         """What is wrong now, by its key."""
@@ -243,7 +275,7 @@ class Mortal:
         station, supervisor, _ = truck_engine()
         judge = Judge(station.automaton, supervisor)
         judge.judge(self.database)
-        for topic, heard in self.wire.heard.items():
+        for topic, heard in self._wire.heard.items():
             judge.require_decided(topic, heard)
             self.seen["commands heard by devices"] += len(heard)
         self.seen["records"] += self.kept.end.number
@@ -252,16 +284,25 @@ class Mortal:
 
 
 @contextlib.contextmanager
-def mortal(seed: str, *server: str) -> Iterator[Mortal]:
-    """The bolt tightening station with devices of its own, about to start; `server` are more options of that."""
+def standing(
+    seed: str, *server: str, model: Path = MODEL, emulated: bool = True, wire: Wire | None = None
+) -> Iterator[Mortal]:
+    """A station of which nothing is started yet, with a folder of its own."""
     with contextlib.ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
         database = Database.open(f"sqlite:///{folder}/station.sqlite")
         stack.callback(database.close)
         database.upgrade()
-        wire = stack.enter_context(listening(truck_engine()[0]))
-        station = Mortal(folder, database, wire, random.Random(seed), server=server)
+        chance = random.Random(seed)
+        station = Mortal(folder, database, wire, chance, server=server, model=model, emulated=emulated)
         stack.callback(station.end)
+        yield station
+
+
+@contextlib.contextmanager
+def mortal(seed: str, *server: str) -> Iterator[Mortal]:
+    """The bolt tightening station with devices of its own, about to start; `server` are more options of that."""
+    with listening(truck_engine()[0]) as wire, standing(seed, *server, wire=wire) as station:
         for part in ("emulate", "server", "controller"):
             station.start(part)
         yield station

@@ -6,7 +6,6 @@ Everything meets over DDS on the loopback, and over the world's port there. Proc
 from __future__ import annotations
 
 import json
-import os
 import shutil
 import signal
 import socket
@@ -21,17 +20,10 @@ from typing import Any
 
 import httpx
 
-from running.stations import PATIENCE, REPOSITORY, RunningStation, eventually, free_port
+from running.stations import PATIENCE, REPOSITORY, RunningStation, environment, eventually, free_port
 from sequence_planner.emulation.truck_station.signals import NODES
 
 MODEL = Path("models") / "truck_engine_station"
-# Of DDS: apart from those of `running.stations`.
-DOMAIN = 1 + (os.getpid() + 25) % 100
-
-
-def environment() -> dict[str, str]:
-    """Of the processes of the hall."""
-    return {**os.environ, "ROS_DOMAIN_ID": str(DOMAIN)}
 
 
 def started(log: Path, *arguments: str) -> subprocess.Popen[bytes]:

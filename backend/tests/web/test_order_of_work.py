@@ -12,11 +12,12 @@ from sequence_planner.control.job_commands import SequenceJobs, TakeJob
 from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
 from sequence_planner.control.view import Mode
 from sequence_planner.control.work_master_view import WorkMasterView, WorkOperationView
+from sequence_planner.mes.sequencing.known_times import KnownTimes
 from sequence_planner.web import order_of_work
 
 from .example_answers import WORK_MASTERS
 from .running import Server, until
-from .test_job_orders import controller, mes, store, tell
+from .test_job_orders import ORDERS, controller, mes, store, tell
 from .test_looking import Telling
 
 __all__ = ["controller", "mes"]
@@ -72,8 +73,34 @@ def test_orders_are_to_begin_as_they_are_due(mes: httpx.Client) -> None:
     store(mes, "urgent", id="urgent", due=now + 1, priority=9, start=True)
     until(lambda: len(found()) == 5, 30)
     assert mes.get(PLACE).json()["job_orders"][0]["late"] > 0
+    assert [each["id"] for each in mes.get(PLACE, params={"limit": 2}).json()["job_orders"]] == ["urgent", "early"]
+    shown: dict[str, str | int] = {"state": "AllowedToStart", "sort": "work", "limit": 2}
+    first = mes.get(ORDERS, params=shown).json()
+    assert [each["id"] for each in first["job_orders"]] == ["urgent", "early"]
+    rest = mes.get(ORDERS, params=shown | {"cursor": first["next"], "limit": 3}).json()
+    assert ([each["id"] for each in rest["job_orders"]], rest["next"]) == (["middle", "late", "never"], None)
     for name in ("late", "early", "never", "middle", "urgent"):
         assert tell(mes, name, "Abort").status_code == 200
+
+
+def waits_told(controller: Telling) -> list[tuple[str, str]]:
+    """Which job waits for which, as the controller was told last."""
+    said = [each for each in controller.commands if isinstance(each, SequenceJobs)]
+    return [(wait.job, each.job) for wait in said[-1].waits for each in wait.for_] if said else []
+
+
+def test_what_cannot_be_put_into_an_order_leaves_the_order_there_was(
+    mes: httpx.Client, controller: Telling, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("left", "right"):
+        store(mes, name, id=name, work_master=name, due=None, start=True)
+    until(lambda: mes.get(PLACE).json()["time"] is not None, 30)
+    monkeypatch.setattr(KnownTimes, "seconds", lambda *_: 1e9)
+    store(mes, "endless", id="endless", work_master="left", due=None, start=True)
+    steps = {"left": JobStepState.ACTIVE, "right": JobStepState.ELIGIBLE, "endless": JobStepState.ELIGIBLE}
+    jobs = {name: job(name, state, 1.0 if name == "left" else None) for name, state in steps.items()}
+    controller.show(controller.view.model_copy(update={"jobs": jobs}))
+    until(lambda: waits_told(controller) == [("right", "left")], 20)
 
 
 def test_the_station_is_told_which_operation_waits_for_which(
@@ -89,13 +116,9 @@ def test_the_station_is_told_which_operation_waits_for_which(
     }
     controller.show(controller.view.model_copy(update={"jobs": jobs}))
 
-    def waits() -> list[tuple[str, str]]:
-        said = [each for each in controller.commands if isinstance(each, SequenceJobs)]
-        return [(wait.job, each.job) for wait in said[-1].waits for each in wait.for_] if said else []
-
-    until(lambda: waits() == [("right", "left")], 30)
+    until(lambda: waits_told(controller) == [("right", "left")], 30)
     monkeypatch.setattr(order_of_work, "HELD_UP", 0.0)  # as after a while in which it was not begun
     controller.show(
         controller.view.model_copy(update={"jobs": jobs | {"left": job("left", JobStepState.ELIGIBLE, None)}})
     )
-    until(lambda: waits() == [], 20)
+    until(lambda: waits_told(controller) == [], 20)

@@ -54,8 +54,7 @@ def _moved(files: list[Path]) -> str:
 
 
 def _without_password(url: URL) -> URL:
-    query = {name: value for name, value in url.query.items() if name != "password"}
-    return URL.create("postgresql", url.username, None, url.host, url.port, url.database, query)
+    return URL.create("postgresql", url.username, None, url.host, url.port, url.database, url.query)
 
 
 def _text(url: URL) -> str:

@@ -9,8 +9,6 @@ from typing import Any, Protocol
 
 import httpx
 
-from running.stations import RunningStation
-
 Document = dict[str, Any]
 
 MOST_ROUNDS = 15  # of asking and doing until the station works again
@@ -21,6 +19,14 @@ AWAY = (httpx.codes.BAD_GATEWAY, httpx.codes.SERVICE_UNAVAILABLE, httpx.codes.GA
 
 class StuckError(AssertionError):
     """The station says nothing that would get it back to work, or what it says does not."""
+
+
+class Place(Protocol):
+    """A station that runs."""
+
+    @property
+    def browser(self) -> httpx.Client:
+        """Somebody is signed in there."""
 
 
 class Hands(Protocol):
@@ -50,7 +56,7 @@ class Hands(Protocol):
 class Person:
     """An engineer who is signed in. `seen` counts what was done."""
 
-    def __init__(self, station: RunningStation, hands: Hands, *, serves: bool = True) -> None:
+    def __init__(self, station: Place, hands: Hands, *, serves: bool = True) -> None:
         """`serves` the watch of the station too."""
         self._station = station
         self._serves = serves
@@ -144,15 +150,15 @@ class Person:
     def get_back(self, prefers: str = "") -> None:
         """Until the station works again. Offers of the kind that is preferred are taken before others."""
         for _ in range(MOST_ROUNDS):
-            if self._round(prefers) and self.works():
+            if self.look_and_act(prefers) and self.works():
                 return
         raise StuckError(f"it does not work after {MOST_ROUNDS} rounds")
 
-    def _round(self, prefers: str) -> bool:
+    def look_and_act(self, prefers: str) -> bool:
         """One look and one act; whether the station has been told to go on."""
         station = self.get("station")
         if station["production"] == "waiting":
-            self._start(station)
+            self.start_production(station)
         self._let_errands_end()
         if station["mode"] != "restart":
             self.do("POST", "restart/enter", {"reason": "to get back to work"})
@@ -184,7 +190,7 @@ class Person:
             offer["physical"] or offer["online"] or offer["in_service"] or offer["corrections"] or offer["errand"]
         )
 
-    def _start(self, station: Document) -> None:
+    def start_production(self, station: Document) -> None:
         """Decide on outputs, then start production."""
         for name, output in station["undecided"].items():
             quiet = output["quiet"]
