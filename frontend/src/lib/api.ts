@@ -5052,6 +5052,11 @@ export interface components {
             vendor: string | null;
         };
         /**
+         * NothingBody
+         * @description Nothing more is to be said.
+         */
+        NothingBody: Record<string, never>;
+        /**
          * OfferAnswer
          * @description A pairing that nobody has redeemed yet. Its code is not told again.
          */
@@ -7934,16 +7939,6 @@ export interface components {
             /** Line */
             line: number;
         };
-        /**
-         * NothingBody
-         * @description Nothing has to be said.
-         */
-        sequence_planner__web__backups__NothingBody: Record<string, never>;
-        /**
-         * NothingBody
-         * @description Nothing more is to be said.
-         */
-        sequence_planner__web__model__NothingBody: Record<string, never>;
     };
     responses: {
         /** @description A problem */
@@ -8752,7 +8747,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["sequence_planner__web__backups__NothingBody"];
+                "application/json": components["schemas"]["NothingBody"];
             };
         };
         responses: {
@@ -8796,7 +8791,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["sequence_planner__web__backups__NothingBody"];
+                "application/json": components["schemas"]["NothingBody"];
             };
         };
         responses: {
@@ -10903,7 +10898,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["sequence_planner__web__model__NothingBody"];
+                "application/json": components["schemas"]["NothingBody"];
             };
         };
         responses: {
@@ -11140,7 +11135,7 @@ export interface operations {
         };
         requestBody: {
             content: {
-                "application/json": components["schemas"]["sequence_planner__web__model__NothingBody"];
+                "application/json": components["schemas"]["NothingBody"];
             };
         };
         responses: {

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Final
 
 from sequence_planner.backup.trouble import BackupError, Trouble
+from sequence_planner.secret_variables import PASSWORD, environment
 from sequence_planner.storage.address import PostgresqlServer
 
 _INSTALLED: Final = Path("/usr/lib/postgresql")  # where Debian has the programs, by version
@@ -38,7 +39,7 @@ def read_through(dump: Path) -> None:
 def _run(of: str, name: str, arguments: Sequence[str], secret: Mapping[str, str]) -> None:
     done = subprocess.run(
         [program(name), *arguments],
-        env={**os.environ, **secret, "LC_ALL": "C"},  # what it says of a full disk is looked for
+        env={**environment(PASSWORD), **secret, "LC_ALL": "C"},  # what it says of a full disk is looked for
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,
