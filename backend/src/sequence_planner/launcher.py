@@ -24,6 +24,7 @@ from pathlib import Path
 import structlog
 
 from sequence_planner.announcement import UNWELL, announced, first_start, health
+from sequence_planner.backup.settings import Keeping
 from sequence_planner.control.unix_socket import LONGEST_PATH
 from sequence_planner.identity.openid.options import ProviderOptions
 from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED, OVERTAKEN
@@ -68,6 +69,7 @@ class Launch:
     provider: ProviderOptions = field(default_factory=ProviderOptions)
     log_format: LogFormat = LogFormat.TEXT
     webhooks: Targets = field(default_factory=Targets)
+    backups: Keeping = field(default_factory=Keeping)
 
 
 class Part:
@@ -259,6 +261,7 @@ class _Launcher:
         server += request.provider.arguments()
         server += [f"--webhook-host={host}" for host in request.webhooks.written]
         server += ["--webhook-loopback"] if request.webhooks.loopback else []
+        server += request.backups.arguments()
         self._server = Part("server", _command("server", *server, *_options(request.endpoint)), of_server)
         self._emulator = Part("emulated devices", _command("emulate", model, *speed, *transport))
 
