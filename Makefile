@@ -95,15 +95,16 @@ lock: install ## Lock the newest Python packages that pyproject.toml allows
 	cd backend && .venv/bin/$(LOCK) --upgrade -c requirements.lock --extra test -o requirements-test.lock pyproject.toml requirements-build.in
 	cd backend && .venv/bin/$(LOCK) --upgrade -c requirements-test.lock -o requirements-bench.lock requirements-bench.in
 	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements-node.lock requirements-node.in
+	cd backend && .venv/bin/$(LOCK) --upgrade -o requirements-client.lock requirements-client.in
 
 clean: ## Remove everything that was installed or built
-	rm -rf $(VENV) .node dist .ci/results backend/.*_cache backend/.hypothesis backend/tests/foreign/.built frontend/node_modules frontend/build frontend/.svelte-kit e2e/node_modules
+	rm -rf $(VENV) .node .client dist .ci/results backend/.*_cache backend/.hypothesis backend/tests/foreign/.built frontend/node_modules frontend/build frontend/.svelte-kit e2e/node_modules
 
 # What the verbs stand on.
 
 install: $(VENV)/installed.stamp
 
-install-test: $(VENV)/installed-test.stamp
+install-test: $(VENV)/installed-test.stamp .client/done.stamp
 
 install-bench: $(VENV)/installed-bench.stamp
 
@@ -125,6 +126,12 @@ $(VENV)/installed-test.stamp: $(VENV)/installed.stamp backend/requirements-test.
 
 $(VENV)/installed-bench.stamp: $(VENV)/installed-test.stamp backend/requirements-bench.lock
 	$(BIN)/pip install --quiet --require-hashes -r backend/requirements-bench.lock
+	@touch $@
+
+# What generates Python clients from the OpenAPI document.
+.client/done.stamp: $(VENV)/installed.stamp backend/requirements-client.lock
+	$(BIN)/python -m venv --clear --without-pip .client
+	$(BIN)/pip --python .client install --quiet --require-hashes -r backend/requirements-client.lock
 	@touch $@
 
 .node/done.stamp: backend/requirements-node.lock

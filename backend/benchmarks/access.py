@@ -28,6 +28,7 @@ from argon2 import PasswordHasher
 
 from sequence_planner.control.asks import AboutFlows
 from sequence_planner.control.commands import CommandRefused
+from sequence_planner.identity.passwords import COSTS
 from sequence_planner.web.controller_client import ControllerClient
 
 STATION = Path(__file__).parents[2] / "models" / "bolt_tightening"
@@ -71,12 +72,12 @@ def choose_password(client: httpx.Client) -> None:
 
 
 @contextmanager
-def station() -> Iterator[tuple[str, int]]:
+def station(model: Path = STATION, *more: str) -> Iterator[tuple[str, int]]:
     """The address of a station that runs, and the id of its launcher."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    arguments = command("run", str(STATION), "--emulator", "--start", "--port", str(port))
+    arguments = command("run", str(model), "--emulator", "--start", "--port", str(port), *more)
     running = subprocess.Popen(arguments, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     address = f"http://127.0.0.1:{port}"
     try:
@@ -128,7 +129,7 @@ def measure_acts(client: httpx.Client) -> None:
 
 def besides_hash(what: str, act: Callable[[], object]) -> None:
     """Measure an act that needs one password hash, and the hash alone in turns with it."""
-    hasher = PasswordHasher()
+    hasher = PasswordHasher.from_parameters(COSTS)
     hashes, times = [], []
     for _ in range(ROUNDS):
         hashes.append(milliseconds(lambda: hasher.hash(PASSWORD)))

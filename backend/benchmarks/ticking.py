@@ -1,16 +1,17 @@
-"""Ticks of a running station with its journal, beside planning, synthesis and fifty people who look on.
+"""Ticks of a running station with its journal, beside planning, synthesis and many who look on and ask.
 
 Run with `make bench`. The truck engine station runs as its users run it, in processes of its own over DDS, with a
 database of SQLite on the disk; only its controller notes beside how long each turn with ticks took, on the wall, and
-how long after it what has happened was durable. Synthesis of the same station goes on all the time, and tasks are
-acknowledged at once. In the end the controller is killed again and again, and it is seen how long it takes until the
-station is shown again.
+how long after it what has happened was durable. Tasks are acknowledged at once. It runs alone, then while the same
+station is synthesised over and over and some look on, then in turns alone and with a crowd that looks on and asks. In
+the end the controller is killed again and again, and it is seen how long it takes until the station is shown again.
 """
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import itertools
 import json
 import os
 import signal
@@ -21,7 +22,7 @@ import sys
 import tempfile
 import time
 from collections import deque
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
@@ -35,8 +36,11 @@ from sequence_planner.program import main as program
 
 STATION = Path(__file__).parents[2] / "models" / "truck_engine_station"
 DOMAIN = 1 + (os.getpid() + 5) % 100
-CLIENTS = 50
+CLIENTS, CROWD = 50, 200
+RATE = 100  # requests a second of a crowd
+ASKED = ("station", "tasks", "alarms", "state", "job-orders?limit=20", "capabilities", "events?after=0&limit=20")
 SECONDS = 60.0
+TURNS = 4  # of a crowd
 RESTARTS = 7
 BETWEEN = 20.0  # seconds between restarts
 PATIENCE = 120.0  # seconds
@@ -50,13 +54,59 @@ def main() -> None:
     with tempfile.TemporaryDirectory(prefix="ticking-") as folder, Parts(Path(folder)) as parts:
         client = signed_in(parts.address)
         wait_for(lambda: production(client) == "started")
-        print(f"alone, {SECONDS:g} s:", *parts.measured(client), sep="\n  ")
-        with parts.beside("synthesising"), parts.beside("clients", parts.address, session(client)):
+        say(f"alone, {SECONDS:g} s", parts.measured(client, SECONDS))
+        watching = ("clients", parts.address, session(client), str(CLIENTS))
+        with parts.beside("synthesising"), parts.beside(*watching):
             time.sleep(5.0)  # until all of them look on
-            print(f"with synthesis and {CLIENTS} clients, {SECONDS:g} s:", *parts.measured(client), sep="\n  ")
+            say(f"with synthesis and {CLIENTS} clients, {SECONDS:g} s", parts.measured(client, SECONDS))
+        crowded(parts, client)
     took = sorted(restarts())
     print(f"from the kill of a controller to a live state, {RESTARTS} times:")
     print(f"  {statistics.median(took):.2f} s median, {took[-1]:.2f} s at most")
+
+
+def crowded(parts: Parts, client: httpx.Client) -> None:
+    """In turns alone and with a crowd: what it does to the ticks."""
+    each = SECONDS / TURNS
+    alone, crowd, answered = Times(), Times(), parts.folder / "answered.jsonl"
+    answered.touch()
+    for _ in range(TURNS):
+        alone.add(parts.measured(client, each))
+        watching = ("clients", parts.address, session(client), str(CROWD))
+        asking = ("asking", parts.address, session(client), str(answered))
+        with parts.beside(*watching), parts.beside(*asking):
+            time.sleep(5.0)
+            begin = answered.stat().st_size
+            crowd.add(parts.measured(client, each))
+            end = answered.stat().st_size
+        with answered.open() as file:
+            file.seek(begin)
+            crowd.add({"answers": [json.loads(line) for line in file.read(end - begin).splitlines()]})
+    say(f"alone again, {TURNS} times {each:g} s", alone)
+    say(f"with {CROWD} clients and {RATE} requests a second, in turns with that", crowd)
+    for what, times in alone.items():
+        ratio = statistics.median(crowd[what]) / statistics.median(times)
+        print(
+            f"  {what}: {ratio:.2f} times in the median, {percentile(crowd[what]) / percentile(times):.2f} at the 99th"
+        )
+    print(f"  {len(crowd['answers']) / SECONDS:.0f} answers a second")
+
+
+class Times(dict[str, list[float]]):
+    """Seconds of what was measured, by what it is."""
+
+    def add(self, more: Mapping[str, Sequence[float]]) -> None:
+        """And these."""
+        for what, times in more.items():
+            self.setdefault(what, []).extend(times)
+
+
+def say(what: str, measured: Mapping[str, Sequence[float]]) -> None:
+    """Print what was measured."""
+    print(f"{what}:")
+    for name, times in measured.items():
+        median, most = statistics.median(times) * 1000, percentile(times) * 1000
+        print(f"  {name}: {len(times)}, {median:.2f} ms median, {most:.2f} ms 99th percentile")
 
 
 def restarts() -> Iterator[float]:
@@ -113,7 +163,7 @@ class Parts:
     """The processes of a station."""
 
     def __init__(self, folder: Path) -> None:
-        self._folder = folder
+        self.folder = folder
         self._socket = folder / "controller.socket"
         self._notes = folder / "notes.jsonl"
         self._port = free_port()
@@ -139,7 +189,7 @@ class Parts:
                 model,
                 "--demonstration",
                 "--page",
-                str(self._folder),
+                str(self.folder),
             ),
             *("--port", str(self._port)),
         )
@@ -151,20 +201,20 @@ class Parts:
         for process in self._running:
             process.wait(PATIENCE)
 
-    def measured(self, client: httpx.Client) -> Iterator[str]:
+    def measured(self, client: httpx.Client, seconds: float) -> Times:
         """What the controller notes meanwhile."""
         begin = self._notes.stat().st_size
-        end = time.monotonic() + SECONDS
+        end = time.monotonic() + seconds
         while time.monotonic() < end:
             acknowledge(client)
             time.sleep(0.1)
         with self._notes.open() as file:
             file.seek(begin)
             notes = [json.loads(line) for line in file if line.endswith("\n")]
+        times = Times()
         for name, what in (("step", "turns with ticks"), ("durable", "from there until durable")):
-            times = sorted(note[name] * 1000 for note in notes if name in note)
-            median, most = statistics.median(times), percentile(times)
-            yield f"{what}: {len(times)}, {median:.2f} ms median, {most:.2f} ms 99th percentile"
+            times[what] = [note[name] for note in notes if name in note]
+        return times
 
     @contextmanager
     def beside(self, what: str, *arguments: str) -> Iterator[None]:
@@ -209,8 +259,8 @@ def controller(arguments: Sequence[str]) -> None:
     program()
 
 
-async def look_on(address: str, cookie: str) -> None:
-    """Fifty clients of the stream."""
+async def look_on(address: str, cookie: str, clients: int) -> None:
+    """So many clients of the stream."""
 
     async def client() -> None:
         url = address.replace("http", "ws") + "/api/v1/stream"
@@ -218,7 +268,24 @@ async def look_on(address: str, cookie: str) -> None:
             async for _ in stream:
                 pass
 
-    await asyncio.gather(*(client() for _ in range(CLIENTS)))
+    await asyncio.gather(*(client() for _ in range(clients)))
+
+
+async def ask(address: str, cookie: str, notes: Path) -> None:
+    """`RATE` requests a second, each when it is due, answered or not those before it; seconds of each to `notes`."""
+    with notes.open("a", buffering=1) as written:
+        async with httpx.AsyncClient(base_url=f"{address}/api/v1", headers={"Cookie": cookie}, timeout=10) as client:
+
+            async def request(path: str) -> None:
+                began = time.perf_counter()
+                (await client.get(path)).raise_for_status()
+                written.write(f"{time.perf_counter() - began}\n")
+
+            began = time.monotonic()
+            async with asyncio.TaskGroup() as under_way:
+                for number, path in enumerate(itertools.cycle(ASKED)):
+                    await asyncio.sleep(began + number / RATE - time.monotonic())
+                    under_way.create_task(request(path))
 
 
 def synthesise() -> None:
@@ -268,8 +335,8 @@ def production(client: httpx.Client) -> str | None:
 
 
 def percentile(times: Sequence[float]) -> float:
-    """The 99th of sorted times."""
-    return times[min(len(times) - 1, int(len(times) * 0.99))]
+    """The 99th of the times."""
+    return sorted(times)[min(len(times) - 1, int(len(times) * 0.99))]
 
 
 def wait_for(condition: Callable[[], bool], every: float = 0.1) -> None:
@@ -287,7 +354,9 @@ if __name__ == "__main__":
             main()
         case ["controller", *rest]:
             controller(rest)
-        case ["clients", address, cookie]:
-            asyncio.run(look_on(address, cookie))
+        case ["clients", address, cookie, clients]:
+            asyncio.run(look_on(address, cookie, int(clients)))
+        case ["asking", address, cookie, notes]:
+            asyncio.run(ask(address, cookie, Path(notes)))
         case ["synthesising"]:
             synthesise()

@@ -18,18 +18,18 @@ from pathlib import Path
 from typing import Annotated, Final
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
-from sqlalchemy import make_url
 from sqlalchemy.exc import ArgumentError
 
 from sequence_planner.expressions.resolution import suggestion
-from sequence_planner.identity.openid.options import SECRET
 from sequence_planner.logs import FORMAT, LogFormat
 from sequence_planner.ros.choice import TransportChoice
 from sequence_planner.ros.environment import INTERFACE
+from sequence_planner.secret_variables import CLIENT_SECRET
+from sequence_planner.storage.address import read_url
 
 PREFIX: Final = "SEQUENCE_PLANNER_"
 FILE: Final = f"{PREFIX}CONFIGURATION"  # the variable that names the file
-_ELSEWHERE: Final = {INTERFACE, FORMAT, FILE, SECRET}  # variables that others read
+_ELSEWHERE: Final = {INTERFACE, FORMAT, FILE, CLIENT_SECRET}  # variables that others read
 _LISTS: Final = ("proxy", "name", "oidc_scope", "oidc_role", "webhook_host")
 _PATHS: Final = (
     "model",
@@ -92,7 +92,7 @@ class Told:
         if self.name != _SECRET:
             return json.dumps(self.value, ensure_ascii=False)
         try:
-            return json.dumps(make_url(str(self.value)).render_as_string(hide_password=True))
+            return json.dumps(read_url(str(self.value)).render_as_string(hide_password=True))
         except (ArgumentError, ValueError):
             return '"(cannot be read)"'
 
@@ -114,7 +114,7 @@ def configured(file: Path | None, environ: Mapping[str, str] = os.environ) -> di
 def has_password(url: str) -> bool:
     """Whether a URL of a database holds one; one that cannot be read is for others to refuse."""
     try:
-        return make_url(url).password is not None
+        return read_url(url).password is not None
     except (ArgumentError, ValueError):
         return False
 

@@ -30,6 +30,7 @@ from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED, 
 from sequence_planner.logs import FORMAT, LogFormat, configure_logs
 from sequence_planner.mes.webhooks.targets import Targets
 from sequence_planner.parts_file import write_restarts
+from sequence_planner.secret_variables import CLIENT_SECRET, PASSWORD, environment
 from sequence_planner.service_manager import ServiceManager
 from sequence_planner.storage.address import PostgresqlServer
 from sequence_planner.storage.database import Database
@@ -70,19 +71,20 @@ class Launch:
 
 
 class Part:
-    """A process of the station, which is started again when it dies; `more` are variables of its environment.
+    """A process of the station, which is started again when it dies. It gets the environment `given`, or one without
+    secrets.
 
     One that `has_spare` is followed at once by another process that was started before.
     """
 
     def __init__(
-        self, name: str, command: list[str], more: Mapping[str, str] | None = None, has_spare: bool = False
+        self, name: str, command: list[str], given: Mapping[str, str] | None = None, has_spare: bool = False
     ) -> None:
         self.name = name
         self._has_spare = has_spare
         self.spare: subprocess.Popen[bytes] | None = None
         self._spare_due = 0.0
-        self._environment = {**os.environ, **(more or {})}
+        self._environment = environment() if given is None else given
         self.process: subprocess.Popen[bytes] | None = None
         self._command = command
         self._pause = FIRST_PAUSE
@@ -240,14 +242,15 @@ class _Launcher:
         controller += ["--hot-standby", request.hot_standby] if request.hot_standby is not None else []
         speed = ["--speed", str(request.emulator_speed)]
         # Not as an argument: the URL may hold a password, and everybody on this machine may read what `ps` shows.
-        database = {DATABASE: url}
-        self._controller = Part("controller", _command("controller", *controller), database, has_spare=True)
+        of_controller = {**environment(PASSWORD), DATABASE: url}
+        of_server = {**environment(PASSWORD, CLIENT_SECRET), DATABASE: url}
+        self._controller = Part("controller", _command("controller", *controller), of_controller, has_spare=True)
         server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
         server += ["--demonstration"] if request.database is None else []
         server += request.provider.arguments()
         server += [f"--webhook-host={host}" for host in request.webhooks.written]
         server += ["--webhook-loopback"] if request.webhooks.loopback else []
-        self._server = Part("server", _command("server", *server, *_options(request.endpoint)), database)
+        self._server = Part("server", _command("server", *server, *_options(request.endpoint)), of_server)
         self._emulator = Part("emulated devices", _command("emulate", model, *speed, *transport))
 
     def run(self) -> int:

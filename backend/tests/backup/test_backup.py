@@ -27,6 +27,7 @@ from sequence_planner.identity.sessions import find_session, open_session
 from sequence_planner.journal import audit, checkpoints, run_journal
 from sequence_planner.journal.signing_key import key_file
 from sequence_planner.journal.verification import verify
+from sequence_planner.storage.address import PostgresqlServer, address
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
 from sequence_planner.storage.location import revisions_folder
@@ -251,3 +252,20 @@ def test_by_the_command_line(tmp_path: Path, model: Path, monkeypatch: pytest.Mo
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(StorageError, match="sudo apt-get install postgresql-client"):
         postgresql_programs._program("pg_dump")
+
+
+@pytest.mark.parametrize(
+    "url", ["postgresql://press:s3cret@there/press", "postgresql://press@there/press?password=s3cret"]
+)
+def test_a_password_is_on_no_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, url: str) -> None:
+    program = tmp_path / "pg_dump"
+    program.write_text(f'#!/bin/sh\necho "$@" > {tmp_path}/arguments\necho "$PGPASSWORD" > {tmp_path}/password\n')
+    program.chmod(0o700)
+    monkeypatch.setattr(postgresql_programs, "_INSTALLED", tmp_path)
+    monkeypatch.setenv("PATH", f"{tmp_path}:/usr/bin:/bin")
+    server = address(url)
+    assert isinstance(server, PostgresqlServer)
+    postgresql_programs.run("pg_dump", server)
+    assert "dbname=press" in (tmp_path / "arguments").read_text()
+    assert "s3cret" not in (tmp_path / "arguments").read_text()
+    assert (tmp_path / "password").read_text() == "s3cret\n"

@@ -16,6 +16,7 @@ from sequence_planner.logs import LogFormat
 from .commands import CELL, as_json, command
 
 SECRET = "postgresql://press:s3cret@127.0.0.1/press"
+SECRETS = (SECRET, "postgresql://press@127.0.0.1/press?password=s3cret")  # both are ways that PostgreSQL knows
 
 
 @pytest.fixture
@@ -127,25 +128,27 @@ def test_all_mistakes_are_told_at_once(tmp_path: Path) -> None:
     assert len(err.splitlines()) == 3
 
 
+@pytest.mark.parametrize("secret", SECRETS)
 def test_a_password_comes_from_no_command_line_and_no_file_that_others_read(
-    tmp_path: Path, launched: list[Launch], monkeypatch: pytest.MonkeyPatch
+    tmp_path: Path, launched: list[Launch], monkeypatch: pytest.MonkeyPatch, secret: str
 ) -> None:
-    code, _, err = command("run", CELL, "--database", SECRET)
+    code, _, err = command("run", CELL, "--database", secret)
     assert (code, "command line" in err, "s3cret" in err) == (2, True, False)
-    open_to_all = written(tmp_path, f'database = "{SECRET}"\n')
+    open_to_all = written(tmp_path, f'database = "{secret}"\n')
     code, _, err = command("run", CELL, "--configuration", open_to_all)
     assert (code, f"chmod 600 {open_to_all}" in err, "s3cret" in err) == (2, True, False)
-    closed = written(tmp_path, f'database = "{SECRET}"\n', mode=0o600)
+    closed = written(tmp_path, f'database = "{secret}"\n', mode=0o600)
     assert command("run", CELL, "--configuration", closed)[0] == 0
-    monkeypatch.setenv("SEQUENCE_PLANNER_DATABASE", SECRET)
+    monkeypatch.setenv("SEQUENCE_PLANNER_DATABASE", secret)
     assert command("run", CELL)[0] == 0
-    assert [each.database for each in launched] == [SECRET, SECRET]
+    assert [each.database for each in launched] == [secret, secret]
     code, _, err = command("run", CELL, "--database-file", closed)
     assert (code, "named twice" in err) == (2, True)
 
 
-def test_what_is_told_is_shown_without_passwords(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    file = written(tmp_path, f'port = 8001\nhost = "::"\ndatabase = "{SECRET}"\n', mode=0o600)
+@pytest.mark.parametrize("secret", SECRETS)
+def test_what_is_told_is_shown_without_passwords(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, secret: str) -> None:
+    file = written(tmp_path, f'port = 8001\nhost = "::"\ndatabase = "{secret}"\n', mode=0o600)
     monkeypatch.setenv("SEQUENCE_PLANNER_PORT", "8002")
     code, out, err = command("configuration", "show", file)
     assert (code, err) == (0, "")

@@ -18,6 +18,8 @@ from sequence_planner import launcher
 from sequence_planner.launcher import UNUSABLE, Part
 from sequence_planner.lifeline import DEPLOYED
 from sequence_planner.ros.transport import QualityOfService
+from sequence_planner.secret_variables import CLIENT_SECRET, PASSWORD
+from sequence_planner.storage.environment import DATABASE
 
 
 def part(program: str) -> Part:
@@ -211,6 +213,45 @@ def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, short_
             running.kill()
     assert running.returncode == (-how if how is signal.SIGKILL else 0)
     assert [each.name for each in short_path.iterdir()] == ["log"]
+
+
+def test_secrets_of_the_environment_are_for_the_parts_that_need_them(tmp_path: Path) -> None:
+    database = f"sqlite:///{tmp_path}/station.sqlite"
+    secrets = {CLIENT_SECRET: "of the client", PASSWORD: "of the database", DATABASE: database}
+    provider = ("--oidc-issuer", "https://id.invalid", "--oidc-client", "station", "--oidc-others", "viewer")
+    with (
+        (tmp_path / "log").open("wb") as log,
+        subprocess.Popen(
+            command("run", str(MODEL), "--port", str(free_port()), "--emulator", *provider),
+            cwd=REPOSITORY,
+            env={**environment(), **secrets},
+            stdout=log,
+            stderr=log,
+        ) as running,
+    ):
+        try:
+            for name, needed in (
+                ("controller", {PASSWORD, DATABASE}),
+                ("server", {CLIENT_SECRET, PASSWORD, DATABASE}),
+                ("emulate", set[str]()),
+            ):
+                assert secrets.keys() & its_environment(running.pid, name).keys() == needed, name
+        finally:
+            running.terminate()
+
+
+def its_environment(launcher: int, name: str) -> dict[str, str]:
+    """What the part that runs the command `name` was started with."""
+    found: list[Path] = []
+
+    def is_there() -> bool:
+        folders = [Path("/proc") / str(pid) for pid in children(launcher)]
+        found[:] = [each for each in folders if name.encode() in (each / "cmdline").read_bytes().split(b"\0")]
+        return bool(found)
+
+    eventually(is_there)
+    lines = (found[0] / "environ").read_text().split("\0")
+    return dict(line.split("=", 1) for line in lines if "=" in line)
 
 
 def test_beside_real_devices_nothing_is_emulated_and_nothing_starts_by_itself(tmp_path: Path) -> None:

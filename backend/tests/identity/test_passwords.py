@@ -9,7 +9,6 @@ from typing import Literal
 
 import pytest
 from argon2 import PasswordHasher, extract_parameters
-from argon2.profiles import RFC_9106_LOW_MEMORY
 
 from identity.cheap import CHEAP, cheap_passwords
 from sequence_planner.identity.passwords import LONGEST, Passwords, check_password
@@ -70,7 +69,8 @@ def test_hashes_are_as_the_standard_recommends() -> None:
     passwords = Passwords()
     try:
         hashed = asyncio.run(passwords.hash("correct horse battery"))
-        assert extract_parameters(hashed) == RFC_9106_LOW_MEMORY
+        # What the Password Storage Cheat Sheet of OWASP asks for at least.
+        assert hashed.startswith("$argon2id$v=19$m=19456,t=2,p=1$")
         assert hashed != asyncio.run(passwords.hash("correct horse battery"))
         assert asyncio.run(passwords.verify(hashed, "correct horse battery"))
         assert not asyncio.run(passwords.verify(hashed, "correct horse batterz"))

@@ -5,8 +5,13 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 
+import pytest
+
+from journal.happened import happened
 from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.mes.sequencing import known_times
 from sequence_planner.mes.sequencing.known_times import UNKNOWN_SECONDS, KnownTimes
+from sequence_planner.storage.database import Database
 
 RESOURCES = {"robot.fetch": "robot", "robot.place": "robot", "press.close": "press"}
 GOAL = frozenset({"table"})
@@ -59,6 +64,25 @@ def test_a_clock_that_was_set_back_leaves_no_negative_time() -> None:
     times = known()
     times.hear(ticks((100.0, {"activated": ["assemble"]}), (50.0, {"completed": ["assemble"]})))
     assert times.seconds("assemble", 12.0) == 12.0
+
+
+def test_a_clock_that_was_set_forward_leaves_no_time_that_cannot_be_worked_with() -> None:
+    times = known()
+    times.hear(ticks((100.0, {"activated": ["assemble"]}), (1.8e9, {"completed": ["assemble"]})))
+    assert times.seconds("assemble", 12.0) == 12.0
+
+
+def test_of_what_happened_while_nobody_asked_only_the_last_is_read(
+    database: Database, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(known_times, "_LOOK_BACK", 4)
+    times, heard = known(), list[int]()
+    monkeypatch.setattr(times, "hear", lambda page: heard.extend(each.number for each in page))
+    for numbers in (range(1, 3), range(3, 20)):
+        happened(database, numbers)
+        with database.reading() as connection:
+            times.read_on(connection)
+    assert heard == [1, 2, 16, 17, 18, 19]
 
 
 def test_what_is_started_beside_counts_for_all_that_are_active() -> None:

@@ -21,7 +21,7 @@ from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.journal.run_writer import RunWriter
 from sequence_planner.mes import events, orders, responses
 from sequence_planner.mes.following import Following
-from sequence_planner.mes.ledger import Ledger
+from sequence_planner.mes.ledger import MOST_DEVIATIONS, Ledger
 from sequence_planner.mes.order import OrderContent
 from sequence_planner.mes.run_reading import read
 from sequence_planner.mes.states import OrderCommand, OrderState
@@ -139,6 +139,27 @@ def test_values_deviations_and_corrections_are_told() -> None:
     assert (found.operations["b.1"].started, found.operations["b.1"].ended) == (5.0, 7.0)
 
 
+def test_of_an_alarm_that_comes_and_goes_for_days_the_first_are_told() -> None:
+    run = Run()
+    run.add("ticked", jobs={"b": job("b", started=at(b1=5))})
+    for _ in range(MOST_DEVIATIONS + 7):
+        run.add("alarm", text="silent")
+    found = run.ledger().jobs["b"]
+    assert (len(found.deviations), found.deviations_left_out) == (MOST_DEVIATIONS, 7)
+
+
+def test_a_job_that_a_station_does_not_remember_is_aborted_with_what_was_made() -> None:
+    run = Run()
+    run.add("ticked", jobs={"b": job("b", started=at(b1=5))}, started=["make_b"])
+    ledger = run.ledger()
+    before = ledger.copied()
+    news = ledger.take(read(run.add("begun", values={}, senses={}, memory={}, jobs={})), MASTERS)
+    assert [(each.what, each.job.state, each.job.ended) for each in news] == [("over", "aborted", 103.0)]
+    assert [each.ability for each in news[0].job.abilities] == ["make_b"]
+    assert not ledger.jobs
+    assert before.jobs["b"].active == ["b.1"]
+
+
 def test_an_operation_that_was_reset_is_made_anew() -> None:
     run = Run()
     run.add("ticked", jobs={"b": job("b", started=at(b1=5), completed=at(b1=6))})
@@ -220,6 +241,22 @@ def test_orders_go_on_as_the_journal_says_wherever_the_server_is_killed(database
         assert (found[name].description, found[name].began) == (f"Part {name}", float(JOBS.index(name)))
     made = run.ledger().jobs
     assert {name: each.abilities for name, each in found.items()} == {name: made[name].abilities for name in JOBS}
+
+
+def test_what_another_server_has_read_is_news_here_too(database: Database) -> None:
+    with database.writing() as connection:
+        order = orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id="a", start=True)
+        Following(database).begin(connection)
+        orders.hand_over(connection, order, 1.0)
+    one, other = Following(database), Following(database)
+    assert one.read_on(MASTERS) == other.read_on(MASTERS) == (False, False)
+
+    async def write(writer: RunWriter) -> None:
+        writer.write("ticked", 1.0, json.dumps({"jobs": {"a": job("a", "ended", ended=moment(6))}}))
+
+    with_writer(database, write)
+    assert one.read_on(MASTERS) == (True, False)
+    assert other.read_on(MASTERS) == (True, True)
 
 
 def test_an_order_that_is_over_stays_so_and_is_commanded_no_more(database: Database) -> None:

@@ -147,8 +147,10 @@ def test_one_that_is_gone_is_told_of_nothing(database: Database) -> None:
         for id in (webhook.id, "x'; --", ""):
             with pytest.raises(OrderRefused, match="no webhook with this id"):
                 webhooks.get(connection, id)
-        kinds = [each.entry.action for each in audit.read(connection)]
-    assert kinds == ["webhook-deleted", "webhook-created"]
+        recorded = [each.entry for each in audit.read(connection)]
+    assert [each.action for each in recorded] == ["webhook-deleted", "webhook-created"]
+    assert "mes.example" in str(recorded[1]), "it is recorded where it leads"
+    assert "/events" not in str(recorded), "a path may be a secret, and more people read the journal than webhooks"
 
 
 def test_there_are_not_too_many(database: Database) -> None:

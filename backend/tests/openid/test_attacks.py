@@ -10,7 +10,7 @@ import pytest
 
 from identity.situations import everything_kept
 from openid.conftest import SESSION, Scene
-from openid.providing import CLIENT, SECRET
+from openid.providing import CLIENT, SECRET, at_provider
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.tokens import new_token
 from sequence_planner.web.cookies import flow_cookie, session_cookie
@@ -119,6 +119,7 @@ FORGED: dict[str, tuple[str, dict[str, Any]]] = {
     "expires as text": ("has expired", {"claims": {"exp": "2099"}}),
     "of a time to come": ("time to come", {"claims": {"iat": NOW + HOUR}}),
     "not valid yet": ("not valid yet", {"claims": {"nbf": NOW + HOUR}}),
+    "of somebody who was there long ago": ("some time ago", {"claims": {"auth_time": NOW - HOUR}}),
     "of nobody": ("whom it is about", {"without": ["sub"]}),
     "of no text": ("whom it is about", {"claims": {"sub": 7}}),
     "of somebody else than the rest": ("somebody else", {"claims": {"sub": "ada"}}),
@@ -183,6 +184,19 @@ def test_a_session_that_was_planted_is_not_taken_over(scene: Scene) -> None:
             assert before not in "".join(answer.headers.get_list("set-cookie"))
             shown = httpx.get(f"{scene.server.address}/api/v1/state", headers=scene.server.cookie(before))
             assert shown.status_code == 401
+
+
+def test_who_finds_a_browser_that_is_still_known_at_the_provider_is_not_let_in(scene: Scene) -> None:
+    """As at a terminal that people share: the one before has signed out of the station, or was not there for long."""
+    with scene.browser() as terminal, httpx.Client() as there:
+        brought = at_provider(there, scene.begin(terminal), "otto")
+        assert scene.finish(terminal, brought.said).status_code == 200
+        assert terminal.delete(SESSION).status_code == 204
+        asked = there.get(scene.begin(terminal))
+        while asked.is_redirect:
+            asked = there.get(asked.url.join(asked.headers["location"]))
+            assert not str(asked.url).startswith(scene.server.address), "it leads back by itself"
+        assert 'name="password"' in asked.text
 
 
 def test_one_address_does_not_begin_without_end(scene: Scene) -> None:

@@ -14,9 +14,10 @@ from core.budget import examples
 from sequence_planner.cli.serving import server as server_command
 from sequence_planner.identity.openid.addresses import is_safe
 from sequence_planner.identity.openid.flow import Flow
-from sequence_planner.identity.openid.options import SECRET, ProviderOptionError, ProviderOptions
+from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
 from sequence_planner.identity.openid.settings import ProviderSettings
 from sequence_planner.identity.roles import Role
+from sequence_planner.secret_variables import CLIENT_SECRET
 
 ISSUER = "https://id.example/realms/works"
 OPTIONS = ProviderOptions(issuer=ISSUER, client="station", roles=("operator=shift", "administrator=it=admins"))
@@ -28,7 +29,7 @@ def options(**changes: Any) -> ProviderOptions:  # noqa: ANN401 (of each option 
 
 
 def test_what_is_named_is_meant() -> None:
-    found = OPTIONS.settings({SECRET: "of the client"})
+    found = OPTIONS.settings({CLIENT_SECRET: "of the client"})
     assert found == ProviderSettings(
         issuer=ISSUER,
         client="station",
@@ -37,7 +38,7 @@ def test_what_is_named_is_meant() -> None:
         roles=((Role.OPERATOR, "shift"), (Role.ADMINISTRATOR, "it=admins")),
     )
     assert "of the client" not in repr(found)
-    assert ProviderOptions().settings({SECRET: "of nobody"}) is None
+    assert ProviderOptions().settings({CLIENT_SECRET: "of nobody"}) is None
     public = options(scopes=("email", "openid"), others="viewer", roles=()).settings({})
     assert public is not None
     assert (public.secret, public.scopes, public.others) == (None, ("openid", "email"), Role.VIEWER)
@@ -89,7 +90,7 @@ def test_a_file_without_a_secret_is_refused(tmp_path: Path, text: str | bytes, w
         options(secret_file=file).settings({})
     file.write_text("of the client")
     with pytest.raises(ProviderOptionError, match="said twice"):
-        options(secret_file=file).settings({SECRET: "another"})
+        options(secret_file=file).settings({CLIENT_SECRET: "another"})
 
 
 @pytest.mark.parametrize(

@@ -17,7 +17,9 @@ from sequence_planner.pipelines.examples import failures, loading_failures
 from sequence_planner.pipelines.record import Record
 from sequence_planner.pipelines.stage import NotInvertibleError
 from sequence_planner.pipelines.stages.own.stage import PythonCourse, PythonStage
+from sequence_planner.secret_variables import CLIENT_SECRET, PASSWORD
 from sequence_planner.station import prepare_station
+from sequence_planner.storage.environment import DATABASE
 
 PATIENCE = 20.0  # seconds for what must happen on a busy machine
 
@@ -51,6 +53,8 @@ def judge(force, mode):
             print(n)
     if mode == "files":
         return {"valve": True, "text": ",".join(sorted(os.listdir("/proc/self/fd"), key=int))}
+    if mode == "environment":
+        return {"valve": True, "text": " ".join(os.environ)}
     if mode == "nothing":
         return None
     if mode == "wrong":
@@ -180,6 +184,16 @@ def test_no_file_of_ours_is_open_in_it(folder: Path) -> None:
         # Standard input, output and error, the answers, and the directory that is being read.
         assert len(files) <= 5
         assert str(ours.fileno()) not in files or ours.fileno() < 5
+
+
+def test_no_secret_of_the_environment_is_told_to_it(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for secret in (CLIENT_SECRET, PASSWORD, DATABASE):
+        monkeypatch.setenv(secret, "hidden")
+    monkeypatch.setenv("ROS_DOMAIN_ID", "7")
+    with patient(made(folder)) as course:
+        names = str(call(course, "environment")[1]).split()
+    assert {CLIENT_SECRET, PASSWORD, DATABASE}.isdisjoint(names)
+    assert "ROS_DOMAIN_ID" in names
 
 
 def test_what_it_prints_is_logged_in_part(folder: Path) -> None:

@@ -13,6 +13,7 @@ from sequence_planner.ros.service_graph import TellsServices
 from sequence_planner.ros.transport import QualityOfService, Sample, TransportError
 
 TOPIC, TYPE = "/arm/command", "std_msgs/msg/String"
+TRIGGER = "std_srvs/srv/Trigger"
 WORDS = b"\x00\x01\x00\x00\x03\x00\x00\x00go\x00"
 
 
@@ -36,7 +37,7 @@ def test_nothing_goes_out_unless_it_may_speak_at_that_very_moment() -> None:
         with pytest.raises(TransportError, match="does not hold the lease"):
             speaker.publish(TOPIC, TYPE, WORDS)
         with pytest.raises(TransportError, match="does not hold the lease"):
-            await speaker.call("/arm/reset", "std_srvs/srv/Trigger", b"", 1.0)
+            await speaker.call("/arm/reset", TRIGGER, b"", 1.0)
         await asyncio.sleep(0.05)
         assert heard == []
         may_speak = True
@@ -48,5 +49,33 @@ def test_nothing_goes_out_unless_it_may_speak_at_that_very_moment() -> None:
         assert {each.topic for each in speaker.graph()} == {TOPIC}
         speaker.close()
         listener.close()
+
+    asyncio.run(scenario())
+
+
+def test_a_call_that_waited_for_its_server_is_not_sent_after_the_lease_has_ended() -> None:
+    async def scenario() -> None:
+        network, loop = MemoryNetwork(), asyncio.get_running_loop()
+        registry, asked = cell()[0].registry, list[bytes]()
+        may_speak = True
+        speaker = gated(network.join(registry, "station", loop), lambda: may_speak)
+        device = network.join(registry, "device", loop)
+        call = asyncio.create_task(speaker.call("/arm/reset", TRIGGER, b"", 10.0))
+        await asyncio.sleep(0.05)
+        may_speak = False
+
+        async def answer(request: bytes) -> bytes:
+            asked.append(request)
+            return b""
+
+        device.serve("/arm/reset", TRIGGER, answer)
+        with pytest.raises(TransportError, match="does not hold the lease"):
+            await call
+        assert asked == []
+        may_speak = True
+        await speaker.call("/arm/reset", TRIGGER, b"", 10.0)
+        assert asked == [b""]
+        speaker.close()
+        device.close()
 
     asyncio.run(scenario())

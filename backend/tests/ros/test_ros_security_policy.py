@@ -9,7 +9,10 @@ from xml.etree import ElementTree
 import pytest
 
 from cli.commands import TESTS, command
+from sequence_planner.control import process as controller_process
+from sequence_planner.emulation import node as emulated_devices
 from sequence_planner.ros import enclaves
+from sequence_planner.ros.actions import ActionNames
 from sequence_planner.ros.security_policy import policy
 from sequence_planner.station import ReadyStation, prepare_station
 
@@ -53,13 +56,15 @@ def check(element: ElementTree.Element) -> None:
         check(each)
 
 
-def allowed(root: ElementTree.Element) -> dict[str, Rights]:
-    """What is allowed in each enclave beside what every node needs."""
+def allowed(root: ElementTree.Element, *, checks: bool = False) -> dict[str, Rights]:
+    """What is allowed in each enclave beside what every node needs: to those nodes that look whether a process would be
+    alone, or to all others.
+    """
     found: dict[str, Rights] = {}
     for enclave in root.iter("enclave"):
         rights: Rights = defaultdict(set)
         for profile in enclave.iter("profile"):
-            for rule in profile:
+            for rule in profile if profile.attrib["node"].endswith("_check") is checks else ():
                 (qualifier,) = rule.attrib
                 assert rule.attrib[qualifier] == "ALLOW"
                 names = {each.text or "" for each in rule} - EVERYBODY
@@ -95,6 +100,19 @@ def test_the_controller_may_do_what_the_model_says_and_no_more(
     }
     assert found[enclaves.CONTROLLER] == {qualifier: names for qualifier, names in wanted.items() if names}
     assert found[enclaves.TOOLS] == {}
+
+
+def test_who_looks_whether_it_would_be_alone_may_listen_to_what_it_would_say(
+    station: ReadyStation, root: ElementTree.Element
+) -> None:
+    pipelines, found = station.pipelines, allowed(root, checks=True)
+    states = {ActionNames(name).status for name in pipelines.actions}
+    wanted = {enclaves.CONTROLLER: set(pipelines.outgoing), enclaves.EMULATED: {*pipelines.incoming, *states}}
+    assert {path: rights for path, rights in found.items() if rights} == {
+        path: {"subscribe": names} for path, names in wanted.items() if names
+    }
+    for node in (controller_process.NODE, emulated_devices.NODE):
+        assert enclaves.enclave_of(f"{node}_check") == enclaves.enclave_of(node) != enclaves.TOOLS
 
 
 def test_devices_may_do_the_other_half(station: ReadyStation, root: ElementTree.Element) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import socket
+import time
 import traceback
 from collections.abc import Iterator
+from contextlib import closing
 
 import psycopg
 import pytest
@@ -13,6 +15,7 @@ from hypothesis import strategies as st
 from sqlalchemy import text
 
 from core.budget import examples
+from sequence_planner.storage import postgresql as postgresql_storage
 from sequence_planner.storage.address import PostgresqlServer, address
 from sequence_planner.storage.database import Database, StorageError
 from storage.servers import PASSWORD, USER, Server
@@ -64,6 +67,18 @@ def test_the_writer_is_the_only_one(opened: Database) -> None:
     with other.writing():
         pass
     other.close()
+
+
+def test_a_writer_that_stands_still_loses_its_turn(opened: Database, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(postgresql_storage, "LONGEST_STANDSTILL", 0.3)
+    written = False
+    with pytest.raises(StorageError), opened.writing() as connection:
+        time.sleep(0.5)
+        with closing(Database.open(_url_of(opened))) as other, other.writing() as its:
+            its.execute(text("INSERT INTO first_start_links (token_hash, expires) VALUES ('late', 1)"))
+        written = True
+        connection.execute(text("SELECT 1"))
+    assert written
 
 
 def test_a_reader_cannot_write(opened: Database) -> None:

@@ -13,6 +13,7 @@ from alembic.runtime.migration import MigrationContext
 from sqlalchemy import text
 
 from sequence_planner import identity, journal, mes, standby, workshop
+from sequence_planner.mes import webhooks
 from sequence_planner.storage.database import Database, StorageError
 from sequence_planner.storage.metadata import METADATA
 from sequence_planner.storage.upgrading import NEWEST
@@ -30,7 +31,7 @@ database.check()
 
 
 def test_the_migrations_make_the_tables_that_the_program_declares(database: Database) -> None:
-    rooms = (identity, journal, mes, standby, workshop)
+    rooms = (identity, journal, mes, webhooks, standby, workshop)
     for package in rooms:
         for module in pkgutil.iter_modules(package.__path__, f"{package.__name__}."):
             importlib.import_module(module.name)

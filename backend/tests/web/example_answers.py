@@ -36,11 +36,11 @@ from sequence_planner.control.figures_view import (
 )
 from sequence_planner.control.offer_view import (
     AdviceView,
-    ChangeView,
     EffortView,
     OfferView,
     PlanPreviewView,
     PreviewStepView,
+    ValueChangeView,
 )
 from sequence_planner.control.view import BeliefView
 from sequence_planner.control.view_part import View
@@ -76,7 +76,7 @@ OFFER = OfferView(
     online=[],
     in_service=[],
     assumed=[],
-    corrections=[ChangeView(name="bolts[bolt_pair_1]", now="empty", then="placed")],
+    corrections=[ValueChangeView(name="bolts[bolt_pair_1]", now="empty", then="placed")],
     errand=PLAN,
     ends="robot.pose == home",
     operation=None,

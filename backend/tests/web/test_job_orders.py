@@ -11,10 +11,14 @@ from typing import Any
 import httpx
 import pytest
 
+from sequence_planner.actor import SYSTEM
 from sequence_planner.control.link import ControllerLink
+from sequence_planner.identity.keys import revoke_key
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.journal import audit
-from sequence_planner.mes import answers
+from sequence_planner.mes import answers, orders
+from sequence_planner.mes.refusal import OrderRefused
+from sequence_planner.web.order_desk import OrderDesk
 from sequence_planner.web.settings import Settings
 
 from .bearers import key
@@ -78,6 +82,13 @@ def test_an_order_is_stored_started_and_told(mes: httpx.Client, server: Server) 
     with server.identity.database.reading() as connection:
         newest = audit.read(connection, action="job-order-start")[0].entry
     assert (newest.actor.name, newest.subject, newest.reason) == ("MES", "job order engine-4711", "the shift begins")
+
+
+def test_who_has_read_further_than_a_restored_station_is_told_so(mes: httpx.Client) -> None:
+    store(mes, "4711")
+    assert mes.get("/api/v1/events", params={"after": 1}).json() == {"events": [], "next": 1}
+    told = problem(mes.get("/api/v1/events", params={"after": 2}), 409, "event-not-known")
+    assert "the newest is 1" in told["detail"]
 
 
 def test_without_an_id_an_order_is_given_one(mes: httpx.Client) -> None:
@@ -218,6 +229,22 @@ def test_a_key_needs_the_scope_and_a_person_the_role(server: Server, mes: httpx.
         assert viewer.get(ORDERS).json()["job_orders"] == [order]
         problem(tell(viewer, order["id"], "Start"), 403, "role-too-low")
         assert tell(operator, order["id"], "Start").status_code == 200
+
+
+def test_what_a_key_asks_for_while_it_is_revoked_is_not_done(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
+    secret, made = key(server, Scope.READ, Scope.ORDERS_READ, Scope.ORDERS_WRITE)
+    known = OrderDesk.unknown_work_master
+
+    async def revoked_meanwhile(desk: OrderDesk, name: str) -> OrderRefused | None:
+        with server.identity.database.writing() as connection:
+            revoke_key(connection, made.id, SYSTEM, server.identity.now())
+        return await known(desk, name)
+
+    monkeypatch.setattr(OrderDesk, "unknown_work_master", revoked_meanwhile)
+    with httpx.Client(base_url=server.address, headers={"Authorization": f"Bearer {secret}"}) as stolen:
+        problem(stolen.post(ORDERS, json=ENGINE, headers={"Idempotency-Key": "late"}), 401, "signed-out")
+    with server.identity.database.reading() as connection:
+        assert orders.count_open(connection) == 0
 
 
 def test_a_person_who_lets_something_go_on_is_in_control(mes: httpx.Client, client: httpx.Client) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -27,7 +28,7 @@ def test_the_stream_is_described(described: dict[str, Any]) -> None:
     schemas = described["components"]["schemas"]
     kinds = {each["$ref"].rpartition("/")[2] for each in schemas["StreamMessage"]["oneOf"]}
     assert kinds == {"Snapshot", "Delta", "Link", "StreamError"}
-    assert {"StationView", "StationChange", "StationRemoval", "ClientMessage", "Resync", "Problem"} <= schemas.keys()
+    assert {"StationView", "StationChange", "StationRemoval", "Resync", "Problem"} <= schemas.keys()
     assert "required" not in schemas["StationChange"]
 
 
@@ -35,6 +36,13 @@ def test_every_reference_leads_somewhere(described: dict[str, Any]) -> None:
     for part in document().split('"$ref": "')[1:]:
         _, _, kind, name = part.partition('"')[0].split("/")
         assert name in described["components"][kind]
+
+
+def test_every_operation_and_every_model_has_a_name_of_its_own(described: dict[str, Any]) -> None:
+    operations = [operation["operationId"] for verbs in described["paths"].values() for operation in verbs.values()]
+    assert len(set(operations)) == len(operations)
+    assert [each for each in operations if not re.fullmatch("[a-z]+(_[a-z]+)*", each)] == []
+    assert [each for each in described["components"]["schemas"] if not re.fullmatch("[A-Z][A-Za-z]+", each)] == []
 
 
 def test_every_refusal_is_described_as_a_problem(described: dict[str, Any]) -> None:

@@ -16,7 +16,7 @@ from sequence_planner.web import order_of_work
 
 from .example_answers import WORK_MASTERS
 from .running import Server, until
-from .test_job_orders import controller, mes, store, tell
+from .test_job_orders import ORDERS, controller, mes, store, tell
 from .test_looking import Telling
 
 __all__ = ["controller", "mes"]
@@ -72,6 +72,12 @@ def test_orders_are_to_begin_as_they_are_due(mes: httpx.Client) -> None:
     store(mes, "urgent", id="urgent", due=now + 1, priority=9, start=True)
     until(lambda: len(found()) == 5, 30)
     assert mes.get(PLACE).json()["job_orders"][0]["late"] > 0
+    assert [each["id"] for each in mes.get(PLACE, params={"limit": 2}).json()["job_orders"]] == ["urgent", "early"]
+    shown: dict[str, str | int] = {"state": "AllowedToStart", "sort": "work", "limit": 2}
+    first = mes.get(ORDERS, params=shown).json()
+    assert [each["id"] for each in first["job_orders"]] == ["urgent", "early"]
+    rest = mes.get(ORDERS, params=shown | {"cursor": first["next"], "limit": 3}).json()
+    assert ([each["id"] for each in rest["job_orders"]], rest["next"]) == (["middle", "late", "never"], None)
     for name in ("late", "early", "never", "middle", "urgent"):
         assert tell(mes, name, "Abort").status_code == 200
 

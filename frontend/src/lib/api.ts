@@ -15,7 +15,7 @@ export interface paths {
          * Abilities
          * @description Every ability: enabled, executing, finished.
          */
-        get: operations["abilities_api_v1_abilities_get"];
+        get: operations["abilities"];
         put?: never;
         post?: never;
         delete?: never;
@@ -32,10 +32,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Definition
+         * Ability Definition
          * @description Its guards, actions and expected reactions as they are written, what of them holds now, and its last trial.
          */
-        get: operations["definition_api_v1_abilities__name__definition_get"];
+        get: operations["ability_definition"];
         put?: never;
         post?: never;
         delete?: never;
@@ -57,7 +57,7 @@ export interface paths {
          *
          *     409 `errand-under-way` while a plan is being carried out. With an offer in `obstacle` stands what to do first.
          */
-        get: operations["advice_api_v1_advice_get"];
+        get: operations["advice"];
         put?: never;
         post?: never;
         delete?: never;
@@ -77,7 +77,7 @@ export interface paths {
          * Alarms
          * @description What wants a person's attention now.
          */
-        get: operations["alarms_api_v1_alarms_get"];
+        get: operations["alarms"];
         put?: never;
         post?: never;
         delete?: never;
@@ -96,10 +96,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Acknowledge
+         * Acknowledge Alarm
          * @description Say that one has seen an alarm; 409 `alarm-came-again` where it came anew after the one that was seen.
          */
-        post: operations["acknowledge_api_v1_alarms_acknowledge_post"];
+        post: operations["acknowledge_alarm"];
         delete?: never;
         options?: never;
         head?: never;
@@ -116,10 +116,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Restore
+         * Restore Alarm
          * @description Put an alarm back in service.
          */
-        post: operations["restore_api_v1_alarms_restore_post"];
+        post: operations["restore_alarm"];
         delete?: never;
         options?: never;
         head?: never;
@@ -136,10 +136,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Shelve
+         * Shelve Alarm
          * @description Not be told of an alarm for some time, eight hours at most; 409 `alarm-too-urgent` for one of high priority.
          */
-        post: operations["shelve_api_v1_alarms_shelve_post"];
+        post: operations["shelve_alarm"];
         delete?: never;
         options?: never;
         head?: never;
@@ -156,10 +156,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Suppress
+         * Suppress Alarm
          * @description Take an alarm out of service until it is restored; 409 `alarm-too-urgent` for one of high priority.
          */
-        post: operations["suppress_api_v1_alarms_suppress_post"];
+        post: operations["suppress_alarm"];
         delete?: never;
         options?: never;
         head?: never;
@@ -176,10 +176,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Unshelve
+         * Unshelve Alarm
          * @description Be told of a shelved alarm again.
          */
-        post: operations["unshelve_api_v1_alarms_unshelve_post"];
+        post: operations["unshelve_alarm"];
         delete?: never;
         options?: never;
         head?: never;
@@ -197,7 +197,7 @@ export interface paths {
          * Analysis
          * @description The guards that the supervisor adds, how many states can be reached, and findings with runs that show them.
          */
-        get: operations["analysis_api_v1_analysis_get"];
+        get: operations["analysis"];
         put?: never;
         post?: never;
         delete?: never;
@@ -221,7 +221,7 @@ export interface paths {
          *
          *     409 `no-approval-needed` where none of its variables asks for that.
          */
-        post: operations["ask_for_correction_api_v1_approvals_corrections_post"];
+        post: operations["ask_for_correction"];
         delete?: never;
         options?: never;
         head?: never;
@@ -241,7 +241,7 @@ export interface paths {
          * Ask For Force
          * @description Ask a second person to approve a force, as a correction.
          */
-        post: operations["ask_for_force_api_v1_approvals_forces_post"];
+        post: operations["ask_for_force"];
         delete?: never;
         options?: never;
         head?: never;
@@ -261,7 +261,7 @@ export interface paths {
          * Ask For Outputs
          * @description Ask a second person to approve a decision on outputs, as a correction.
          */
-        post: operations["ask_for_outputs_api_v1_approvals_outputs_post"];
+        post: operations["ask_for_outputs"];
         delete?: never;
         options?: never;
         head?: never;
@@ -278,12 +278,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Approve
+         * Approve Request
          * @description Approve what another person has asked for: it is done at once, in the names of both.
          *
          *     403 `same-person` for who has asked, 409 `request-gone` when it was answered, overtaken or took too long.
          */
-        post: operations["approve_api_v1_approvals__request__approve_post"];
+        post: operations["approve_request"];
         delete?: never;
         options?: never;
         head?: never;
@@ -300,10 +300,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Decline
+         * Decline Request
          * @description Decline what another person has asked for, or withdraw what one has asked for oneself.
          */
-        post: operations["decline_api_v1_approvals__request__decline_post"];
+        post: operations["decline_request"];
         delete?: never;
         options?: never;
         head?: never;
@@ -318,11 +318,11 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read
+         * Read Audit
          * @description What was done, refused or failed; only that of one action or of one actor (by id), where these are named, and
          *     that from `since` to before `until` (seconds since the epoch).
          */
-        get: operations["read_api_v1_audit_get"];
+        get: operations["read_audit"];
         put?: never;
         post?: never;
         delete?: never;
@@ -342,7 +342,7 @@ export interface paths {
          * Capabilities
          * @description What may be ordered, and what it is made with.
          */
-        get: operations["capabilities_api_v1_capabilities_get"];
+        get: operations["capabilities"];
         put?: never;
         post?: never;
         delete?: never;
@@ -360,16 +360,16 @@ export interface paths {
         };
         get?: never;
         /**
-         * Take
+         * Take Control
          * @description Put this session in control; 409 `control-moved` when by now another is than the one that was seen.
          */
-        put: operations["take_api_v1_control_put"];
+        put: operations["take_control"];
         post?: never;
         /**
-         * Release
+         * Release Control
          * @description Give control up.
          */
-        delete: operations["release_api_v1_control_delete"];
+        delete: operations["release_control"];
         options?: never;
         head?: never;
         patch?: never;
@@ -390,7 +390,7 @@ export interface paths {
          *
          *     409 `state-moved` when the state is not at this revision any more; nothing has changed then.
          */
-        post: operations["correct_api_v1_corrections_post"];
+        post: operations["correct"];
         delete?: never;
         options?: never;
         head?: never;
@@ -407,10 +407,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Confirm
+         * Confirm Correction
          * @description Say that these estimates are as the station believes; 409 `state-moved` when one is another by now.
          */
-        post: operations["confirm_api_v1_corrections_confirm_post"];
+        post: operations["confirm_correction"];
         delete?: never;
         options?: never;
         head?: never;
@@ -427,12 +427,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Preview
+         * Preview Correction
          * @description What a correction would bring about: what it would violate, which abilities could start, the plan that follows.
          *
          *     Nothing is changed by asking, and it may be asked in every mode.
          */
-        post: operations["preview_api_v1_corrections_preview_post"];
+        post: operations["preview_correction"];
         delete?: never;
         options?: never;
         head?: never;
@@ -449,12 +449,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Undo
+         * Undo Correction
          * @description Take the last correction back, as long as its variables have the values that it gave them. It takes control.
          *
          *     409 `state-moved` when they have others, or when the last correction was made on another revision.
          */
-        post: operations["undo_api_v1_corrections_undo_post"];
+        post: operations["undo_correction"];
         delete?: never;
         options?: never;
         head?: never;
@@ -471,12 +471,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Take
+         * Take Errand
          * @description Make the corrections of an offer and have its plan carried out, and nothing else. It takes control.
          *
          *     409 `offer-gone` and `state-moved` ask to look again; `not-confirmed`: starts and corrections are not the offer's.
          */
-        post: operations["take_api_v1_errands_post"];
+        post: operations["take_errand"];
         delete?: never;
         options?: never;
         head?: never;
@@ -498,7 +498,7 @@ export interface paths {
          *
          *     422 `bad-predicate` names the place; 409 `goal-holds` and `no-plan` say why there is nothing to take.
          */
-        post: operations["preview_goal_api_v1_errands_goal_preview_post"];
+        post: operations["preview_goal"];
         delete?: never;
         options?: never;
         head?: never;
@@ -518,7 +518,7 @@ export interface paths {
          * Preview Reset
          * @description A plan to the precondition of an operation, from which it begins anew; 409 `no-plan` where there is none.
          */
-        post: operations["preview_reset_api_v1_errands_reset_preview_post"];
+        post: operations["preview_reset"];
         delete?: never;
         options?: never;
         head?: never;
@@ -535,10 +535,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Stop
+         * Stop Errand
          * @description Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it.
          */
-        post: operations["stop_api_v1_errands_stop_post"];
+        post: operations["stop_errand"];
         delete?: never;
         options?: never;
         head?: never;
@@ -553,10 +553,12 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read
+         * Read Events
          * @description The events with higher numbers than `after`. They are numbered without gaps and never change.
+         *
+         *     409 `event-not-known` where there is no event `after` yet: a station that was restored from a backup numbers anew.
          */
-        get: operations["read_api_v1_events_get"];
+        get: operations["read_events"];
         put?: never;
         post?: never;
         delete?: never;
@@ -580,7 +582,7 @@ export interface paths {
          *
          *     403 `link-unusable` when it does not.
          */
-        post: operations["first_administrator_api_v1_first_administrator_post"];
+        post: operations["first_administrator"];
         delete?: never;
         options?: never;
         head?: never;
@@ -602,13 +604,13 @@ export interface paths {
          *     It takes control. 422 `not-in-domain` says which values there are, and 409 `force-unsafe` that the value would lead
          *     out of the safe states; nothing has changed then.
          */
-        put: operations["force_api_v1_forces__name__put"];
+        put: operations["force"];
         post?: never;
         /**
          * Release Force
          * @description Let a variable be as it comes again, if it is forced. It takes control.
          */
-        delete: operations["release_force_api_v1_forces__name__delete"];
+        delete: operations["release_force"];
         options?: never;
         head?: never;
         patch?: never;
@@ -622,14 +624,14 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read
+         * Read History
          * @description What has happened, only of some kinds, such as `mode-changed,forced`, or with some parts, such as
          *     `started,ended`, where these are named.
          *
          *     `who` asks for what that person did, `name` for what has to do with one of these abilities, variables or operations
          *     (`robot.` stands for all of a resource), and `text` for records in which one of these stands.
          */
-        get: operations["read_api_v1_history_get"];
+        get: operations["read_history"];
         put?: never;
         post?: never;
         delete?: never;
@@ -646,10 +648,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * At Time
+         * Find Time
          * @description The last record up to `time` (seconds since the epoch), or the first one where none is so old.
          */
-        get: operations["at_time_api_v1_history_at_get"];
+        get: operations["find_time"];
         put?: never;
         post?: never;
         delete?: never;
@@ -669,7 +671,7 @@ export interface paths {
          * Checkpoint
          * @description The newest signed checkpoint: kept elsewhere, it shows whether the journal was made anew since.
          */
-        get: operations["checkpoint_api_v1_history_checkpoint_get"];
+        get: operations["checkpoint"];
         put?: never;
         post?: never;
         delete?: never;
@@ -686,11 +688,11 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Export
+         * Export History
          * @description All records with higher numbers than `after`, up to `to`, one JSON document a line, as `journal export` writes
          *     them.
          */
-        get: operations["export_api_v1_history_export_get"];
+        get: operations["export_history"];
         put?: never;
         post?: never;
         delete?: never;
@@ -710,7 +712,7 @@ export interface paths {
          * Time Line
          * @description What happened after `since` and up to `until` (seconds since the epoch), as a time line shows it.
          */
-        get: operations["time_line_api_v1_history_line_get"];
+        get: operations["time_line"];
         put?: never;
         post?: never;
         delete?: never;
@@ -730,7 +732,7 @@ export interface paths {
          * Look Back
          * @description A record, and how the station was right after it.
          */
-        get: operations["look_back_api_v1_history__number__get"];
+        get: operations["look_back"];
         put?: never;
         post?: never;
         delete?: never;
@@ -752,7 +754,7 @@ export interface paths {
          * Take Branch
          * @description How the station would have gone on from there, with emulated devices. Nothing of it reaches the station.
          */
-        post: operations["take_branch_api_v1_history__number__branch_post"];
+        post: operations["take_branch"];
         delete?: never;
         options?: never;
         head?: never;
@@ -767,19 +769,21 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read
+         * Read Job Orders
          * @description The orders as they were stored, only those in a state where one is named. Those that come meanwhile are last.
+         *
+         *     With `sort=work` those that are not over, as they are to begin; pages may then overlap while that changes.
          */
-        get: operations["read_api_v1_job_orders_get"];
+        get: operations["read_job_orders"];
         put?: never;
         /**
-         * Store
+         * Store Job Order
          * @description Store an order; with `start` it may begin at once.
          *
          *     The same request with the same `Idempotency-Key` stores nothing more and is answered the same, for seven days. 422
          *     `idempotency-key-reused` when the key was that of another request; 409 `job-order-exists` when the id was used.
          */
-        post: operations["store_api_v1_job_orders_post"];
+        post: operations["store_job_order"];
         delete?: never;
         options?: never;
         head?: never;
@@ -794,17 +798,17 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * One
+         * Read Job Order
          * @description An order, and why nothing is done for it now.
          */
-        get: operations["one_api_v1_job_orders__id__get"];
+        get: operations["read_job_order"];
         /**
-         * Change
+         * Change Job Order
          * @description Let an order be of another content, until the station works on it; what is left out is as if it was new.
          *
          *     428 without `If-Match`; 412 `job-order-changed` when by now it has another revision; 409 `job-order-started`.
          */
-        put: operations["change_api_v1_job_orders__id__put"];
+        put: operations["change_job_order"];
         post?: never;
         delete?: never;
         options?: never;
@@ -822,13 +826,13 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Command
+         * Command Job Order
          * @description Start, RevokeStart, Pause, Resume, Stop, Abort, Cancel or Clear an order.
          *
          *     What the station has to do is `commanded` until it is done. 409 `command-not-allowed` names in `allowed` what is. A
          *     person who resumes an order has to be in control.
          */
-        post: operations["command_api_v1_job_orders__id__commands_post"];
+        post: operations["command_job_order"];
         delete?: never;
         options?: never;
         head?: never;
@@ -843,11 +847,11 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read
+         * Read Job Responses
          * @description What was made of the orders that are over, in the order in which they were; orders that are cleared are left
          *     out. With `newest` it goes back from the last one.
          */
-        get: operations["read_api_v1_job_responses_get"];
+        get: operations["read_job_responses"];
         put?: never;
         post?: never;
         delete?: never;
@@ -864,10 +868,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * One
+         * Read Job Response
          * @description What was made of an order; 404 `no-job-response` until it is over.
          */
-        get: operations["one_api_v1_job_responses__id__get"];
+        get: operations["read_job_response"];
         put?: never;
         post?: never;
         delete?: never;
@@ -887,13 +891,13 @@ export interface paths {
          * All Keys
          * @description All keys, without their secrets.
          */
-        get: operations["all_keys_api_v1_keys_get"];
+        get: operations["all_keys"];
         put?: never;
         /**
-         * Make
+         * Make Key
          * @description Make a key. Its secret is answered this once: only a hash of it is kept.
          */
-        post: operations["make_api_v1_keys_post"];
+        post: operations["make_key"];
         delete?: never;
         options?: never;
         head?: never;
@@ -911,10 +915,10 @@ export interface paths {
         put?: never;
         post?: never;
         /**
-         * Revoke
+         * Revoke Key
          * @description Revoke a key: whoever bears it is refused from now on.
          */
-        delete: operations["revoke_api_v1_keys__key__delete"];
+        delete: operations["revoke_key"];
         options?: never;
         head?: never;
         patch?: never;
@@ -930,12 +934,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Rotate
+         * Rotate Key
          * @description Give a key another secret, answered this once. The present one works for some hours more; one before it ends.
          *
          *     409 `key-over` when the key works no more.
          */
-        post: operations["rotate_api_v1_keys__key__rotation_post"];
+        post: operations["rotate_key"];
         delete?: never;
         options?: never;
         head?: never;
@@ -954,7 +958,7 @@ export interface paths {
          * Set Mode
          * @description Change the mode of execution. To go on takes control; to pause and to hold is for anybody, and never refused.
          */
-        put: operations["set_mode_api_v1_mode_put"];
+        put: operations["set_mode"];
         post?: never;
         delete?: never;
         options?: never;
@@ -973,7 +977,7 @@ export interface paths {
          * Draft
          * @description The draft of the model: its files, and the last changes.
          */
-        get: operations["draft_api_v1_model_get"];
+        get: operations["draft"];
         put?: never;
         post?: never;
         delete?: never;
@@ -992,12 +996,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Change
+         * Change Draft
          * @description Carry edits out; the files that are others now.
          *
          *     An edit of a part that somebody else has changed meanwhile is refused with `part-changed`, and nothing is done.
          */
-        post: operations["change_api_v1_model_changes_post"];
+        post: operations["change_draft"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1012,10 +1016,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Check
+         * Check Model
          * @description What is found in the draft, as far as that has come.
          */
-        get: operations["check_api_v1_model_check_get"];
+        get: operations["check_model"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1032,12 +1036,12 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Run
+         * Finding Run
          * @description How an ability goes through the run that shows a finding: its automaton in the initial state and after each step.
          *
          *     The finding is named by its place in the check of the draft after change `number`.
          */
-        get: operations["run_api_v1_model_check_findings__finding__run_get"];
+        get: operations["finding_run"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1057,7 +1061,7 @@ export interface paths {
          * Comparison
          * @description How two versions differ, in text and in behaviour: revisions by their ids, the draft, or what runs.
          */
-        get: operations["comparison_api_v1_model_comparison_get"];
+        get: operations["comparison"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1082,7 +1086,7 @@ export interface paths {
          *     The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
          *     production.
          */
-        post: operations["deploy_api_v1_model_deployments_post"];
+        post: operations["deploy"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1097,10 +1101,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Files
+         * Draft Files
          * @description Files of the draft with what they hold; all of them where no `path` is named.
          */
-        get: operations["files_api_v1_model_files_get"];
+        get: operations["draft_files"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1117,10 +1121,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Graph
+         * Model Graph
          * @description The model as a whole: all that has a name, on the layers of the station, and what is tied to what.
          */
-        get: operations["graph_api_v1_model_graph_get"];
+        get: operations["model_graph"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1139,10 +1143,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Check
+         * Check Text
          * @description What is wrong with a text, as the check of the whole draft would find it there.
          */
-        post: operations["check_api_v1_model_language_check_post"];
+        post: operations["check_text"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1159,10 +1163,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Completion
+         * Complete Text
          * @description What can stand at a place in a text.
          */
-        post: operations["completion_api_v1_model_language_completion_post"];
+        post: operations["complete_text"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1182,7 +1186,7 @@ export interface paths {
          * Format Text
          * @description The text as it is written best; one that cannot be read stays as it is.
          */
-        post: operations["format_text_api_v1_model_language_format_post"];
+        post: operations["format_text"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1199,10 +1203,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Hover
+         * Explain Text
          * @description What the name at a place in a text is.
          */
-        post: operations["hover_api_v1_model_language_hover_post"];
+        post: operations["explain_text"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1217,10 +1221,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Pipelines
+         * Draft Pipelines
          * @description The typed graph of the draft as far as it is sound, and what is wrong with it, where it is wrong.
          */
-        get: operations["pipelines_api_v1_model_pipelines_get"];
+        get: operations["draft_pipelines"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1239,10 +1243,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Examples
+         * Run Examples
          * @description How the examples of a pipeline end, with the record at every edge.
          */
-        post: operations["examples_api_v1_model_pipelines_examples_post"];
+        post: operations["run_examples"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1259,10 +1263,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Fits
+         * Find Fits
          * @description What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow.
          */
-        post: operations["fits_api_v1_model_pipelines_fits_post"];
+        post: operations["find_fits"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1279,10 +1283,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Preview
+         * Preview Pipelines
          * @description What edits would bring about; nothing is changed.
          */
-        post: operations["preview_api_v1_model_pipelines_preview_post"];
+        post: operations["preview_pipelines"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1299,10 +1303,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Record
+         * Record Example
          * @description Make an example of what the station has heard or said last; it is added to the draft.
          */
-        post: operations["record_api_v1_model_pipelines_recordings_post"];
+        post: operations["record_example"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1319,10 +1323,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Trial
+         * Try Pipeline
          * @description What comes of a message, or of several in time that is told, with the record at every edge.
          */
-        post: operations["trial_api_v1_model_pipelines_trials_post"];
+        post: operations["try_pipeline"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1339,10 +1343,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Redo
+         * Redo Change
          * @description Do again what you took back last; the files that are others now.
          */
-        post: operations["redo_api_v1_model_redo_post"];
+        post: operations["redo_change"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1359,10 +1363,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Rename
+         * Rename Part
          * @description Give a part of the model another name, which all that name it follow; the files that are others now.
          */
-        post: operations["rename_api_v1_model_rename_post"];
+        post: operations["rename_part"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1380,13 +1384,13 @@ export interface paths {
          * Revisions
          * @description All revisions, and which of them run and are edited.
          */
-        get: operations["revisions_api_v1_model_revisions_get"];
+        get: operations["revisions"];
         put?: never;
         /**
-         * Save
+         * Save Revision
          * @description Save the draft as a revision; refused where somebody has changed it since (`draft-moved`).
          */
-        post: operations["save_api_v1_model_revisions_post"];
+        post: operations["save_revision"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1403,10 +1407,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Restore
+         * Restore Revision
          * @description Let the draft become a revision again, which can be undone; the files that are others now.
          */
-        post: operations["restore_api_v1_model_revisions__id__restore_post"];
+        post: operations["restore_revision"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1424,7 +1428,7 @@ export interface paths {
          * Transfer
          * @description Whether the station could take the draft as it is now.
          */
-        get: operations["transfer_api_v1_model_transfer_get"];
+        get: operations["transfer"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1443,10 +1447,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Undo
+         * Undo Change
          * @description Take back your last change that is not taken back yet; the files that are others now.
          */
-        post: operations["undo_api_v1_model_undo_post"];
+        post: operations["undo_change"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1464,7 +1468,7 @@ export interface paths {
          * Usages
          * @description Where a part of the model, such as `variable:robot.pose`, is named, and what could not be without it.
          */
-        get: operations["usages_api_v1_model_usages_get"];
+        get: operations["usages"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1487,7 +1491,7 @@ export interface paths {
          * @description How the station would go on with the draft, from its present state or from a past record; nothing of it reaches
          *     the station.
          */
-        post: operations["what_if_api_v1_model_what_if_post"];
+        post: operations["what_if"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1505,7 +1509,7 @@ export interface paths {
          * Operations
          * @description Every operation, whether it is active, and how often it was completed.
          */
-        get: operations["operations_api_v1_operations_get"];
+        get: operations["operations"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1522,10 +1526,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Read
-         * @description When orders are expected to be worked, in the order in which they are to begin.
+         * Read Order Of Work
+         * @description When orders are expected to be worked, in the order in which they are to begin; only the first `limit`.
          */
-        get: operations["read_api_v1_order_of_work_get"];
+        get: operations["read_order_of_work"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1543,10 +1547,10 @@ export interface paths {
         };
         get?: never;
         /**
-         * Decide
+         * Decide Outputs
          * @description Decide on outputs that came back from the journal and would move devices; before production. It takes control.
          */
-        put: operations["decide_api_v1_outputs_put"];
+        put: operations["decide_outputs"];
         post?: never;
         delete?: never;
         options?: never;
@@ -1565,7 +1569,7 @@ export interface paths {
          * Overrides
          * @description What a person may set within which bounds, what is set, and when it expires.
          */
-        get: operations["overrides_api_v1_overrides_get"];
+        get: operations["overrides"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1588,13 +1592,13 @@ export interface paths {
          *
          *     It takes control. 422 `out-of-bounds` names the field and what is allowed; nothing has changed then.
          */
-        put: operations["set_override_api_v1_overrides__name__put"];
+        put: operations["set_override"];
         post?: never;
         /**
          * Clear Override
          * @description Take back what is set, if anything is. It takes control.
          */
-        delete: operations["clear_override_api_v1_overrides__name__delete"];
+        delete: operations["clear_override"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1611,13 +1615,13 @@ export interface paths {
          * Everybody
          * @description Everybody, by name; those who may no longer sign in too.
          */
-        get: operations["everybody_api_v1_people_get"];
+        get: operations["everybody"];
         put?: never;
         /**
-         * Create
+         * Create Person
          * @description Enter a person, who signs in with the temporary password and then has to choose another.
          */
-        post: operations["create_api_v1_people_post"];
+        post: operations["create_person"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1638,13 +1642,13 @@ export interface paths {
         options?: never;
         head?: never;
         /**
-         * Change
+         * Change Person
          * @description Change the role, or whether the person may sign in; either ends all of that person's sessions.
          *
          *     428 without `If-Match`; 412 `person-changed` when another has changed the person meanwhile; 409
          *     `last-administrator` when nobody would be left to administer, or `role-from-provider` where that is not for here.
          */
-        patch: operations["change_api_v1_people__person__patch"];
+        patch: operations["change_person"];
         trace?: never;
     };
     "/api/v1/people/{person}/password": {
@@ -1661,7 +1665,7 @@ export interface paths {
          *
          *     409 `no-password-here` where the person signs in with a provider.
          */
-        put: operations["give_password_api_v1_people__person__password_put"];
+        put: operations["give_password"];
         post?: never;
         delete?: never;
         options?: never;
@@ -1683,7 +1687,7 @@ export interface paths {
          * End Sessions
          * @description Sign the person out everywhere.
          */
-        delete: operations["end_sessions_api_v1_people__person__sessions_delete"];
+        delete: operations["end_sessions"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1700,7 +1704,7 @@ export interface paths {
          * Pipelines
          * @description The typed graph: topics and flows with their stages, the fields on each edge, and what they become.
          */
-        get: operations["pipelines_api_v1_pipelines_get"];
+        get: operations["pipelines"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1717,11 +1721,11 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Edges
+         * Pipeline Edges
          * @description What has passed each edge of the pipelines that are named, or of all: counts, rates, drops and the last record.
          *     Rates come with the second look.
          */
-        get: operations["edges_api_v1_pipelines_edges_get"];
+        get: operations["pipeline_edges"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1741,7 +1745,7 @@ export interface paths {
          * Plan
          * @description The live plan: what is done, what runs, what comes next and what that waits for.
          */
-        get: operations["plan_api_v1_plan_get"];
+        get: operations["plan"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1763,7 +1767,7 @@ export interface paths {
          * Start Production
          * @description Allow outputs to be published; nothing else implies it. It takes control.
          */
-        post: operations["start_production_api_v1_production_start_post"];
+        post: operations["start_production"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1781,7 +1785,7 @@ export interface paths {
          * Resources
          * @description Every resource, whether it is online, and which topics are awaited.
          */
-        get: operations["resources_api_v1_resources_get"];
+        get: operations["resources"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1803,7 +1807,7 @@ export interface paths {
          * Enter Restart
          * @description Enter restart mode: operations wait, what runs may finish, and nothing is started by it. It takes control.
          */
-        post: operations["enter_restart_api_v1_restart_enter_post"];
+        post: operations["enter_restart"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1823,7 +1827,7 @@ export interface paths {
          * Leave Restart
          * @description Leave restart mode for the paused one; to go on is another request. It takes control.
          */
-        post: operations["leave_restart_api_v1_restart_leave_post"];
+        post: operations["leave_restart"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1845,7 +1849,7 @@ export interface paths {
          *
          *     It is recorded before anything is changed, and again when its outcome is known.
          */
-        post: operations["attach_api_v1_ros_attachments_post"];
+        post: operations["attach"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1860,12 +1864,12 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Graph
+         * Ros Graph
          * @description All nodes, topics, services and actions that the station's transport knows, and how the station meets them.
          *
          *     503 until the station is prepared and has joined the network.
          */
-        get: operations["graph_api_v1_ros_graph_get"];
+        get: operations["ros_graph"];
         put?: never;
         post?: never;
         delete?: never;
@@ -1886,7 +1890,7 @@ export interface paths {
          * Set Service
          * @description Take a resource, an ability or an operation out of service, or put it back. It takes control.
          */
-        put: operations["set_service_api_v1_service__of___name__put"];
+        put: operations["set_service"];
         post?: never;
         delete?: never;
         options?: never;
@@ -1905,18 +1909,18 @@ export interface paths {
          * Session
          * @description Who is signed in here; nobody is an answer too.
          */
-        get: operations["session_api_v1_session_get"];
+        get: operations["session"];
         put?: never;
         /**
          * Sign In
          * @description Sign in; the session that the browser had ends. 401 whatever was wrong, 429 after too many attempts.
          */
-        post: operations["sign_in_api_v1_session_post"];
+        post: operations["sign_in"];
         /**
          * Sign Out
          * @description Sign out; control that the session has is given up.
          */
-        delete: operations["sign_out_api_v1_session_delete"];
+        delete: operations["sign_out"];
         options?: never;
         head?: never;
         patch?: never;
@@ -1935,7 +1939,7 @@ export interface paths {
          * Open Demonstration
          * @description Open a demonstration, at the machine itself and with emulated devices alone; else 403 `no-demonstration`.
          */
-        post: operations["open_demonstration_api_v1_session_demonstration_post"];
+        post: operations["open_demonstration"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1954,7 +1958,7 @@ export interface paths {
          * Change Password
          * @description Change one's own password; all sessions of the person end, and this browser gets a new one.
          */
-        put: operations["change_password_api_v1_session_password_put"];
+        put: operations["change_password"];
         post?: never;
         delete?: never;
         options?: never;
@@ -1972,12 +1976,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Begin
+         * Begin Sign In
          * @description Begin to sign in with the provider, which has ten minutes to answer.
          *
          *     404 `no-provider` where the station has none, 503 `provider-unavailable` while it is away.
          */
-        post: operations["begin_api_v1_session_provider_post"];
+        post: operations["begin_sign_in"];
         delete?: never;
         options?: never;
         head?: never;
@@ -1994,13 +1998,13 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Finish
+         * Finish Sign In
          * @description Finish what this browser has begun; the session that it had ends.
          *
          *     403 `sign-in-not-begun` where it has begun none, `provider-refused`, `provider-answer-unfit`, `no-role` or
          *     `disabled`; 503 `provider-unavailable`.
          */
-        post: operations["finish_api_v1_session_provider_answer_post"];
+        post: operations["finish_sign_in"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2018,7 +2022,7 @@ export interface paths {
          * State
          * @description Every variable; a null value is unknown, and `awaits` names the topic that would tell it.
          */
-        get: operations["state_api_v1_state_get"];
+        get: operations["state"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2038,7 +2042,7 @@ export interface paths {
          * Station
          * @description What is running, its mode, whether production has been started, and what people have asked of it.
          */
-        get: operations["station_api_v1_station_get"];
+        get: operations["station"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2059,7 +2063,7 @@ export interface paths {
          * Set Stepping
          * @description For commissioning: have every single start wait for a person's step, or none. It takes control.
          */
-        put: operations["set_stepping_api_v1_stepping_put"];
+        put: operations["set_stepping"];
         post?: never;
         delete?: never;
         options?: never;
@@ -2080,7 +2084,7 @@ export interface paths {
          * Take Step
          * @description Allow one start, as soon as there is one. It takes control.
          */
-        post: operations["take_step_api_v1_stepping_step_post"];
+        post: operations["take_step"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2098,7 +2102,7 @@ export interface paths {
          * Tasks
          * @description The tasks that wait for a person, by id.
          */
-        get: operations["tasks_api_v1_tasks_get"];
+        get: operations["tasks"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2117,10 +2121,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Acknowledge
+         * Acknowledge Task
          * @description Say that a task is done; refused when the task or its revision is gone, or a watch is not for its resource.
          */
-        post: operations["acknowledge_api_v1_tasks__task__acknowledgement_post"];
+        post: operations["acknowledge_task"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2143,7 +2147,7 @@ export interface paths {
          *     It raises an alarm until the task is over or the problem solved, and changes nothing else. Said again, it is told
          *     with the last reason.
          */
-        post: operations["report_problem_api_v1_tasks__task__problem_post"];
+        post: operations["report_problem"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2163,7 +2167,7 @@ export interface paths {
          * Solve Problem
          * @description Say that a task can be done after all; refused as an acknowledgement is.
          */
-        post: operations["solve_problem_api_v1_tasks__task__problem_solved_post"];
+        post: operations["solve_problem"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2181,7 +2185,7 @@ export interface paths {
          * Topics
          * @description Every ROS 2 topic of the station, and whether it speaks.
          */
-        get: operations["topics_api_v1_topics_get"];
+        get: operations["topics"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2205,7 +2209,7 @@ export interface paths {
          *
          *     409 `not-startable` says what its guards or the supervisor lack; `real-devices`: they have not been confirmed.
          */
-        post: operations["try_ability_api_v1_trials_post"];
+        post: operations["try_ability"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2223,7 +2227,7 @@ export interface paths {
          * All Watches
          * @description The watches there are or were, the offers that are open, and the resources that a watch can serve.
          */
-        get: operations["all_watches_api_v1_watches_get"];
+        get: operations["all_watches"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2242,10 +2246,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Offer
+         * Offer Pairing
          * @description Offer a pairing. Its code is answered this once and can be redeemed once, within two minutes.
          */
-        post: operations["offer_api_v1_watches_offers_post"];
+        post: operations["offer_pairing"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2266,7 +2270,7 @@ export interface paths {
          * Withdraw Offer
          * @description Take an offer back: its code is worth nothing any more.
          */
-        delete: operations["withdraw_offer_api_v1_watches_offers__offer__delete"];
+        delete: operations["withdraw_offer"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2282,12 +2286,12 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Pair
+         * Pair Watch
          * @description Redeem a code. The device gets its credential, which is worth nothing before an operator has confirmed it.
          *
          *     403 `wrong-code` whatever is wrong with it; 429 `too-many-attempts`.
          */
-        post: operations["pair_api_v1_watches_pairing_post"];
+        post: operations["pair_watch"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2302,10 +2306,10 @@ export interface paths {
             cookie?: never;
         };
         /**
-         * Itself
+         * This Watch
          * @description What the watch that asks is called, whose tasks it shows, and whether it was confirmed yet.
          */
-        get: operations["itself_api_v1_watches_self_get"];
+        get: operations["this_watch"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2325,10 +2329,10 @@ export interface paths {
         put?: never;
         post?: never;
         /**
-         * Revoke
+         * Revoke Watch
          * @description Refuse a device that waits, or revoke one that was confirmed; within two seconds it is told nothing any more.
          */
-        delete: operations["revoke_api_v1_watches__watch__delete"];
+        delete: operations["revoke_watch"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2344,10 +2348,10 @@ export interface paths {
         get?: never;
         put?: never;
         /**
-         * Confirm
+         * Confirm Watch
          * @description Confirm that the device that has redeemed the code is the one that was meant; within two minutes.
          */
-        post: operations["confirm_api_v1_watches__watch__confirmation_post"];
+        post: operations["confirm_watch"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2365,13 +2369,13 @@ export interface paths {
          * All Webhooks
          * @description All webhooks, without their secrets, and how it goes with each.
          */
-        get: operations["all_webhooks_api_v1_webhooks_get"];
+        get: operations["all_webhooks"];
         put?: never;
         /**
-         * Make
+         * Make Webhook
          * @description Make a webhook. Its secret is answered this once; deliveries are signed with it.
          */
-        post: operations["make_api_v1_webhooks_post"];
+        post: operations["make_webhook"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2389,10 +2393,10 @@ export interface paths {
         put?: never;
         post?: never;
         /**
-         * Remove
+         * Remove Webhook
          * @description Tell it of nothing more; what was not delivered yet is not sent any more.
          */
-        delete: operations["remove_api_v1_webhooks__webhook__delete"];
+        delete: operations["remove_webhook"];
         options?: never;
         head?: never;
         patch?: never;
@@ -2409,7 +2413,7 @@ export interface paths {
          * Dead Letters
          * @description The events that were given up after many attempts, and why.
          */
-        get: operations["dead_letters_api_v1_webhooks__webhook__dead_letters_get"];
+        get: operations["dead_letters"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2431,7 +2435,7 @@ export interface paths {
          * Send Again
          * @description Try events once more that were given up.
          */
-        post: operations["send_again_api_v1_webhooks__webhook__dead_letters_again_post"];
+        post: operations["send_again"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2451,7 +2455,7 @@ export interface paths {
          * Why Not Goal
          * @description What keeps a predicate from being true, and whether the station could reach it; 422 `bad-predicate`.
          */
-        post: operations["why_not_goal_api_v1_why_not_goal_post"];
+        post: operations["why_not_goal"];
         delete?: never;
         options?: never;
         head?: never;
@@ -2469,7 +2473,7 @@ export interface paths {
          * Why Not
          * @description What keeps an ability from starting, or an operation from being active or completed, and who could change it.
          */
-        get: operations["why_not_api_v1_why_not__of___name__get"];
+        get: operations["why_not"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2490,7 +2494,7 @@ export interface paths {
          * Set By Order
          * @description Let operations of work masters be active for job orders only, or whenever they can be. It takes control.
          */
-        put: operations["set_by_order_api_v1_work_by_order_put"];
+        put: operations["set_by_order"];
         post?: never;
         delete?: never;
         options?: never;
@@ -2509,7 +2513,7 @@ export interface paths {
          * Healthz
          * @description Alive: the server answers and its controller is heard. Else 503 `not-alive`, with `reasons` by name.
          */
-        get: operations["healthz_healthz_get"];
+        get: operations["healthz"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2529,7 +2533,7 @@ export interface paths {
          * Metrics
          * @description The station in figures. The controller is asked for its own at most once a second, and waits for nobody.
          */
-        get: operations["metrics_metrics_get"];
+        get: operations["metrics"];
         put?: never;
         post?: never;
         delete?: never;
@@ -2551,7 +2555,7 @@ export interface paths {
          *
          *     Else 503 `not-ready`, with `reasons` by the name of each check that fails.
          */
-        get: operations["readyz_readyz_get"];
+        get: operations["readyz"];
         put?: never;
         post?: never;
         delete?: never;
@@ -3252,11 +3256,6 @@ export interface components {
             signature: string;
         };
         /**
-         * ClientMessage
-         * @description Any message from a client.
-         */
-        ClientMessage: components["schemas"]["Resync"];
-        /**
          * CommandBody
          * @description What is asked of the order, and why.
          */
@@ -3713,7 +3712,7 @@ export interface components {
             stages: components["schemas"]["DraftStageView"][];
             /** Stages Path */
             stages_path: (string | number)[] | null;
-            standing: components["schemas"]["sequence_planner__workshop__pipelines__view__Standing"];
+            standing: components["schemas"]["Soundness"];
         };
         /**
          * DraftPipelinesView
@@ -3782,7 +3781,7 @@ export interface components {
             place: components["schemas"]["EntryView"] | null;
             /** Reads */
             reads: string[];
-            standing: components["schemas"]["sequence_planner__workshop__pipelines__view__Standing"];
+            standing: components["schemas"]["Soundness"];
             /** Summary */
             summary: string;
             written: components["schemas"]["JsonValue"];
@@ -3816,7 +3815,7 @@ export interface components {
          */
         DraftView: {
             /** Changes */
-            changes: components["schemas"]["sequence_planner__workshop__view__ChangeView"][];
+            changes: components["schemas"]["ChangeView"][];
             /** Files */
             files: {
                 [key: string]: components["schemas"]["FileMark"];
@@ -4918,13 +4917,13 @@ export interface components {
          */
         OfferView: {
             /** Assumed */
-            assumed: components["schemas"]["sequence_planner__control__offer_view__ChangeView"][];
+            assumed: components["schemas"]["ValueChangeView"][];
             /** At Rest */
             at_rest: boolean;
             /** Breaks */
             breaks: components["schemas"]["SpecificationView"][];
             /** Corrections */
-            corrections: components["schemas"]["sequence_planner__control__offer_view__ChangeView"][];
+            corrections: components["schemas"]["ValueChangeView"][];
             effort: components["schemas"]["EffortView"];
             /** Ends */
             ends: string | null;
@@ -4948,7 +4947,7 @@ export interface components {
             /** Operation */
             operation: string | null;
             /** Physical */
-            physical: components["schemas"]["sequence_planner__control__offer_view__ChangeView"][];
+            physical: components["schemas"]["ValueChangeView"][];
             /** Revision */
             revision: number;
             then: components["schemas"]["PlanPreviewView"] | null;
@@ -5134,7 +5133,7 @@ export interface components {
         OrderState: "NotAllowedToStart" | "AllowedToStart" | "Running" | "Interrupted" | "Ended" | "Aborted";
         /**
          * OrdersAnswer
-         * @description Orders as they were stored; `next` is the `cursor` with which later ones follow, null when there are none.
+         * @description Orders in a row; `next` is the `cursor` with which later ones follow, null when there are none.
          */
         OrdersAnswer: {
             /** Job Orders */
@@ -6342,6 +6341,18 @@ export interface components {
             revision: number;
         };
         /**
+         * Sort
+         * @description In which order orders are answered: as they were `stored`, or as they are to begin, by the order of `work`.
+         * @enum {string}
+         */
+        Sort: "stored" | "work";
+        /**
+         * Soundness
+         * @description Whether something of a pipeline is sound.
+         * @enum {string}
+         */
+        Soundness: "good" | "wrong" | "unknown";
+        /**
          * SourceOfferView
          * @description A topic or flow that a flow could have as a further source; `edits` make it so.
          */
@@ -6439,6 +6450,12 @@ export interface components {
             /** Trouble */
             trouble: string | null;
         };
+        /**
+         * Standing
+         * @description Where a thing comes from.
+         * @enum {string}
+         */
+        Standing: "declared" | "implied" | "missing";
         /**
          * StateAnswer
          * @description Every variable.
@@ -6788,6 +6805,11 @@ export interface components {
             description: string;
             /** Deviations */
             deviations: components["schemas"]["Deviation"][];
+            /**
+             * Deviations Left Out
+             * @default 0
+             */
+            deviations_left_out: number;
             /** Ended */
             ended: number;
             /** Job Order */
@@ -7001,7 +7023,7 @@ export interface components {
             resource: string | null;
             /** Section */
             section: string | null;
-            standing: components["schemas"]["sequence_planner__workshop__references__whole__Standing"];
+            standing: components["schemas"]["Standing"];
             /** Title */
             title: string | null;
             /** Within */
@@ -7308,6 +7330,18 @@ export interface components {
             unwritten: components["schemas"]["UsageView"][];
             /** Usages */
             usages: components["schemas"]["UsageView"][];
+        };
+        /**
+         * ValueChangeView
+         * @description A variable that gets another value; `now` is null where it is unknown.
+         */
+        ValueChangeView: {
+            /** Name */
+            name: string;
+            /** Now */
+            now: boolean | number | string | null;
+            /** Then */
+            then: boolean | number | string;
         };
         /**
          * ValueView
@@ -7703,48 +7737,6 @@ export interface components {
             /** Line */
             line: number;
         };
-        /**
-         * ChangeView
-         * @description A variable that gets another value; `now` is null where it is unknown.
-         */
-        sequence_planner__control__offer_view__ChangeView: {
-            /** Name */
-            name: string;
-            /** Now */
-            now: boolean | number | string | null;
-            /** Then */
-            then: boolean | number | string;
-        };
-        /**
-         * Standing
-         * @description Whether something of a pipeline is sound.
-         * @enum {string}
-         */
-        sequence_planner__workshop__pipelines__view__Standing: "good" | "wrong" | "unknown";
-        /**
-         * Standing
-         * @description Where a thing comes from.
-         * @enum {string}
-         */
-        sequence_planner__workshop__references__whole__Standing: "declared" | "implied" | "missing";
-        /**
-         * ChangeView
-         * @description A change of the draft; `of` is the number of the one that it undoes or does again. Time is in seconds since the
-         *     epoch.
-         */
-        sequence_planner__workshop__view__ChangeView: {
-            /** By */
-            by: string;
-            kind: components["schemas"]["ChangeKind"];
-            /** Number */
-            number: number;
-            /** Of */
-            of: number | null;
-            /** Time */
-            time: number;
-            /** Title */
-            title: string;
-        };
     };
     responses: {
         /** @description A problem */
@@ -7885,7 +7877,7 @@ export interface components {
 }
 export type $defs = Record<string, never>;
 export interface operations {
-    abilities_api_v1_abilities_get: {
+    abilities: {
         parameters: {
             query?: never;
             header?: never;
@@ -7917,7 +7909,7 @@ export interface operations {
             };
         };
     };
-    definition_api_v1_abilities__name__definition_get: {
+    ability_definition: {
         parameters: {
             query?: never;
             header?: never;
@@ -7954,7 +7946,7 @@ export interface operations {
             };
         };
     };
-    advice_api_v1_advice_get: {
+    advice: {
         parameters: {
             query?: never;
             header?: never;
@@ -7988,7 +7980,7 @@ export interface operations {
             };
         };
     };
-    alarms_api_v1_alarms_get: {
+    alarms: {
         parameters: {
             query?: never;
             header?: never;
@@ -8020,7 +8012,7 @@ export interface operations {
             };
         };
     };
-    acknowledge_api_v1_alarms_acknowledge_post: {
+    acknowledge_alarm: {
         parameters: {
             query?: never;
             header?: never;
@@ -8061,7 +8053,7 @@ export interface operations {
             };
         };
     };
-    restore_api_v1_alarms_restore_post: {
+    restore_alarm: {
         parameters: {
             query?: never;
             header?: never;
@@ -8102,7 +8094,7 @@ export interface operations {
             };
         };
     };
-    shelve_api_v1_alarms_shelve_post: {
+    shelve_alarm: {
         parameters: {
             query?: never;
             header?: never;
@@ -8143,7 +8135,7 @@ export interface operations {
             };
         };
     };
-    suppress_api_v1_alarms_suppress_post: {
+    suppress_alarm: {
         parameters: {
             query?: never;
             header?: never;
@@ -8184,7 +8176,7 @@ export interface operations {
             };
         };
     };
-    unshelve_api_v1_alarms_unshelve_post: {
+    unshelve_alarm: {
         parameters: {
             query?: never;
             header?: never;
@@ -8225,7 +8217,7 @@ export interface operations {
             };
         };
     };
-    analysis_api_v1_analysis_get: {
+    analysis: {
         parameters: {
             query?: never;
             header?: never;
@@ -8257,7 +8249,7 @@ export interface operations {
             };
         };
     };
-    ask_for_correction_api_v1_approvals_corrections_post: {
+    ask_for_correction: {
         parameters: {
             query?: never;
             header?: never;
@@ -8299,7 +8291,7 @@ export interface operations {
             };
         };
     };
-    ask_for_force_api_v1_approvals_forces_post: {
+    ask_for_force: {
         parameters: {
             query?: never;
             header?: never;
@@ -8341,7 +8333,7 @@ export interface operations {
             };
         };
     };
-    ask_for_outputs_api_v1_approvals_outputs_post: {
+    ask_for_outputs: {
         parameters: {
             query?: never;
             header?: never;
@@ -8383,7 +8375,7 @@ export interface operations {
             };
         };
     };
-    approve_api_v1_approvals__request__approve_post: {
+    approve_request: {
         parameters: {
             query?: never;
             header?: never;
@@ -8427,7 +8419,7 @@ export interface operations {
             };
         };
     };
-    decline_api_v1_approvals__request__decline_post: {
+    decline_request: {
         parameters: {
             query?: never;
             header?: never;
@@ -8471,7 +8463,7 @@ export interface operations {
             };
         };
     };
-    read_api_v1_audit_get: {
+    read_audit: {
         parameters: {
             query?: {
                 before?: number | null;
@@ -8511,7 +8503,7 @@ export interface operations {
             };
         };
     };
-    capabilities_api_v1_capabilities_get: {
+    capabilities: {
         parameters: {
             query?: never;
             header?: never;
@@ -8543,7 +8535,7 @@ export interface operations {
             };
         };
     };
-    take_api_v1_control_put: {
+    take_control: {
         parameters: {
             query?: never;
             header?: never;
@@ -8584,7 +8576,7 @@ export interface operations {
             };
         };
     };
-    release_api_v1_control_delete: {
+    release_control: {
         parameters: {
             query?: never;
             header?: never;
@@ -8616,7 +8608,7 @@ export interface operations {
             };
         };
     };
-    correct_api_v1_corrections_post: {
+    correct: {
         parameters: {
             query?: never;
             header?: never;
@@ -8658,7 +8650,7 @@ export interface operations {
             };
         };
     };
-    confirm_api_v1_corrections_confirm_post: {
+    confirm_correction: {
         parameters: {
             query?: never;
             header?: never;
@@ -8700,7 +8692,7 @@ export interface operations {
             };
         };
     };
-    preview_api_v1_corrections_preview_post: {
+    preview_correction: {
         parameters: {
             query?: never;
             header?: never;
@@ -8744,7 +8736,7 @@ export interface operations {
             };
         };
     };
-    undo_api_v1_corrections_undo_post: {
+    undo_correction: {
         parameters: {
             query?: never;
             header?: never;
@@ -8786,7 +8778,7 @@ export interface operations {
             };
         };
     };
-    take_api_v1_errands_post: {
+    take_errand: {
         parameters: {
             query?: never;
             header?: never;
@@ -8827,7 +8819,7 @@ export interface operations {
             };
         };
     };
-    preview_goal_api_v1_errands_goal_preview_post: {
+    preview_goal: {
         parameters: {
             query?: never;
             header?: never;
@@ -8870,7 +8862,7 @@ export interface operations {
             };
         };
     };
-    preview_reset_api_v1_errands_reset_preview_post: {
+    preview_reset: {
         parameters: {
             query?: never;
             header?: never;
@@ -8914,7 +8906,7 @@ export interface operations {
             };
         };
     };
-    stop_api_v1_errands_stop_post: {
+    stop_errand: {
         parameters: {
             query?: never;
             header?: never;
@@ -8955,7 +8947,7 @@ export interface operations {
             };
         };
     };
-    read_api_v1_events_get: {
+    read_events: {
         parameters: {
             query?: {
                 after?: number;
@@ -8978,6 +8970,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
@@ -8991,7 +8984,7 @@ export interface operations {
             };
         };
     };
-    first_administrator_api_v1_first_administrator_post: {
+    first_administrator: {
         parameters: {
             query?: never;
             header?: never;
@@ -9032,7 +9025,7 @@ export interface operations {
             };
         };
     };
-    force_api_v1_forces__name__put: {
+    force: {
         parameters: {
             query?: never;
             header?: never;
@@ -9076,7 +9069,7 @@ export interface operations {
             };
         };
     };
-    release_force_api_v1_forces__name__delete: {
+    release_force: {
         parameters: {
             query?: never;
             header?: never;
@@ -9112,7 +9105,7 @@ export interface operations {
             };
         };
     };
-    read_api_v1_history_get: {
+    read_history: {
         parameters: {
             query?: {
                 before?: number | null;
@@ -9153,7 +9146,7 @@ export interface operations {
             };
         };
     };
-    at_time_api_v1_history_at_get: {
+    find_time: {
         parameters: {
             query: {
                 time: number;
@@ -9189,7 +9182,7 @@ export interface operations {
             };
         };
     };
-    checkpoint_api_v1_history_checkpoint_get: {
+    checkpoint: {
         parameters: {
             query?: never;
             header?: never;
@@ -9222,7 +9215,7 @@ export interface operations {
             };
         };
     };
-    export_api_v1_history_export_get: {
+    export_history: {
         parameters: {
             query?: {
                 after?: number;
@@ -9258,7 +9251,7 @@ export interface operations {
             };
         };
     };
-    time_line_api_v1_history_line_get: {
+    time_line: {
         parameters: {
             query: {
                 since: number;
@@ -9295,7 +9288,7 @@ export interface operations {
             };
         };
     };
-    look_back_api_v1_history__number__get: {
+    look_back: {
         parameters: {
             query?: never;
             header?: never;
@@ -9333,7 +9326,7 @@ export interface operations {
             };
         };
     };
-    take_branch_api_v1_history__number__branch_post: {
+    take_branch: {
         parameters: {
             query?: never;
             header?: never;
@@ -9379,12 +9372,13 @@ export interface operations {
             };
         };
     };
-    read_api_v1_job_orders_get: {
+    read_job_orders: {
         parameters: {
             query?: {
                 state?: components["schemas"]["OrderState"] | null;
                 cursor?: number;
                 limit?: number;
+                sort?: components["schemas"]["Sort"];
             };
             header?: never;
             path?: never;
@@ -9416,7 +9410,7 @@ export interface operations {
             };
         };
     };
-    store_api_v1_job_orders_post: {
+    store_job_order: {
         parameters: {
             query?: never;
             header: {
@@ -9462,7 +9456,7 @@ export interface operations {
             };
         };
     };
-    one_api_v1_job_orders__id__get: {
+    read_job_order: {
         parameters: {
             query?: never;
             header?: never;
@@ -9500,7 +9494,7 @@ export interface operations {
             };
         };
     };
-    change_api_v1_job_orders__id__put: {
+    change_job_order: {
         parameters: {
             query?: never;
             header?: {
@@ -9551,7 +9545,7 @@ export interface operations {
             };
         };
     };
-    command_api_v1_job_orders__id__commands_post: {
+    command_job_order: {
         parameters: {
             query?: never;
             header?: never;
@@ -9598,7 +9592,7 @@ export interface operations {
             };
         };
     };
-    read_api_v1_job_responses_get: {
+    read_job_responses: {
         parameters: {
             query?: {
                 cursor?: number;
@@ -9635,7 +9629,7 @@ export interface operations {
             };
         };
     };
-    one_api_v1_job_responses__id__get: {
+    read_job_response: {
         parameters: {
             query?: never;
             header?: never;
@@ -9671,7 +9665,7 @@ export interface operations {
             };
         };
     };
-    all_keys_api_v1_keys_get: {
+    all_keys: {
         parameters: {
             query?: never;
             header?: never;
@@ -9703,7 +9697,7 @@ export interface operations {
             };
         };
     };
-    make_api_v1_keys_post: {
+    make_key: {
         parameters: {
             query?: never;
             header?: never;
@@ -9744,7 +9738,7 @@ export interface operations {
             };
         };
     };
-    revoke_api_v1_keys__key__delete: {
+    revoke_key: {
         parameters: {
             query?: never;
             header?: never;
@@ -9778,7 +9772,7 @@ export interface operations {
             };
         };
     };
-    rotate_api_v1_keys__key__rotation_post: {
+    rotate_key: {
         parameters: {
             query?: never;
             header?: never;
@@ -9823,7 +9817,7 @@ export interface operations {
             };
         };
     };
-    set_mode_api_v1_mode_put: {
+    set_mode: {
         parameters: {
             query?: never;
             header?: never;
@@ -9864,7 +9858,7 @@ export interface operations {
             };
         };
     };
-    draft_api_v1_model_get: {
+    draft: {
         parameters: {
             query?: never;
             header?: never;
@@ -9897,7 +9891,7 @@ export interface operations {
             };
         };
     };
-    change_api_v1_model_changes_post: {
+    change_draft: {
         parameters: {
             query?: never;
             header?: never;
@@ -9939,7 +9933,7 @@ export interface operations {
             };
         };
     };
-    check_api_v1_model_check_get: {
+    check_model: {
         parameters: {
             query?: never;
             header?: never;
@@ -9972,7 +9966,7 @@ export interface operations {
             };
         };
     };
-    run_api_v1_model_check_findings__finding__run_get: {
+    finding_run: {
         parameters: {
             query: {
                 ability: string;
@@ -10012,7 +10006,7 @@ export interface operations {
             };
         };
     };
-    comparison_api_v1_model_comparison_get: {
+    comparison: {
         parameters: {
             query: {
                 old: string;
@@ -10050,7 +10044,7 @@ export interface operations {
             };
         };
     };
-    deploy_api_v1_model_deployments_post: {
+    deploy: {
         parameters: {
             query?: never;
             header?: never;
@@ -10092,7 +10086,7 @@ export interface operations {
             };
         };
     };
-    files_api_v1_model_files_get: {
+    draft_files: {
         parameters: {
             query?: {
                 path?: string[] | null;
@@ -10128,7 +10122,7 @@ export interface operations {
             };
         };
     };
-    graph_api_v1_model_graph_get: {
+    model_graph: {
         parameters: {
             query?: never;
             header?: never;
@@ -10161,7 +10155,7 @@ export interface operations {
             };
         };
     };
-    check_api_v1_model_language_check_post: {
+    check_text: {
         parameters: {
             query?: never;
             header?: never;
@@ -10203,7 +10197,7 @@ export interface operations {
             };
         };
     };
-    completion_api_v1_model_language_completion_post: {
+    complete_text: {
         parameters: {
             query?: never;
             header?: never;
@@ -10245,7 +10239,7 @@ export interface operations {
             };
         };
     };
-    format_text_api_v1_model_language_format_post: {
+    format_text: {
         parameters: {
             query?: never;
             header?: never;
@@ -10287,7 +10281,7 @@ export interface operations {
             };
         };
     };
-    hover_api_v1_model_language_hover_post: {
+    explain_text: {
         parameters: {
             query?: never;
             header?: never;
@@ -10329,7 +10323,7 @@ export interface operations {
             };
         };
     };
-    pipelines_api_v1_model_pipelines_get: {
+    draft_pipelines: {
         parameters: {
             query?: never;
             header?: never;
@@ -10362,7 +10356,7 @@ export interface operations {
             };
         };
     };
-    examples_api_v1_model_pipelines_examples_post: {
+    run_examples: {
         parameters: {
             query?: never;
             header?: never;
@@ -10404,7 +10398,7 @@ export interface operations {
             };
         };
     };
-    fits_api_v1_model_pipelines_fits_post: {
+    find_fits: {
         parameters: {
             query?: never;
             header?: never;
@@ -10446,7 +10440,7 @@ export interface operations {
             };
         };
     };
-    preview_api_v1_model_pipelines_preview_post: {
+    preview_pipelines: {
         parameters: {
             query?: never;
             header?: never;
@@ -10488,7 +10482,7 @@ export interface operations {
             };
         };
     };
-    record_api_v1_model_pipelines_recordings_post: {
+    record_example: {
         parameters: {
             query?: never;
             header?: never;
@@ -10531,7 +10525,7 @@ export interface operations {
             };
         };
     };
-    trial_api_v1_model_pipelines_trials_post: {
+    try_pipeline: {
         parameters: {
             query?: never;
             header?: never;
@@ -10573,7 +10567,7 @@ export interface operations {
             };
         };
     };
-    redo_api_v1_model_redo_post: {
+    redo_change: {
         parameters: {
             query?: never;
             header?: never;
@@ -10615,7 +10609,7 @@ export interface operations {
             };
         };
     };
-    rename_api_v1_model_rename_post: {
+    rename_part: {
         parameters: {
             query?: never;
             header?: never;
@@ -10657,7 +10651,7 @@ export interface operations {
             };
         };
     };
-    revisions_api_v1_model_revisions_get: {
+    revisions: {
         parameters: {
             query?: never;
             header?: never;
@@ -10690,7 +10684,7 @@ export interface operations {
             };
         };
     };
-    save_api_v1_model_revisions_post: {
+    save_revision: {
         parameters: {
             query?: never;
             header?: never;
@@ -10732,7 +10726,7 @@ export interface operations {
             };
         };
     };
-    restore_api_v1_model_revisions__id__restore_post: {
+    restore_revision: {
         parameters: {
             query?: never;
             header?: never;
@@ -10777,7 +10771,7 @@ export interface operations {
             };
         };
     };
-    transfer_api_v1_model_transfer_get: {
+    transfer: {
         parameters: {
             query?: never;
             header?: never;
@@ -10810,7 +10804,7 @@ export interface operations {
             };
         };
     };
-    undo_api_v1_model_undo_post: {
+    undo_change: {
         parameters: {
             query?: never;
             header?: never;
@@ -10852,7 +10846,7 @@ export interface operations {
             };
         };
     };
-    usages_api_v1_model_usages_get: {
+    usages: {
         parameters: {
             query: {
                 part: string;
@@ -10888,7 +10882,7 @@ export interface operations {
             };
         };
     };
-    what_if_api_v1_model_what_if_post: {
+    what_if: {
         parameters: {
             query?: never;
             header?: never;
@@ -10931,7 +10925,7 @@ export interface operations {
             };
         };
     };
-    operations_api_v1_operations_get: {
+    operations: {
         parameters: {
             query?: never;
             header?: never;
@@ -10963,9 +10957,11 @@ export interface operations {
             };
         };
     };
-    read_api_v1_order_of_work_get: {
+    read_order_of_work: {
         parameters: {
-            query?: never;
+            query?: {
+                limit?: number;
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -10983,6 +10979,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10995,7 +10992,7 @@ export interface operations {
             };
         };
     };
-    decide_api_v1_outputs_put: {
+    decide_outputs: {
         parameters: {
             query?: never;
             header?: never;
@@ -11037,7 +11034,7 @@ export interface operations {
             };
         };
     };
-    overrides_api_v1_overrides_get: {
+    overrides: {
         parameters: {
             query?: never;
             header?: never;
@@ -11069,7 +11066,7 @@ export interface operations {
             };
         };
     };
-    set_override_api_v1_overrides__name__put: {
+    set_override: {
         parameters: {
             query?: never;
             header?: never;
@@ -11113,7 +11110,7 @@ export interface operations {
             };
         };
     };
-    clear_override_api_v1_overrides__name__delete: {
+    clear_override: {
         parameters: {
             query?: never;
             header?: never;
@@ -11149,7 +11146,7 @@ export interface operations {
             };
         };
     };
-    everybody_api_v1_people_get: {
+    everybody: {
         parameters: {
             query?: never;
             header?: never;
@@ -11181,7 +11178,7 @@ export interface operations {
             };
         };
     };
-    create_api_v1_people_post: {
+    create_person: {
         parameters: {
             query?: never;
             header?: never;
@@ -11225,7 +11222,7 @@ export interface operations {
             };
         };
     };
-    change_api_v1_people__person__patch: {
+    change_person: {
         parameters: {
             query?: never;
             header?: {
@@ -11276,7 +11273,7 @@ export interface operations {
             };
         };
     };
-    give_password_api_v1_people__person__password_put: {
+    give_password: {
         parameters: {
             query?: never;
             header?: never;
@@ -11319,7 +11316,7 @@ export interface operations {
             };
         };
     };
-    end_sessions_api_v1_people__person__sessions_delete: {
+    end_sessions: {
         parameters: {
             query?: never;
             header?: never;
@@ -11353,7 +11350,7 @@ export interface operations {
             };
         };
     };
-    pipelines_api_v1_pipelines_get: {
+    pipelines: {
         parameters: {
             query?: never;
             header?: never;
@@ -11386,7 +11383,7 @@ export interface operations {
             };
         };
     };
-    edges_api_v1_pipelines_edges_get: {
+    pipeline_edges: {
         parameters: {
             query?: {
                 pipeline?: string[] | null;
@@ -11422,7 +11419,7 @@ export interface operations {
             };
         };
     };
-    plan_api_v1_plan_get: {
+    plan: {
         parameters: {
             query?: never;
             header?: never;
@@ -11454,7 +11451,7 @@ export interface operations {
             };
         };
     };
-    start_production_api_v1_production_start_post: {
+    start_production: {
         parameters: {
             query?: never;
             header?: never;
@@ -11495,7 +11492,7 @@ export interface operations {
             };
         };
     };
-    resources_api_v1_resources_get: {
+    resources: {
         parameters: {
             query?: never;
             header?: never;
@@ -11527,7 +11524,7 @@ export interface operations {
             };
         };
     };
-    enter_restart_api_v1_restart_enter_post: {
+    enter_restart: {
         parameters: {
             query?: never;
             header?: never;
@@ -11568,7 +11565,7 @@ export interface operations {
             };
         };
     };
-    leave_restart_api_v1_restart_leave_post: {
+    leave_restart: {
         parameters: {
             query?: never;
             header?: never;
@@ -11609,7 +11606,7 @@ export interface operations {
             };
         };
     };
-    attach_api_v1_ros_attachments_post: {
+    attach: {
         parameters: {
             query?: never;
             header?: never;
@@ -11653,7 +11650,7 @@ export interface operations {
             };
         };
     };
-    graph_api_v1_ros_graph_get: {
+    ros_graph: {
         parameters: {
             query?: never;
             header?: never;
@@ -11685,7 +11682,7 @@ export interface operations {
             };
         };
     };
-    set_service_api_v1_service__of___name__put: {
+    set_service: {
         parameters: {
             query?: never;
             header?: never;
@@ -11730,7 +11727,7 @@ export interface operations {
             };
         };
     };
-    session_api_v1_session_get: {
+    session: {
         parameters: {
             query?: never;
             header?: never;
@@ -11760,7 +11757,7 @@ export interface operations {
             };
         };
     };
-    sign_in_api_v1_session_post: {
+    sign_in: {
         parameters: {
             query?: never;
             header?: never;
@@ -11802,7 +11799,7 @@ export interface operations {
             };
         };
     };
-    sign_out_api_v1_session_delete: {
+    sign_out: {
         parameters: {
             query?: never;
             header?: never;
@@ -11832,7 +11829,7 @@ export interface operations {
             };
         };
     };
-    open_demonstration_api_v1_session_demonstration_post: {
+    open_demonstration: {
         parameters: {
             query?: never;
             header?: never;
@@ -11872,7 +11869,7 @@ export interface operations {
             };
         };
     };
-    change_password_api_v1_session_password_put: {
+    change_password: {
         parameters: {
             query?: never;
             header?: never;
@@ -11914,7 +11911,7 @@ export interface operations {
             };
         };
     };
-    begin_api_v1_session_provider_post: {
+    begin_sign_in: {
         parameters: {
             query?: never;
             header?: never;
@@ -11956,7 +11953,7 @@ export interface operations {
             };
         };
     };
-    finish_api_v1_session_provider_answer_post: {
+    finish_sign_in: {
         parameters: {
             query?: never;
             header?: never;
@@ -11997,7 +11994,7 @@ export interface operations {
             };
         };
     };
-    state_api_v1_state_get: {
+    state: {
         parameters: {
             query?: never;
             header?: never;
@@ -12029,7 +12026,7 @@ export interface operations {
             };
         };
     };
-    station_api_v1_station_get: {
+    station: {
         parameters: {
             query?: never;
             header?: never;
@@ -12061,7 +12058,7 @@ export interface operations {
             };
         };
     };
-    set_stepping_api_v1_stepping_put: {
+    set_stepping: {
         parameters: {
             query?: never;
             header?: never;
@@ -12102,7 +12099,7 @@ export interface operations {
             };
         };
     };
-    take_step_api_v1_stepping_step_post: {
+    take_step: {
         parameters: {
             query?: never;
             header?: never;
@@ -12143,7 +12140,7 @@ export interface operations {
             };
         };
     };
-    tasks_api_v1_tasks_get: {
+    tasks: {
         parameters: {
             query?: never;
             header?: never;
@@ -12175,7 +12172,7 @@ export interface operations {
             };
         };
     };
-    acknowledge_api_v1_tasks__task__acknowledgement_post: {
+    acknowledge_task: {
         parameters: {
             query?: never;
             header?: never;
@@ -12218,7 +12215,7 @@ export interface operations {
             };
         };
     };
-    report_problem_api_v1_tasks__task__problem_post: {
+    report_problem: {
         parameters: {
             query?: never;
             header?: never;
@@ -12261,7 +12258,7 @@ export interface operations {
             };
         };
     };
-    solve_problem_api_v1_tasks__task__problem_solved_post: {
+    solve_problem: {
         parameters: {
             query?: never;
             header?: never;
@@ -12304,7 +12301,7 @@ export interface operations {
             };
         };
     };
-    topics_api_v1_topics_get: {
+    topics: {
         parameters: {
             query?: never;
             header?: never;
@@ -12336,7 +12333,7 @@ export interface operations {
             };
         };
     };
-    try_ability_api_v1_trials_post: {
+    try_ability: {
         parameters: {
             query?: never;
             header?: never;
@@ -12378,7 +12375,7 @@ export interface operations {
             };
         };
     };
-    all_watches_api_v1_watches_get: {
+    all_watches: {
         parameters: {
             query?: never;
             header?: never;
@@ -12410,7 +12407,7 @@ export interface operations {
             };
         };
     };
-    offer_api_v1_watches_offers_post: {
+    offer_pairing: {
         parameters: {
             query?: never;
             header?: never;
@@ -12452,7 +12449,7 @@ export interface operations {
             };
         };
     };
-    withdraw_offer_api_v1_watches_offers__offer__delete: {
+    withdraw_offer: {
         parameters: {
             query?: never;
             header?: never;
@@ -12486,7 +12483,7 @@ export interface operations {
             };
         };
     };
-    pair_api_v1_watches_pairing_post: {
+    pair_watch: {
         parameters: {
             query?: never;
             header?: never;
@@ -12527,7 +12524,7 @@ export interface operations {
             };
         };
     };
-    itself_api_v1_watches_self_get: {
+    this_watch: {
         parameters: {
             query?: never;
             header?: never;
@@ -12559,7 +12556,7 @@ export interface operations {
             };
         };
     };
-    revoke_api_v1_watches__watch__delete: {
+    revoke_watch: {
         parameters: {
             query?: never;
             header?: never;
@@ -12593,7 +12590,7 @@ export interface operations {
             };
         };
     };
-    confirm_api_v1_watches__watch__confirmation_post: {
+    confirm_watch: {
         parameters: {
             query?: never;
             header?: never;
@@ -12636,7 +12633,7 @@ export interface operations {
             };
         };
     };
-    all_webhooks_api_v1_webhooks_get: {
+    all_webhooks: {
         parameters: {
             query?: never;
             header?: never;
@@ -12668,7 +12665,7 @@ export interface operations {
             };
         };
     };
-    make_api_v1_webhooks_post: {
+    make_webhook: {
         parameters: {
             query?: never;
             header?: never;
@@ -12710,7 +12707,7 @@ export interface operations {
             };
         };
     };
-    remove_api_v1_webhooks__webhook__delete: {
+    remove_webhook: {
         parameters: {
             query?: never;
             header?: never;
@@ -12744,7 +12741,7 @@ export interface operations {
             };
         };
     };
-    dead_letters_api_v1_webhooks__webhook__dead_letters_get: {
+    dead_letters: {
         parameters: {
             query?: {
                 after?: number;
@@ -12783,7 +12780,7 @@ export interface operations {
             };
         };
     };
-    send_again_api_v1_webhooks__webhook__dead_letters_again_post: {
+    send_again: {
         parameters: {
             query?: never;
             header?: never;
@@ -12827,7 +12824,7 @@ export interface operations {
             };
         };
     };
-    why_not_goal_api_v1_why_not_goal_post: {
+    why_not_goal: {
         parameters: {
             query?: never;
             header?: never;
@@ -12869,7 +12866,7 @@ export interface operations {
             };
         };
     };
-    why_not_api_v1_why_not__of___name__get: {
+    why_not: {
         parameters: {
             query?: never;
             header?: never;
@@ -12907,7 +12904,7 @@ export interface operations {
             };
         };
     };
-    set_by_order_api_v1_work_by_order_put: {
+    set_by_order: {
         parameters: {
             query?: never;
             header?: never;
@@ -12948,7 +12945,7 @@ export interface operations {
             };
         };
     };
-    healthz_healthz_get: {
+    healthz: {
         parameters: {
             query?: never;
             header?: never;
@@ -12978,7 +12975,7 @@ export interface operations {
             };
         };
     };
-    metrics_metrics_get: {
+    metrics: {
         parameters: {
             query?: never;
             header?: never;
@@ -13011,7 +13008,7 @@ export interface operations {
             };
         };
     };
-    readyz_readyz_get: {
+    readyz: {
         parameters: {
             query?: never;
             header?: never;

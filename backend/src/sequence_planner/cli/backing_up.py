@@ -46,5 +46,7 @@ def restore(
     made = datetime.fromtimestamp(restored.time, UTC)
     typer.echo(
         f"restored as of {made:%Y-%m-%d %H:%M:%S} UTC, verified up to record {restored.run.number} of what happened "
-        f"and {restored.audit.number} of who did what; keys and watches that were revoked since work again: revoke them"
+        f"and {restored.audit.number} of who did what; people, keys and watches that were locked out since are not so: "
+        "lock them out again; job orders stand as they did then: abort those that were made since, before production "
+        "is started"
     )

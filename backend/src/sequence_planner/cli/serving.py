@@ -25,6 +25,7 @@ from sequence_planner.identity.openid.options import ProviderOptionError, Provid
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
 from sequence_planner.logs import LogFormat
 from sequence_planner.mes.webhooks.targets import TargetRefused, Targets, host_and_port
+from sequence_planner.secret_variables import CLIENT_SECRET
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
@@ -218,6 +219,19 @@ def server(
     from sequence_planner.web.server import serve  # noqa: PLC0415
 
     begin(launched, socket.parent)
+    provider = _provider(
+        ProviderOptions(
+            issuer=oidc_issuer,
+            client=oidc_client,
+            secret_file=oidc_client_secret_file,
+            title=oidc_title,
+            scopes=tuple(oidc_scope or ()),
+            groups=oidc_groups_claim,
+            roles=tuple(oidc_role or ()),
+            others=oidc_others,
+        )
+    )
+    os.environ.pop(CLIENT_SECRET, None)  # nothing that is started from here needs it
     serve(
         Settings(
             controller_socket=socket,
@@ -232,18 +246,7 @@ def server(
             model=model,
             transport=transport,
             demonstration=demonstration,
-            provider=_provider(
-                ProviderOptions(
-                    issuer=oidc_issuer,
-                    client=oidc_client,
-                    secret_file=oidc_client_secret_file,
-                    title=oidc_title,
-                    scopes=tuple(oidc_scope or ()),
-                    groups=oidc_groups_claim,
-                    roles=tuple(oidc_role or ()),
-                    others=oidc_others,
-                )
-            ),
+            provider=provider,
             webhooks=_targets(webhook_host, webhook_loopback),
         )
     )

@@ -6,11 +6,11 @@ from collections.abc import Collection, Iterable, Iterator
 
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.offer_view import (
-    ChangeView,
     EffortView,
     OfferView,
     PlanPreviewView,
     PreviewStepView,
+    ValueChangeView,
 )
 from sequence_planner.control.view import DiagnosisView
 from sequence_planner.control.way_back_view import SpecificationView
@@ -125,5 +125,5 @@ def _step(automaton: Automaton, tick: int, name: str) -> PreviewStepView:
     )
 
 
-def _changes(changes: Iterable[Change]) -> list[ChangeView]:
-    return [ChangeView(name=change.name, now=change.old, then=change.new) for change in changes]
+def _changes(changes: Iterable[Change]) -> list[ValueChangeView]:
+    return [ValueChangeView(name=change.name, now=change.old, then=change.new) for change in changes]

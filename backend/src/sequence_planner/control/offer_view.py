@@ -7,7 +7,7 @@ from sequence_planner.control.view_part import Value, View
 from sequence_planner.control.way_back_view import SpecificationView
 
 
-class ChangeView(View):
+class ValueChangeView(View):
     """A variable that gets another value; `now` is null where it is unknown."""
 
     name: str
@@ -63,11 +63,11 @@ class OfferView(View):
     revision: int
     kind: str  # replan, restart, reset, correction, physical, combined, way-back, goal
     title: str
-    physical: list[ChangeView]
+    physical: list[ValueChangeView]
     online: list[str]
     in_service: list[str]
-    assumed: list[ChangeView]
-    corrections: list[ChangeView]
+    assumed: list[ValueChangeView]
+    corrections: list[ValueChangeView]
     errand: PlanPreviewView | None
     ends: str | None  # null where nothing is carried out
     operation: str | None

@@ -104,6 +104,15 @@ def find_key(connection: Connection, secret: str, now: float) -> Key | None:
     return key.model_copy(update={"expires": min(key.expires, key.former_until)})
 
 
+def require_live(connection: Connection, by: Actor, now: float) -> None:
+    """Raises `IdentityRefused` (`signed-out`, 401) when `by` is a key that has ended since it was let in."""
+    if by.kind is not ActorKind.KEY:
+        return
+    row = _row(connection, by.id)
+    if row.revoked is not None or row.expires <= now:
+        raise IdentityRefused("signed-out", "The key works no more", "Ask an administrator for another key.", 401)
+
+
 def used(connection: Connection, id: str, now: float) -> None:
     """Note that a key is in use; written at most once a minute."""
     due = KEYS.c.last_used.is_(None) | (KEYS.c.last_used <= now - NOTED_EVERY)

@@ -15,6 +15,7 @@ from sqlalchemy import Connection, delete, insert, select, update
 
 from sequence_planner.actor import Actor, ActorKind
 from sequence_planner.identity.names import LONGEST_NAME, short
+from sequence_planner.identity.openid.flow import FLOW_LIFE
 from sequence_planner.identity.people import Person, add, find, replace_password
 from sequence_planner.identity.recording import record
 from sequence_planner.identity.refusal import IdentityRefused
@@ -22,7 +23,6 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.identity.tables import PEOPLE, PROVIDER_FLOWS, SESSIONS
 from sequence_planner.identity.tokens import hash_of
 
-FLOW_LIFE = 600.0  # seconds in which the provider has to answer
 NO_PASSWORD = ""  # a hash that no password has
 _MOST_ALIKE = 20  # numbers that are tried behind a name which somebody has already
 

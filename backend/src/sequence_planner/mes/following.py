@@ -66,7 +66,7 @@ class Following:
             records = run_journal.after(connection, self._ledger.number, _PAGE)
         if not records:
             return False, False
-        ledger, happened = self._ledger.model_copy(deep=True), list[tuple[News, JobResponse | None]]()
+        ledger, happened = self._ledger.copied(), list[tuple[News, JobResponse | None]]()
         for record in records:
             for news in ledger.take(read(record), masters):
                 happened.append((news, response(news.job, masters) if news.what == "over" else None))
@@ -74,7 +74,7 @@ class Following:
             with self._database.writing() as connection:
                 if _number(connection) != self._kept:  # where several stations share it another one has read on
                     self._ledger = None
-                    return False, True
+                    return True, True
                 for news, made in happened:
                     note(connection, news, made)
                 _keep(connection, ledger)
@@ -98,6 +98,7 @@ def response(job: JobMade, masters: WorkMastersView) -> JobResponse:
         operations=[job.operations.get(name, OperationMade(operation=name)) for name in names],
         abilities=list(job.abilities),
         deviations=list(job.deviations),
+        deviations_left_out=job.deviations_left_out,
         corrections=list(job.corrections),
     )
 

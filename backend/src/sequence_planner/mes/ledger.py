@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Final
 
 from pydantic import BaseModel, ConfigDict
 
@@ -17,6 +18,8 @@ from sequence_planner.control.view_part import Value
 from sequence_planner.control.work_master_view import WorkMastersView
 from sequence_planner.mes.responses import AbilityMade, CorrectionMade, Deviation, OperationMade
 from sequence_planner.mes.run_reading import ReadJob, ReadRecord
+
+MOST_DEVIATIONS: Final = 1000  # of a job that are told; an alarm that comes and goes over a weekend has more
 
 
 class JobMade(BaseModel):
@@ -31,6 +34,7 @@ class JobMade(BaseModel):
     operations: dict[str, OperationMade] = {}
     abilities: list[AbilityMade] = []
     deviations: list[Deviation] = []
+    deviations_left_out: int = 0
     corrections: list[CorrectionMade] = []
 
     @property
@@ -39,6 +43,11 @@ class JobMade(BaseModel):
         if self.state is not JobState.RUNNING:
             return []
         return [name for name, each in self.operations.items() if each.started is not None and each.ended is None]
+
+    def copied(self) -> JobMade:
+        """One that can go on without this one; what cannot change is common to both, as there can be a lot of it."""
+        lists = {"abilities": [*self.abilities], "deviations": [*self.deviations], "corrections": [*self.corrections]}
+        return self.model_copy(update={**lists, "operations": dict(self.operations)})
 
 
 @dataclass(frozen=True)
@@ -58,6 +67,10 @@ class Ledger(BaseModel):
     number: int = 0
     jobs: dict[str, JobMade] = {}
     values: dict[str, Value | None] = {}
+
+    def copied(self) -> Ledger:
+        """One that can go on without this one."""
+        return self.model_copy(update={"jobs": {id_: job.copied() for id_, job in self.jobs.items()}})
 
     def take(self, record: ReadRecord, masters: WorkMastersView) -> list[News]:
         """Take note of the next record. What it says of jobs that have become others comes back."""
@@ -80,7 +93,10 @@ class Ledger(BaseModel):
                 yield from self._job(job, record, masters)
         if record.whole:
             for gone in [id_ for id_ in self.jobs if id_ not in record.jobs]:
-                del self.jobs[gone]
+                made = self.jobs.pop(gone)
+                if not made.state.is_over:  # a station that remembers nothing has begun anew
+                    made.state, made.ended = JobState.ABORTED, record.time
+                    yield News("over", made, record.time)
 
     def _job(self, job: ReadJob, record: ReadRecord, masters: WorkMastersView) -> Iterator[News]:
         made = self.jobs.get(job.id)
@@ -161,10 +177,12 @@ class Ledger(BaseModel):
         for job in self.jobs.values():
             if job.state.is_over and (job.ended is None or job.ended < record.time):
                 continue
-            job.deviations += [
-                Deviation(time=record.time, record=record.number, kind=kind, content=dict(content))
-                for kind, content in record.deviations
-            ]
+            for kind, content in record.deviations:
+                if len(job.deviations) < MOST_DEVIATIONS:
+                    told = Deviation(time=record.time, record=record.number, kind=kind, content=dict(content))
+                    job.deviations.append(told)
+                else:
+                    job.deviations_left_out += 1
             if (what := record.correction) is not None:
                 job.corrections.append(
                     CorrectionMade(

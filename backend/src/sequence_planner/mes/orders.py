@@ -25,11 +25,16 @@ from sequence_planner.mes.tables import JOB_ORDERS
 MOST_OPEN: Final = 10_000  # orders that are not over
 
 _SHOWN = JOB_ORDERS.c.removed.is_(None)
-_OPEN = JOB_ORDERS.c.state.not_in([str(each) for each in OVER]) & _SHOWN
+# The states one by one, as the index has them: what is over is left out without being looked at.
+_OPEN = JOB_ORDERS.c.state.in_([str(each) for each in OrderState if each not in OVER]) & _SHOWN
 _NO_WISH: Final = {"wish": None, "wished_by": None, "wished_because": None}
 _GRANTED: Final = {
     Wish.PAUSE: (OrderState.INTERRUPTED, EventKind.INTERRUPTED),
     Wish.RESUME: (OrderState.RUNNING, EventKind.RUNNING),
+}
+_GIVEN_UP: Final[dict[Wish | None, tuple[OrderState, EventKind]]] = {
+    Wish.ABORT: (OrderState.ABORTED, EventKind.ABORTED),
+    Wish.STOP: (OrderState.ENDED, EventKind.ENDED),
 }
 _EVENTS: Final = {
     OrderCommand.START: EventKind.ALLOWED,
@@ -112,6 +117,7 @@ def command(
         return _set(connection, order, now, wished)
     if given in (OrderCommand.CANCEL, OrderCommand.CLEAR):
         changed = _set(connection, order, now, {"removed": now})
+        responses.remove(connection, id, now)
     else:
         state = AT_ONCE[given]
         changed = _set(connection, order, now, {"state": state.value, "ended": now if state in OVER else None})
@@ -131,17 +137,25 @@ def hand_over(connection: Connection, order: JobOrder, now: float) -> JobOrder |
 
 
 def take_back(connection: Connection, order: JobOrder, now: float) -> JobOrder | None:
-    """The station has refused an order: it waits again, or is aborted if that was wished for meanwhile."""
+    """The station has no job of an order: that waits again, or is over if that was wished for meanwhile."""
     current = find(connection, order.id)
-    if current is None or current.handed_over is None or current.state is not OrderState.ALLOWED_TO_START:
+    if current is None or not current.is_at_station:
         return None
-    if current.wish is None:
-        return _set(connection, current, now, {"handed_over": None})
-    over = {**_NO_WISH, "handed_over": None, "state": OrderState.ABORTED.value, "ended": now}
+    if (found := _GIVEN_UP.get(current.wish)) is None:
+        waits = current.state is OrderState.ALLOWED_TO_START
+        return _set(connection, current, now, {"handed_over": None}) if waits else None
+    state, kind = found
+    over = {**_NO_WISH, "handed_over": None, "state": state.value, "ended": now}
     changed = _set(connection, current, now, over)
-    response = responses.write(connection, responses.nothing_made(changed), now)
-    told: dict[str, JsonValue] = {"state": changed.state.value, "reason": current.wished_because, "response": response}
-    events.append(connection, EventKind.ABORTED, current.id, now, told)
+    made = responses.nothing_made(changed)
+    told: dict[str, JsonValue] = {
+        "state": state.value,
+        "reason": current.wished_because,
+        "response": responses.write(connection, made, now),
+    }
+    if current.began is not None:
+        told["outcome"] = made.outcome.value
+    events.append(connection, kind, current.id, now, told)
     return changed
 
 
@@ -187,9 +201,11 @@ def page(connection: Connection, state: OrderState | None, after: int, limit: in
     return [JobOrder.of(row) for row in connection.execute(chosen).mappings()]
 
 
-def open_orders(connection: Connection) -> list[JobOrder]:
-    """All orders that are not over, as they were stored."""
+def open_orders(connection: Connection, state: OrderState | None = None) -> list[JobOrder]:
+    """All orders that are not over, as they were stored; only those in a state, if one is named."""
     chosen = select(JOB_ORDERS).where(_OPEN).order_by(JOB_ORDERS.c.number)
+    if state is not None:
+        chosen = chosen.where(JOB_ORDERS.c.state == state.value)
     return [JobOrder.of(row) for row in connection.execute(chosen).mappings()]
 
 

@@ -10,12 +10,12 @@ from enum import StrEnum
 from typing import Final
 
 from pydantic import BaseModel, ConfigDict, JsonValue
-from sqlalchemy import Connection, Select, func, insert, select
+from sqlalchemy import Connection, Select, func, insert, select, update
 
 from sequence_planner.control.view_part import Value
 from sequence_planner.mes.order import JobOrder
 from sequence_planner.mes.states import OrderState
-from sequence_planner.mes.tables import JOB_ORDERS, JOB_RESPONSES
+from sequence_planner.mes.tables import JOB_RESPONSES
 
 _FORM: Final = ConfigDict(frozen=True, extra="forbid")
 
@@ -78,7 +78,10 @@ class CorrectionMade(BaseModel):
 
 
 class JobResponse(BaseModel):
-    """What was made of an order. Times are in seconds since the epoch."""
+    """What was made of an order. Times are in seconds since the epoch.
+
+    Of very many `deviations` the first are told, and how many were left out.
+    """
 
     model_config = _FORM
     job_order: str
@@ -90,6 +93,7 @@ class JobResponse(BaseModel):
     operations: list[OperationMade]
     abilities: list[AbilityMade]
     deviations: list[Deviation]
+    deviations_left_out: int = 0
     corrections: list[CorrectionMade]
 
 
@@ -100,15 +104,15 @@ class StoredResponse(JobResponse):
 
 
 def nothing_made(order: JobOrder) -> JobResponse:
-    """The response to an order that was aborted before the station worked on it."""
-    assert order.state is OrderState.ABORTED
+    """The response to an order that is over and of which the station has no job."""
+    assert order.is_over
     assert order.ended is not None
     return JobResponse(
         job_order=order.id,
         work_master=order.work_master,
         description=order.description,
-        outcome=JobOutcome.ABORTED,
-        began=None,
+        outcome=JobOutcome.ABORTED if order.state is OrderState.ABORTED else JobOutcome.STOPPED,
+        began=order.began,
         ended=order.ended,
         operations=[],
         abilities=[],
@@ -124,6 +128,11 @@ def write(connection: Connection, response: JobResponse, now: float) -> int:
     row = {"number": number, "job_order": response.job_order, "time": now, "content": response.model_dump_json()}
     connection.execute(insert(JOB_RESPONSES), row)
     return number
+
+
+def remove(connection: Connection, job_order: str, now: float) -> None:
+    """Show the response to an order no more, if there is one."""
+    connection.execute(update(JOB_RESPONSES).where(JOB_RESPONSES.c.job_order == job_order).values(removed=now))
 
 
 def get(connection: Connection, job_order: str) -> StoredResponse | None:
@@ -153,11 +162,7 @@ def _chosen(connection: Connection, after: int, limit: int, job_order: str | Non
 
 def _shown() -> Select[int, str]:
     """The responses of orders that are not cleared."""
-    return (
-        select(JOB_RESPONSES.c.number, JOB_RESPONSES.c.content)
-        .join(JOB_ORDERS, JOB_ORDERS.c.id == JOB_RESPONSES.c.job_order)
-        .where(JOB_ORDERS.c.removed.is_(None))
-    )
+    return select(JOB_RESPONSES.c.number, JOB_RESPONSES.c.content).where(JOB_RESPONSES.c.removed.is_(None))
 
 
 def _read(connection: Connection, chosen: Select[int, str]) -> list[StoredResponse]:

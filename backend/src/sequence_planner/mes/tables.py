@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from sqlalchemy import Column, Double, Index, Integer, String, Table, Text
+from sqlalchemy import Column, Double, Index, Integer, String, Table, Text, text
 
 from sequence_planner.journal.chain import NUMBER
 from sequence_planner.storage.metadata import METADATA
@@ -16,6 +16,13 @@ from sequence_planner.storage.metadata import METADATA
 LONGEST_ID: Final = 64  # characters
 ORDER: Final = String(LONGEST_ID)
 NAME: Final = String(200)
+SHOWN: Final = text("removed IS NULL")
+
+
+def _shown(name: str, *columns: str) -> Index:
+    """An index of what is shown alone: in the end nearly all orders are cleared."""
+    return Index(name, *columns, sqlite_where=SHOWN, postgresql_where=SHOWN)
+
 
 JOB_ORDERS: Final = Table(
     "job_orders",
@@ -39,7 +46,8 @@ JOB_ORDERS: Final = Table(
     Column("wished_by", Text, nullable=True),  # JSON of the actor
     Column("wished_because", Text, nullable=True),
     Column("removed", Double, nullable=True),  # when it was cancelled or cleared
-    Index("ix_job_orders_state_number", "state", "number"),
+    _shown("ix_job_orders_shown", "number"),
+    _shown("ix_job_orders_shown_state", "state", "number"),
 )
 
 JOB_EVENTS: Final = Table(
@@ -59,6 +67,8 @@ JOB_RESPONSES: Final = Table(
     Column("job_order", ORDER, nullable=False, unique=True),
     Column("time", Double, nullable=False),
     Column("content", Text, nullable=False),  # JSON
+    Column("removed", Double, nullable=True),  # as of its order
+    _shown("ix_job_responses_shown", "number"),
 )
 
 JOB_LEDGER: Final = Table(

@@ -37,7 +37,9 @@ from sequence_planner.ros.transport import (
     OnQualityEvent,
     QualityEvent,
     QualityOfService,
+    Sending,
     TransportError,
+    unhindered,
 )
 from sequence_planner.ros.type_description import TypeDescription
 
@@ -130,13 +132,15 @@ class CycloneTransport:
         """Hear of qualities of service; see `Transport.watch`."""
         self._watchers.append(on_event)
 
-    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+    async def call(
+        self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered
+    ) -> bytes:
         """Call a service; see `Transport.call`."""
         self._check_open()
         if not self._services.has_client(service, type_name):
             self._services.add_client(service, type_name)
             self._announce()
-        return await self._services.call(service, type_name, request, within)
+        return await self._services.call(service, type_name, request, within, sending)
 
     def serve(self, service: str, type_name: str, handler: Handler) -> None:
         """Answer requests; see `Transport.serve`."""

@@ -34,7 +34,16 @@ from sequence_planner.ros.delivery import Delivery
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.quality import QualityOfService
 from sequence_planner.ros.serving import Serving, check_hashes
-from sequence_planner.ros.transport import Handler, NoAnswerError, NoServerError, OnBatch, Sample, TransportError
+from sequence_planner.ros.transport import (
+    Handler,
+    NoAnswerError,
+    NoServerError,
+    OnBatch,
+    Sample,
+    Sending,
+    TransportError,
+    unhindered,
+)
 
 _log = structlog.get_logger(__name__)
 
@@ -99,13 +108,16 @@ class CycloneServices:
         end = self._end(service, type_name, names.client_user_data(identity), True, receive)
         self._clients[service, type_name] = _Client(end, number, waiting=waiting)
 
-    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+    async def call(
+        self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered
+    ) -> bytes:
         """Call a service that has a client; see `Transport.call`."""
         client, until = self._clients[service, type_name], time.monotonic() + within
         while not self._server_there(service, client.end):
             if time.monotonic() > until:
                 raise NoServerError(f"nobody serves {service} as {type_name}")
             await asyncio.sleep(_POLL)
+        sending()
         client.calls += 1
         call = client.calls
         answer = client.waiting[call] = self._loop.create_future()

@@ -20,6 +20,7 @@ _OF_NODES: Final = {
     "sequence_planner": CONTROLLER,
     "sequence_planner_check": CONTROLLER,
     "emulated_devices": EMULATED,
+    "emulated_devices_check": EMULATED,
 }
 
 

@@ -7,7 +7,16 @@ from dataclasses import dataclass
 
 from sequence_planner.ros.quality import QualityOfService
 from sequence_planner.ros.service_graph import ServiceEnd, TellsServices
-from sequence_planner.ros.transport import Endpoint, Handler, OnBatch, OnQualityEvent, Transport, TransportError
+from sequence_planner.ros.transport import (
+    Endpoint,
+    Handler,
+    OnBatch,
+    OnQualityEvent,
+    Sending,
+    Transport,
+    TransportError,
+    unhindered,
+)
 
 
 @dataclass(frozen=True)
@@ -39,10 +48,18 @@ class Gated:
         """See `Transport`."""
         self.transport.watch(on_event)
 
-    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+    async def call(
+        self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered
+    ) -> bytes:
         """See `Transport`."""
         self._require()
-        return await self.transport.call(service, type_name, request, within)
+
+        def may_send() -> None:
+            # Its server was waited for, and the lease may have ended meanwhile.
+            self._require()
+            sending()
+
+        return await self.transport.call(service, type_name, request, within, may_send)
 
     def serve(self, service: str, type_name: str, handler: Handler) -> None:
         """See `Transport`."""

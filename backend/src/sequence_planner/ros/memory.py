@@ -26,7 +26,9 @@ from sequence_planner.ros.transport import (
     OnQualityEvent,
     QualityOfService,
     Sample,
+    Sending,
     TransportError,
+    unhindered,
 )
 
 _SERVER_POLL = 0.01  # seconds between two looks for a server
@@ -93,7 +95,9 @@ class MemoryTransport:
         """Hear of qualities of service; see `Transport.watch`."""
         self._me.watchers.append(on_event)
 
-    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+    async def call(
+        self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered
+    ) -> bytes:
         """Call a service; see `Transport.call`."""
         self._check_open()
         self._me.registry.service(type_name)
@@ -103,6 +107,7 @@ class MemoryTransport:
             if time.monotonic() > until:
                 raise NoServerError(f"nobody serves {service} as {type_name}")
             await asyncio.sleep(_SERVER_POLL)
+        sending()
         answer: asyncio.Future[bytes] = self._me.loop.create_future()
 
         def respond(response: bytes) -> None:

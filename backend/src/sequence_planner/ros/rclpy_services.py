@@ -27,7 +27,7 @@ from sequence_planner.ros.rclpy_types import (
     service_class,
 )
 from sequence_planner.ros.serving import Serving
-from sequence_planner.ros.transport import Handler, NoAnswerError, NoServerError, TransportError
+from sequence_planner.ros.transport import Handler, NoAnswerError, NoServerError, Sending, TransportError, unhindered
 
 _POLL = 0.02  # seconds between two looks for a server
 
@@ -44,7 +44,9 @@ class RclpyServices:
         self._waiting: set[asyncio.Future[bytes]] = set()
         self._serving = Serving()
 
-    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+    async def call(
+        self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered
+    ) -> bytes:
         """Call a service; see `Transport.call`."""
         client, types = self._client(service, type_name)
         until = time.monotonic() + within
@@ -52,6 +54,7 @@ class RclpyServices:
             if time.monotonic() > until:
                 raise NoServerError(f"nobody serves {service} as {type_name}")
             await asyncio.sleep(_POLL)
+        sending()
         answer: asyncio.Future[bytes] = self._loop.create_future()
         self._waiting.add(answer)
 

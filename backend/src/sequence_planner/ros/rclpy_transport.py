@@ -42,7 +42,9 @@ from sequence_planner.ros.transport import (
     QualityEvent,
     QualityOfService,
     Sample,
+    Sending,
     TransportError,
+    unhindered,
 )
 
 _log = structlog.get_logger(__name__)
@@ -138,10 +140,12 @@ class RclpyTransport:
         """Hear of qualities of service; see `Transport.watch`."""
         self._watchers.append(on_event)
 
-    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+    async def call(
+        self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered
+    ) -> bytes:
         """Call a service; see `Transport.call`."""
         self._check_open()
-        return await self._services.call(service, type_name, request, within)
+        return await self._services.call(service, type_name, request, within, sending)
 
     def serve(self, service: str, type_name: str, handler: Handler) -> None:
         """Answer requests; see `Transport.serve`."""

@@ -29,7 +29,9 @@ from sequence_planner.ros.transport import (
     OnQualityEvent,
     QualityOfService,
     Sample,
+    Sending,
     TransportError,
+    unhindered,
 )
 
 _log = structlog.get_logger(__name__)
@@ -118,7 +120,9 @@ class RosbridgeTransport:
     def watch(self, on_event: OnQualityEvent) -> None:
         """Hear of nothing: rosbridge knows no qualities of service."""
 
-    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+    async def call(
+        self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered
+    ) -> bytes:
         """Refuse: only topics pass."""
         raise TransportError(f"{service}: services of ROS 1 are not reached; call it on ROS 2")
 

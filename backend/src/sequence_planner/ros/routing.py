@@ -15,8 +15,10 @@ from sequence_planner.ros.transport import (
     OnBatch,
     OnQualityEvent,
     QualityOfService,
+    Sending,
     Transport,
     TransportError,
+    unhindered,
 )
 
 #: The environment variable that holds the address of the rosbridge server, such as `ws://127.0.0.1:9090`.
@@ -89,9 +91,11 @@ class RoutedTransport:
         self._ros_2.watch(on_event)
         self._ros_1.watch(on_event)
 
-    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+    async def call(
+        self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered
+    ) -> bytes:
         """Call a service of ROS 2; see `Transport.call`."""
-        return await self._ros_2.call(service, type_name, request, within)
+        return await self._ros_2.call(service, type_name, request, within, sending)
 
     def serve(self, service: str, type_name: str, handler: Handler) -> None:
         """Answer requests from ROS 2; see `Transport.serve`."""

@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 
 from sequence_planner.emulation.live import BY_HAND_TOPIC, FAULTS_TOPIC, SAID_TOPIC
 from sequence_planner.pipelines.graph import StationPipelines
+from sequence_planner.ros.actions import ActionNames
 from sequence_planner.ros.enclaves import CONTROLLER, DEVICES, EMULATED, TOOLS
 
 VERSION: Final = "0.2.0"
@@ -66,12 +67,15 @@ def enclaves(pipelines: StationPipelines, ros_1: Collection[str] = ()) -> dict[s
     by_resource = rights_by_resource(pipelines, ros_1)
     controller = _together(by_resource.values())
     emulated = controller.mirrored()
+    # Before one of these begins it listens whether somebody else publishes what it is going to.
+    alone, alone_emulated = Rights(subscribe=set(controller.publish)), Rights(subscribe=set(emulated.publish))
+    alone_emulated.subscribe |= {ActionNames(name).status for name in emulated.execute}
     emulated.subscribe |= {BY_HAND_TOPIC, FAULTS_TOPIC}
     emulated.publish.add(SAID_TOPIC)
     tools = Rights(publish={BY_HAND_TOPIC, FAULTS_TOPIC}, subscribe={SAID_TOPIC}, reply={_SERVED_BY_TOOLS})
     return {
-        CONTROLLER: {"sequence_planner": controller, "sequence_planner_check": Rights()},
-        EMULATED: {"emulated_devices": emulated},
+        CONTROLLER: {"sequence_planner": controller, "sequence_planner_check": alone},
+        EMULATED: {"emulated_devices": emulated, "emulated_devices_check": alone_emulated},
         TOOLS: {"by_hand": tools},
         **{f"{DEVICES}/{name}": {name: rights.mirrored()} for name, rights in sorted(by_resource.items())},
     }

@@ -63,6 +63,13 @@ OnQualityEvent = Callable[[QualityEvent], None]
 #: What answers a request: from its CDR bytes to those of the response.
 Handler = Callable[[bytes], Awaitable[bytes]]
 
+#: What is called right before a request is sent, and may raise.
+Sending = Callable[[], None]
+
+
+def unhindered() -> None:
+    """Let a request go out whenever it can."""
+
 
 @dataclass(frozen=True)
 class Endpoint:
@@ -115,10 +122,13 @@ class Transport(Protocol):
     def watch(self, on_event: OnQualityEvent) -> None:
         """Have `on_event` called when a quality of service is not agreed on or not kept, from now on."""
 
-    async def call(self, service: str, type_name: str, request: bytes, within: float) -> bytes:
+    async def call(
+        self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered
+    ) -> bytes:
         """Return the CDR bytes that the server of `service` answers to `request`, within so many seconds.
 
-        A server is waited for as long as that. Raises NoServerError and NoAnswerError.
+        A server is waited for as long as that; `sending` is called at the last moment before the request goes out, and
+        what it raises is raised instead. Raises NoServerError and NoAnswerError.
         """
 
     def serve(self, service: str, type_name: str, handler: Handler) -> None:

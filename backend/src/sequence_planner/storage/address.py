@@ -41,7 +41,7 @@ class PostgresqlServer:
 def address(url: str) -> SqliteFile | PostgresqlServer:
     """What a URL names. Raises `StorageError`, which never quotes the URL, as it may hold a password."""
     try:
-        read = make_url(url)
+        read = read_url(url)
     except (ArgumentError, ValueError):
         raise StorageError(f"the database's URL cannot be read: write {_FORMS}") from None
     if read.drivername in _SQLITE:
@@ -52,6 +52,18 @@ def address(url: str) -> SqliteFile | PostgresqlServer:
             raise StorageError("the database's URL has a sign in its user or password to be escaped: write @ as %40")
         return PostgresqlServer(read.set(drivername="postgresql+psycopg"))
     raise StorageError(f"a database of the kind `{read.drivername}` is not supported: write {_FORMS}")
+
+
+def read_url(url: str) -> URL:
+    """A URL with its password where passwords are left out, though it may be written as `?password=` too.
+
+    Raises `ArgumentError` and `ValueError`.
+    """
+    read = make_url(url)
+    passwords = read.normalized_query.get("password")
+    if not passwords:
+        return read
+    return read.difference_update_query(["password"]).set(password=passwords[-1])
 
 
 def _sqlite_file(url: URL) -> SqliteFile:

@@ -11,6 +11,7 @@ from sequence_planner.storage.error import StorageError
 from sequence_planner.storage.trouble import PATIENCE
 
 READING: Final = {"isolation_level": "REPEATABLE READ", "postgresql_readonly": True}  # execution options
+LONGEST_STANDSTILL: Final = 2 * PATIENCE  # seconds for which a writer may say nothing in the middle of its turn
 _WRITER: Final = 0x53514E504C414E  # the number of the lock that the writer holds
 
 # Waiting for the lock must not fix what the writer sees, so the isolation is the one that looks anew per statement.
@@ -48,8 +49,12 @@ def require_unicode(connection: Connection, server: PostgresqlServer) -> None:
 
 
 def become_the_writer(connection: Connection) -> None:
-    """Wait until nobody else writes, till the end of this transaction, which is durable when it has ended."""
+    """Wait until nobody else writes, till the end of this transaction, which is durable when it has ended.
+
+    A writer that stands still, or whose machine has vanished, loses its turn: others write then, and not hours later.
+    """
     connection.execute(text(f"SET LOCAL lock_timeout = {int(PATIENCE * 1000)}"))
+    connection.execute(text(f"SET LOCAL idle_in_transaction_session_timeout = {int(LONGEST_STANDSTILL * 1000)}"))
     connection.execute(
         text("SELECT set_config('synchronous_commit', 'on', true) WHERE current_setting('synchronous_commit') = 'off'")
     )

@@ -33,7 +33,7 @@ class TrialBody(Body):
     dependencies=[allowed(Role.VIEWER, scope=Scope.READ)],
     responses=refused(404, 504),
 )
-async def definition(
+async def ability_definition(
     name: Annotated[str, Path(max_length=LONGEST_ABILITY)], client: Controller
 ) -> AbilityDefinitionView:
     """Its guards, actions and expected reactions as they are written, what of them holds now, and its last trial."""

@@ -58,7 +58,7 @@ class OverrideBody(Body):
 
 
 @router.post("/tasks/{task}/acknowledgement", status_code=204, dependencies=[DOER])
-async def acknowledge(
+async def acknowledge_task(
     task: Name, body: AcknowledgementBody, request: Request, client: Controller, actor: Actor
 ) -> None:
     """Say that a task is done; refused when the task or its revision is gone, or a watch is not for its resource."""

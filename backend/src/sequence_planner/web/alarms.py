@@ -59,30 +59,30 @@ class SuppressBody(Body):
 
 
 @router.post("/acknowledge", status_code=204, dependencies=[OPERATOR])
-async def acknowledge(body: AcknowledgeBody, client: Controller, actor: Actor) -> None:
+async def acknowledge_alarm(body: AcknowledgeBody, client: Controller, actor: Actor) -> None:
     """Say that one has seen an alarm; 409 `alarm-came-again` where it came anew after the one that was seen."""
     await client.send(AcknowledgeAlarm(actor=actor, alarm=body.alarm, since=body.since, reason=body.reason))
 
 
 @router.post("/shelve", status_code=204, dependencies=[OPERATOR])
-async def shelve(body: ShelveBody, client: Controller, actor: Actor) -> None:
+async def shelve_alarm(body: ShelveBody, client: Controller, actor: Actor) -> None:
     """Not be told of an alarm for some time, eight hours at most; 409 `alarm-too-urgent` for one of high priority."""
     await client.send(ShelveAlarm(actor=actor, alarm=body.alarm, seconds=body.seconds, reason=body.reason))
 
 
 @router.post("/unshelve", status_code=204, dependencies=[OPERATOR])
-async def unshelve(body: AlarmBody, client: Controller, actor: Actor) -> None:
+async def unshelve_alarm(body: AlarmBody, client: Controller, actor: Actor) -> None:
     """Be told of a shelved alarm again."""
     await client.send(UnshelveAlarm(actor=actor, alarm=body.alarm, reason=body.reason))
 
 
 @router.post("/suppress", status_code=204, dependencies=[ENGINEER])
-async def suppress(body: SuppressBody, client: Controller, actor: Actor) -> None:
+async def suppress_alarm(body: SuppressBody, client: Controller, actor: Actor) -> None:
     """Take an alarm out of service until it is restored; 409 `alarm-too-urgent` for one of high priority."""
     await client.send(SuppressAlarm(actor=actor, alarm=body.alarm, reason=body.reason))
 
 
 @router.post("/restore", status_code=204, dependencies=[ENGINEER])
-async def restore(body: AlarmBody, client: Controller, actor: Actor) -> None:
+async def restore_alarm(body: AlarmBody, client: Controller, actor: Actor) -> None:
     """Put an alarm back in service."""
     await client.send(RestoreAlarm(actor=actor, alarm=body.alarm, reason=body.reason))

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
+from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.middleware.gzip import GZipMiddleware
 
@@ -195,6 +196,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         docs_url=None,  # the usual viewers load their scripts from the network
         redoc_url=None,
         redirect_slashes=False,
+        generate_unique_id_function=_operation,
         responses=PROBLEM_RESPONSES,
         lifespan=lifespan,
     )
@@ -214,6 +216,11 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     app.router.default = PageFiles(settings.page)
     _surround(app, settings)
     return app
+
+
+def _operation(route: APIRoute) -> str:
+    """What generated clients call the operation of a route: the name of its function, which no other one has."""
+    return route.name
 
 
 def _surround(app: FastAPI, settings: Settings) -> None:

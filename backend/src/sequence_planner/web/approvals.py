@@ -98,7 +98,7 @@ async def ask_for_force(body: ForceRequestBody, client: Controller, actor: Actor
 
 
 @router.post("/{request}/approve", status_code=204, dependencies=[OPERATOR])
-async def approve(request: Named, body: ApprovalBody, client: Controller, actor: Actor) -> None:
+async def approve_request(request: Named, body: ApprovalBody, client: Controller, actor: Actor) -> None:
     """Approve what another person has asked for: it is done at once, in the names of both.
 
     403 `same-person` for who has asked, 409 `request-gone` when it was answered, overtaken or took too long.
@@ -108,6 +108,6 @@ async def approve(request: Named, body: ApprovalBody, client: Controller, actor:
 
 
 @router.post("/{request}/decline", status_code=204, dependencies=[OPERATOR])
-async def decline(request: Named, body: RefusalBody, client: Controller, actor: Actor) -> None:
+async def decline_request(request: Named, body: RefusalBody, client: Controller, actor: Actor) -> None:
     """Decline what another person has asked for, or withdraw what one has asked for oneself."""
     await client.send(DeclineRequest(actor=actor, request=request, act=body.act, reason=body.reason))

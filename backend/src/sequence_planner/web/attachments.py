@@ -24,6 +24,7 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.journal.audit import append
 from sequence_planner.journal.entry import Entry, Outcome
 from sequence_planner.model.paths import EditError
+from sequence_planner.secret_variables import environment
 from sequence_planner.web.access import allowed
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.model import refusal, workshop
@@ -137,7 +138,7 @@ def _arguments(model: Path, transport: str, body: AttachmentBody) -> list[str]:
 async def _run(arguments: list[str]) -> dict[str, Any]:
     """What the command says."""
     command = [sys.executable, "-m", "sequence_planner.cli", "attach", *arguments]
-    process = await asyncio.create_subprocess_exec(*command, stdout=PIPE, stderr=PIPE)
+    process = await asyncio.create_subprocess_exec(*command, stdout=PIPE, stderr=PIPE, env=environment())
     try:
         async with asyncio.timeout(LONGEST):
             out, err = await process.communicate()

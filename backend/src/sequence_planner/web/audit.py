@@ -27,7 +27,7 @@ class AuditAnswer(BaseModel):
 
 
 @router.get("")
-async def read(
+async def read_audit(
     identity: Identity,
     before: Annotated[int | None, Query(ge=1, le=LARGEST_NUMBER)] = None,
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,

@@ -60,12 +60,15 @@ async def capabilities(request: Request, identity: Identity, view: LiveView) -> 
         raise ProblemFound(503, "preparing", "The station is being prepared", detail)
     out = {(each.of, each.name) for each in view.out_of_service}
     human = {each.resource for each in view.abilities.values() if each.human}
+    able: dict[str, list[str]] = {name: [] for name in view.resources}
+    for name, ability in view.abilities.items():
+        able.setdefault(ability.resource, []).append(name)
     resources = {
         name: EquipmentAnswer(
             title=each.title,
             online=each.online,
             in_service=("resource", name) not in out,
-            abilities=[able for able, ability in view.abilities.items() if ability.resource == name],
+            abilities=able[name],
         )
         for name, each in view.resources.items()
     }

@@ -26,12 +26,12 @@ class ControlBody(Body):
 
 
 @router.put("", status_code=204, dependencies=[OPERATOR, JSON_ONLY])
-async def take(body: ControlBody, client: Controller, actor: Actor) -> None:
+async def take_control(body: ControlBody, client: Controller, actor: Actor) -> None:
     """Put this session in control; 409 `control-moved` when by now another is than the one that was seen."""
     await client.send(TakeControl(actor=actor, over=body.over, reason=body.reason))
 
 
 @router.delete("", status_code=204, dependencies=[OPERATOR])
-async def release(client: Controller, actor: Actor) -> None:
+async def release_control(client: Controller, actor: Actor) -> None:
     """Give control up."""
     await client.send(ReleaseControl(actor=actor))

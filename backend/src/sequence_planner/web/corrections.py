@@ -62,7 +62,7 @@ class DecisionBody(Body):
 
 
 @router.post("/corrections/preview")
-async def preview(body: ValuesBody, client: Controller) -> CorrectionPreview:
+async def preview_correction(body: ValuesBody, client: Controller) -> CorrectionPreview:
     """What a correction would bring about: what it would violate, which abilities could start, the plan that follows.
 
     Nothing is changed by asking, and it may be asked in every mode.
@@ -80,7 +80,7 @@ async def correct(body: CorrectionBody, client: Controller, actor: Actor) -> Non
 
 
 @router.post("/corrections/undo", status_code=204)
-async def undo(body: UndoBody, client: Controller, actor: Actor) -> None:
+async def undo_correction(body: UndoBody, client: Controller, actor: Actor) -> None:
     """Take the last correction back, as long as its variables have the values that it gave them. It takes control.
 
     409 `state-moved` when they have others, or when the last correction was made on another revision.
@@ -89,12 +89,12 @@ async def undo(body: UndoBody, client: Controller, actor: Actor) -> None:
 
 
 @router.post("/corrections/confirm", status_code=204)
-async def confirm(body: DecisionBody, client: Controller, actor: Actor) -> None:
+async def confirm_correction(body: DecisionBody, client: Controller, actor: Actor) -> None:
     """Say that these estimates are as the station believes; 409 `state-moved` when one is another by now."""
     await client.send(ConfirmEstimates(actor=actor, values=body.values, reason=body.reason))
 
 
 @router.put("/outputs", status_code=204)
-async def decide(body: DecisionBody, client: Controller, actor: Actor) -> None:
+async def decide_outputs(body: DecisionBody, client: Controller, actor: Actor) -> None:
     """Decide on outputs that came back from the journal and would move devices; before production. It takes control."""
     await client.send(DecideOutputs(actor=actor, values=body.values, reason=body.reason))

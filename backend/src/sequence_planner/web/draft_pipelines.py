@@ -49,7 +49,7 @@ class RecordBody(Body):
 
 
 @router.get("", dependencies=[VIEWER])
-async def pipelines(shop: TheWorkshop) -> DraftPipelinesView:
+async def draft_pipelines(shop: TheWorkshop) -> DraftPipelinesView:
     """The typed graph of the draft as far as it is sound, and what is wrong with it, where it is wrong."""
     answer = await _asked(shop, Everything())
     assert isinstance(answer, DraftPipelinesView)
@@ -57,7 +57,7 @@ async def pipelines(shop: TheWorkshop) -> DraftPipelinesView:
 
 
 @router.post("/fits", dependencies=[VIEWER, JSON_ONLY], responses=refused(422))
-async def fits(body: Fitting, shop: TheWorkshop) -> FitsView:
+async def find_fits(body: Fitting, shop: TheWorkshop) -> FitsView:
     """What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow."""
     answer = await _asked(shop, body)
     assert isinstance(answer, FitsView)
@@ -65,7 +65,7 @@ async def fits(body: Fitting, shop: TheWorkshop) -> FitsView:
 
 
 @router.post("/preview", dependencies=[VIEWER, JSON_ONLY])
-async def preview(body: Preview, shop: TheWorkshop) -> PreviewView:
+async def preview_pipelines(body: Preview, shop: TheWorkshop) -> PreviewView:
     """What edits would bring about; nothing is changed."""
     answer = await _asked(shop, body)
     assert isinstance(answer, PreviewView)
@@ -73,7 +73,7 @@ async def preview(body: Preview, shop: TheWorkshop) -> PreviewView:
 
 
 @router.post("/examples", dependencies=[VIEWER, JSON_ONLY], responses=refused(422))
-async def examples(body: Examples, shop: TheWorkshop) -> RunsView:
+async def run_examples(body: Examples, shop: TheWorkshop) -> RunsView:
     """How the examples of a pipeline end, with the record at every edge."""
     answer = await _asked(shop, body)
     assert isinstance(answer, RunsView)
@@ -81,7 +81,7 @@ async def examples(body: Examples, shop: TheWorkshop) -> RunsView:
 
 
 @router.post("/trials", dependencies=[VIEWER, JSON_ONLY], responses=refused(422))
-async def trial(body: Trial, shop: TheWorkshop) -> RunsView:
+async def try_pipeline(body: Trial, shop: TheWorkshop) -> RunsView:
     """What comes of a message, or of several in time that is told, with the record at every edge."""
     answer = await _asked(shop, body)
     assert isinstance(answer, RunsView)
@@ -91,7 +91,7 @@ async def trial(body: Trial, shop: TheWorkshop) -> RunsView:
 @router.post(
     "/recordings", dependencies=[allowed(Role.ENGINEER), JSON_ONLY], status_code=201, responses=refused(422, 504)
 )
-async def record(body: RecordBody, shop: TheWorkshop, client: Controller, actor: Actor) -> RecordedView:
+async def record_example(body: RecordBody, shop: TheWorkshop, client: Controller, actor: Actor) -> RecordedView:
     """Make an example of what the station has heard or said last; it is added to the draft."""
     heard = await client.ask(AskRecord(pipeline=body.pipeline))
     try:

@@ -78,7 +78,7 @@ async def preview_reset(body: ResetBody, client: Controller) -> OfferView:
 
 
 @router.post("", status_code=204, dependencies=[OPERATOR], responses=refused(422))
-async def take(body: ErrandBody, client: Controller, actor: Actor) -> None:
+async def take_errand(body: ErrandBody, client: Controller, actor: Actor) -> None:
     """Make the corrections of an offer and have its plan carried out, and nothing else. It takes control.
 
     409 `offer-gone` and `state-moved` ask to look again; `not-confirmed`: starts and corrections are not the offer's.
@@ -90,6 +90,6 @@ async def take(body: ErrandBody, client: Controller, actor: Actor) -> None:
 
 
 @router.post("/stop", status_code=204, dependencies=[OPERATOR])
-async def stop(body: StopBody, client: Controller, actor: Actor) -> None:
+async def stop_errand(body: StopBody, client: Controller, actor: Actor) -> None:
     """Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it."""
     await client.send(StopErrand(actor=actor, reason=body.reason))

@@ -6,12 +6,14 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query
 from pydantic import BaseModel
+from sqlalchemy import Connection
 
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.mes import events
 from sequence_planner.mes.events import JobEvent
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
+from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import Identity
 
 router = APIRouter(prefix="/events", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)])
@@ -24,12 +26,26 @@ class EventsAnswer(BaseModel):
     next: int
 
 
-@router.get("")
-async def read(
+@router.get("", responses=refused(409))
+async def read_events(
     identity: Identity,
     after: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,
 ) -> EventsAnswer:
-    """The events with higher numbers than `after`. They are numbered without gaps and never change."""
-    found = await identity.read(lambda connection: events.after(connection, after, limit))
-    return EventsAnswer(events=found, next=found[-1].number if found else after)
+    """The events with higher numbers than `after`. They are numbered without gaps and never change.
+
+    409 `event-not-known` where there is no event `after` yet: a station that was restored from a backup numbers anew.
+    """
+
+    def chosen(connection: Connection) -> tuple[list[JobEvent], int]:
+        found = events.after(connection, after, limit)
+        return found, found[-1].number if found else events.last(connection)
+
+    found, last = await identity.read(chosen)
+    if last < after:
+        detail = (
+            f"There is no event {after}, the newest is {last}: the station was restored from a backup. Read the orders "
+            f"anew, and the events after {last}."
+        )
+        raise ProblemFound(409, "event-not-known", "There is no such event yet", detail)
+    return EventsAnswer(events=found, next=last)

@@ -87,7 +87,7 @@ class BranchBody(Body):
 
 
 @router.get("", dependencies=[OPERATOR])
-async def read(
+async def read_history(
     identity: Identity,
     before: Annotated[int | None, Query(ge=1, le=LARGEST_NUMBER)] = None,
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,
@@ -122,7 +122,7 @@ async def time_line(identity: Identity, since: Seconds, until: Seconds) -> LineV
 
 
 @router.get("/at", dependencies=[OPERATOR], responses=refused(404))
-async def at_time(identity: Identity, time: Seconds) -> PlaceView:
+async def find_time(identity: Identity, time: Seconds) -> PlaceView:
     """The last record up to `time` (seconds since the epoch), or the first one where none is so old."""
     found = await identity.read(partial(place_at, time=time))
     if found is None:
@@ -136,7 +136,7 @@ async def at_time(identity: Identity, time: Seconds) -> PlaceView:
     response_class=StreamingResponse,
     responses={200: {"content": {LINES: {"schema": {"type": "string"}}}}},
 )
-async def export(
+async def export_history(
     identity: Identity,
     after: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
     to: Annotated[int, Query(ge=1, le=LARGEST_NUMBER)] = LARGEST_NUMBER,

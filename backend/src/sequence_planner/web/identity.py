@@ -88,12 +88,13 @@ class IdentityOffice:
         """What `work` gives; what it wrote is durable then, or not written at all. Raises as `read` does.
 
         Nothing is written, and `IdentityRefused` (`signed-out`, 401) raised, when the session in which `by` acts has
-        ended since the request was let in: it may have waited for a hash, or behind others.
+        ended since the request was let in, or the key was revoked: it may have waited for a hash, or behind others.
         """
 
         def checked(connection: Connection) -> T:
             if by is not None:
                 sessions.require_live(connection, by, self.now())
+                keys.require_live(connection, by, self.now())
             return work(connection)
 
         done = await self._write(checked)

@@ -6,6 +6,7 @@ that was seen (`If-Match`), a command needs none: what the state of the order do
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Header, Path, Query, Request, Response
@@ -16,11 +17,12 @@ from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.mes import answers, orders
 from sequence_planner.mes.answers import Kept
 from sequence_planner.mes.order import JobOrder, OrderContent
-from sequence_planner.mes.states import OrderCommand, OrderState, Wish
+from sequence_planner.mes.states import OrderCommand, OrderState
 from sequence_planner.mes.tables import LONGEST_ID
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.order_answer import OrderAnswer, answered
 from sequence_planner.web.order_desk import OrderDesk
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
@@ -48,33 +50,15 @@ bodiless = APIRouter(prefix="/job-orders", tags=["job orders"], dependencies=[RE
 router = APIRouter(prefix="/job-orders", tags=["job orders"], dependencies=[WRITE, JSON_ONLY])
 
 
-class OrderAnswer(BaseModel):
-    """An order. Times are in seconds since the epoch; `stored_by` is the name of a person or a key.
+class Sort(StrEnum):
+    """In which order orders are answered: as they were `stored`, or as they are to begin, by the order of `work`."""
 
-    `commanded` is what the station is still to do with it, `allowed` the commands that the order allows now. Since
-    `began` the station works on it. `waits_for` says in words why nothing is done for it now.
-    """
-
-    id: str
-    work_master: str
-    description: str
-    priority: int
-    due: float | None
-    earliest: float | None
-    state: OrderState
-    commanded: OrderCommand | None
-    allowed: list[OrderCommand]
-    revision: int
-    stored: float
-    stored_by: str
-    changed: float
-    began: float | None
-    ended: float | None
-    waits_for: list[str]
+    STORED = "stored"
+    WORK = "work"
 
 
 class OrdersAnswer(BaseModel):
-    """Orders as they were stored; `next` is the `cursor` with which later ones follow, null when there are none."""
+    """Orders in a row; `next` is the `cursor` with which later ones follow, null when there are none."""
 
     job_orders: list[OrderAnswer]
     next: int | None
@@ -115,32 +99,40 @@ class CommandBody(Body):
 
 
 @bodiless.get("")
-async def read(
+async def read_job_orders(
     request: Request,
     identity: Identity,
     state: Annotated[OrderState | None, Query()] = None,
     cursor: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,
+    sort: Annotated[Sort, Query()] = Sort.STORED,
 ) -> OrdersAnswer:
-    """The orders as they were stored, only those in a state where one is named. Those that come meanwhile are last."""
-    found = await identity.read(lambda connection: orders.page(connection, state, cursor, limit + 1))
-    shown = found[:limit]
-    more = len(found) > limit
-    return OrdersAnswer(
-        job_orders=[_answered(each, desk_of(request)) for each in shown], next=shown[-1].number if more else None
-    )
+    """The orders as they were stored, only those in a state where one is named. Those that come meanwhile are last.
+
+    With `sort=work` those that are not over, as they are to begin; pages may then overlap while that changes.
+    """
+    desk = desk_of(request)
+    if sort is Sort.WORK:
+        ordered = desk.sequence(await identity.read(lambda connection: orders.open_orders(connection, state)))
+        shown, rest = ordered[cursor : cursor + limit], len(ordered) - cursor - limit
+        after = cursor + limit if rest > 0 else None
+    else:
+        found = await identity.read(lambda connection: orders.page(connection, state, cursor, limit + 1))
+        shown = found[:limit]
+        after = shown[-1].number if len(found) > limit else None
+    return OrdersAnswer(job_orders=[answered(each, desk) for each in shown], next=after)
 
 
 @bodiless.get("/{id}", responses={200: TAGGED, **refused(404)})
-async def one(id: OrderId, request: Request, identity: Identity, response: Response) -> OrderAnswer:
+async def read_job_order(id: OrderId, request: Request, identity: Identity, response: Response) -> OrderAnswer:
     """An order, and why nothing is done for it now."""
     order = await identity.read(lambda connection: orders.get(connection, id))
     response.headers["ETag"] = _tag(order)
-    return _answered(order, desk_of(request))
+    return answered(order, desk_of(request))
 
 
 @router.post("", status_code=201, response_model=OrderAnswer, responses={201: TAGGED, **refused(409)})
-async def store(
+async def store_job_order(
     body: NewOrderBody, request: Request, identity: Identity, actor: Actor, idempotency_key: NewKey
 ) -> Response:
     """Store an order; with `start` it may begin at once.
@@ -158,7 +150,7 @@ async def store(
         if unknown is not None:
             raise unknown
         order = orders.store(connection, body.content(), actor, now, id=body.id, start=body.start)
-        kept = Kept(201, _tag(order), _answered(order, None).model_dump_json())
+        kept = Kept(201, _tag(order), answered(order, None).model_dump_json())
         answers.keep(connection, actor.id, idempotency_key, digest, kept, now)
         return kept
 
@@ -168,7 +160,7 @@ async def store(
 
 
 @router.put("/{id}", responses={200: TAGGED, **refused(404, 409, 412, 428)})
-async def change(
+async def change_job_order(
     id: OrderId,
     body: OrderBody,
     request: Request,
@@ -195,11 +187,11 @@ async def change(
     order = await identity.write(write, by=actor)
     desk.poke()
     response.headers["ETag"] = _tag(order)
-    return _answered(order, desk)
+    return answered(order, desk)
 
 
 @router.post("/{id}/commands", responses={200: TAGGED, **refused(404, 409)})
-async def command(
+async def command_job_order(
     id: OrderId, body: CommandBody, request: Request, identity: Identity, actor: Actor, response: Response
 ) -> OrderAnswer:
     """Start, RevokeStart, Pause, Resume, Stop, Abort, Cancel or Clear an order.
@@ -215,7 +207,7 @@ async def command(
     )
     desk.poke()
     response.headers["ETag"] = _tag(order)
-    return _answered(order, desk)
+    return answered(order, desk)
 
 
 def desk_of(request: Request) -> OrderDesk:
@@ -226,23 +218,3 @@ def desk_of(request: Request) -> OrderDesk:
 
 def _tag(order: JobOrder) -> str:
     return f'"{order.revision}"'
-
-
-_COMMANDS = {
-    Wish.PAUSE: OrderCommand.PAUSE,
-    Wish.RESUME: OrderCommand.RESUME,
-    Wish.STOP: OrderCommand.STOP,
-    Wish.ABORT: OrderCommand.ABORT,
-}
-
-
-def _answered(order: JobOrder, desk: OrderDesk | None) -> OrderAnswer:
-    return OrderAnswer(
-        **order.model_dump(include=_KEPT),
-        commanded=None if order.wish is None else _COMMANDS[order.wish],
-        allowed=[] if order.removed is not None else list(order.allowed),
-        waits_for=[] if desk is None else desk.waits_for(order),
-    )
-
-
-_KEPT = OrderAnswer.model_fields.keys() & JobOrder.model_fields.keys()

@@ -32,7 +32,7 @@ class ResponsesAnswer(BaseModel):
 
 
 @router.get("")
-async def read(
+async def read_job_responses(
     identity: Identity,
     cursor: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
     limit: Annotated[int, Query(ge=1, le=MOST_RESPONSES)] = 10,
@@ -53,7 +53,7 @@ async def read(
 
 
 @router.get("/{id}", responses=refused(404))
-async def one(id: OrderId, identity: Identity) -> StoredResponse:
+async def read_job_response(id: OrderId, identity: Identity) -> StoredResponse:
     """What was made of an order; 404 `no-job-response` until it is over."""
     found = await identity.read(lambda connection: responses.get(connection, id))
     if found is None:

@@ -72,7 +72,7 @@ async def all_keys(identity: Identity) -> KeysAnswer:
 
 
 @router.post("", status_code=201)
-async def make(body: KeyBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
+async def make_key(body: KeyBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
     """Make a key. Its secret is answered this once: only a hash of it is kept."""
     now = identity.now()
     secret, key = await identity.write(
@@ -83,7 +83,7 @@ async def make(body: KeyBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
 
 
 @router.post("/{key}/rotation", status_code=201, responses=refused(404, 409))
-async def rotate(key: Identifier, body: RotationBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
+async def rotate_key(key: Identifier, body: RotationBody, identity: Identity, actor: Actor) -> NewKeyAnswer:
     """Give a key another secret, answered this once. The present one works for some hours more; one before it ends.
 
     409 `key-over` when the key works no more.
@@ -96,7 +96,7 @@ async def rotate(key: Identifier, body: RotationBody, identity: Identity, actor:
 
 
 @bodiless.delete("/{key}", status_code=204, responses=refused(404))
-async def revoke(key: Identifier, identity: Identity, actor: Actor) -> None:
+async def revoke_key(key: Identifier, identity: Identity, actor: Actor) -> None:
     """Revoke a key: whoever bears it is refused from now on."""
     now = identity.now()
     await identity.write(lambda connection: keys.revoke_key(connection, key, actor, now), by=actor)

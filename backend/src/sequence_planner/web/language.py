@@ -31,7 +31,7 @@ router = APIRouter(
 
 
 @router.post("/check")
-async def check(body: TextAt, shop: TheWorkshop) -> ProblemsView:
+async def check_text(body: TextAt, shop: TheWorkshop) -> ProblemsView:
     """What is wrong with a text, as the check of the whole draft would find it there."""
     answer = await _asked(shop, LanguageQuestionKind.CHECK, body)
     assert isinstance(answer, ProblemsView)
@@ -39,7 +39,7 @@ async def check(body: TextAt, shop: TheWorkshop) -> ProblemsView:
 
 
 @router.post("/completion")
-async def completion(body: PlaceInText, shop: TheWorkshop) -> CompletionView:
+async def complete_text(body: PlaceInText, shop: TheWorkshop) -> CompletionView:
     """What can stand at a place in a text."""
     answer = await _asked(shop, LanguageQuestionKind.COMPLETION, body)
     assert isinstance(answer, CompletionView)
@@ -47,7 +47,7 @@ async def completion(body: PlaceInText, shop: TheWorkshop) -> CompletionView:
 
 
 @router.post("/hover")
-async def hover(body: PlaceInText, shop: TheWorkshop) -> HoverAnswer:
+async def explain_text(body: PlaceInText, shop: TheWorkshop) -> HoverAnswer:
     """What the name at a place in a text is."""
     answer = await _asked(shop, LanguageQuestionKind.HOVER, body)
     assert isinstance(answer, HoverAnswer)

@@ -81,19 +81,21 @@ async def draft(shop: TheWorkshop, actor: Actor) -> DraftView:
 
 
 @router.get("/files", dependencies=[VIEWER])
-async def files(shop: TheWorkshop, path: Annotated[list[FilePath] | None, Query(max_length=500)] = None) -> FilesView:
+async def draft_files(
+    shop: TheWorkshop, path: Annotated[list[FilePath] | None, Query(max_length=500)] = None
+) -> FilesView:
     """Files of the draft with what they hold; all of them where no `path` is named."""
     return await shop.files(path)
 
 
 @router.get("/check", dependencies=[VIEWER])
-async def check(shop: TheWorkshop) -> CheckView:
+async def check_model(shop: TheWorkshop) -> CheckView:
     """What is found in the draft, as far as that has come."""
     return await shop.checked()
 
 
 @router.get("/check/findings/{finding}/run", dependencies=[VIEWER], responses=refused(404))
-async def run(
+async def finding_run(
     shop: TheWorkshop, finding: Finding, ability: AbilityName, number: Annotated[int, Query(ge=0, le=2**53 - 1)]
 ) -> list[AutomatonView]:
     """How an ability goes through the run that shows a finding: its automaton in the initial state and after each step.
@@ -109,7 +111,7 @@ async def run(
 
 
 @router.post("/changes", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def change(body: ChangeBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+async def change_draft(body: ChangeBody, shop: TheWorkshop, actor: Actor) -> FilesView:
     """Carry edits out; the files that are others now.
 
     An edit of a part that somebody else has changed meanwhile is refused with `part-changed`, and nothing is done.
@@ -121,7 +123,7 @@ async def change(body: ChangeBody, shop: TheWorkshop, actor: Actor) -> FilesView
 
 
 @router.post("/rename", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def rename(body: RenameBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+async def rename_part(body: RenameBody, shop: TheWorkshop, actor: Actor) -> FilesView:
     """Give a part of the model another name, which all that name it follow; the files that are others now."""
     try:
         return await shop.rename(body.part, body.name, actor)
@@ -143,7 +145,7 @@ async def usages(shop: TheWorkshop, part: PartId) -> UsagesView:
 
 
 @router.get("/graph", dependencies=[VIEWER], response_model=GraphView)
-async def graph(shop: TheWorkshop) -> Response:
+async def model_graph(shop: TheWorkshop) -> Response:
     """The model as a whole: all that has a name, on the layers of the station, and what is tied to what."""
     try:
         return Response(await shop.tied(), media_type="application/json")
@@ -152,7 +154,7 @@ async def graph(shop: TheWorkshop) -> Response:
 
 
 @router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def undo(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+async def undo_change(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
     """Take back your last change that is not taken back yet; the files that are others now."""
     try:
         return await shop.undo(actor)
@@ -161,7 +163,7 @@ async def undo(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
 
 
 @router.post("/redo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def redo(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+async def redo_change(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
     """Do again what you took back last; the files that are others now."""
     try:
         return await shop.redo(actor)

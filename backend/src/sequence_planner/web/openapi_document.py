@@ -22,7 +22,7 @@ from sequence_planner.web.cookies import NAME, SESSION_COOKIE, WATCH_COOKIE
 from sequence_planner.web.looking_messages import FlowsStreamMessage, NetworkStreamMessage, WorkshopStreamMessage
 from sequence_planner.web.openapi_refusals import describe_refusals
 from sequence_planner.web.problems import Problem
-from sequence_planner.web.stream_messages import ClientMessage, StreamMessage
+from sequence_planner.web.stream_messages import Resync, StreamMessage
 from sequence_planner.web.watch_messages import WatchStreamMessage
 
 REFERENCE = "#/components/schemas/{model}"
@@ -63,13 +63,16 @@ def describe(app: FastAPI) -> dict[str, Any]:
             (FlowsStreamMessage, "serialization"),
             (WorkshopStreamMessage, "serialization"),
             (WatchStreamMessage, "serialization"),
-            (ClientMessage, "validation"),
+            (Resync, "validation"),
             (Problem, "serialization"),
         ],
         ref_template=REFERENCE,
     )
     components = document.setdefault("components", {})
-    components.setdefault("schemas", {}).update(definitions["$defs"])
+    schemas = components.setdefault("schemas", {})
+    for name, schema in definitions["$defs"].items():
+        if schemas.setdefault(name, schema) != schema:
+            raise RuntimeError(f"two models are called {name}, and a program made from the document would know one")
     components["securitySchemes"] = SCHEMES
     for route in iter_route_contexts(app.routes):
         operations = document["paths"].get(route.path_format, {})

@@ -5,9 +5,10 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Sequence
+from typing import Annotated
 
 import structlog
-from fastapi import APIRouter, Request
+from fastapi import APIRouter, Query, Request
 from pydantic import BaseModel
 
 from sequence_planner.actor import SYSTEM
@@ -17,7 +18,7 @@ from sequence_planner.control.view import StationView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.mes.order import JobOrder
 from sequence_planner.mes.order_of_work import order_of_work
-from sequence_planner.mes.sequencing.asking import Asked, asked, held_up
+from sequence_planner.mes.sequencing.asking import MOST, Asked, asked, held_up
 from sequence_planner.mes.sequencing.known_times import KnownTimes
 from sequence_planner.mes.sequencing.process import Sequencer
 from sequence_planner.mes.sequencing.waits import waits_among
@@ -177,19 +178,20 @@ class OrderOfWorkDesk:
 
 
 @router.get("")
-async def read(request: Request) -> OrderOfWorkAnswer:
-    """When orders are expected to be worked, in the order in which they are to begin."""
+async def read_order_of_work(request: Request, limit: Annotated[int, Query(ge=1, le=MOST)] = MOST) -> OrderOfWorkAnswer:
+    """When orders are expected to be worked, in the order in which they are to begin; only the first `limit`."""
     desk: OrderOfWorkDesk = request.app.state.order_of_work
     if desk.found is None:
         return OrderOfWorkAnswer(time=None, job_orders=[], tardiness=0.0, bound=0.0, optimal=False, fallback="")
     found, schedule = desk.found
-    operations: dict[str, list[ExpectedOperation]] = {job: [] for job in schedule.jobs}
+    operations: dict[str, list[ExpectedOperation]] = {job: [] for job in schedule.jobs[:limit]}
     for (job, operation), (start, end) in schedule.starts.items():
-        operations[job].append(ExpectedOperation(operation=operation, start=start, end=end))
+        if job in operations:
+            operations[job].append(ExpectedOperation(operation=operation, start=start, end=end))
     return OrderOfWorkAnswer(
         time=found,
         job_orders=[
-            ExpectedOrder(id=job, late=schedule.late.get(job, 0.0), operations=operations[job]) for job in schedule.jobs
+            ExpectedOrder(id=job, late=schedule.late.get(job, 0.0), operations=its) for job, its in operations.items()
         ],
         tardiness=schedule.tardiness,
         bound=schedule.bound,

@@ -109,7 +109,7 @@ async def everybody(identity: Identity) -> PeopleAnswer:
 
 
 @router.post("", status_code=201, responses={201: TAGGED, **refused(409)})
-async def create(body: PersonBody, identity: Identity, actor: Actor, response: Response) -> PersonAnswer:
+async def create_person(body: PersonBody, identity: Identity, actor: Actor, response: Response) -> PersonAnswer:
     """Enter a person, who signs in with the temporary password and then has to choose another."""
     check_password(body.password, body.name)
     hashed = await identity.passwords.hash(body.password)
@@ -123,7 +123,7 @@ async def create(body: PersonBody, identity: Identity, actor: Actor, response: R
 
 
 @router.patch("/{person}", responses={200: TAGGED, **refused(404, 409, 412, 428)})
-async def change(
+async def change_person(
     person: Identifier,
     body: PersonChangeBody,
     identity: Identity,

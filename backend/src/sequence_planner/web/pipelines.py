@@ -33,7 +33,7 @@ async def pipelines(client: Controller) -> PipelinesView:
 
 
 @router.get("/edges")
-async def edges(client: Controller, pipeline: Names = None) -> FlowsView:
+async def pipeline_edges(client: Controller, pipeline: Names = None) -> FlowsView:
     """What has passed each edge of the pipelines that are named, or of all: counts, rates, drops and the last record.
     Rates come with the second look.
     """

@@ -12,8 +12,8 @@ from typing import Annotated
 from fastapi import APIRouter, Request, Response
 from pydantic import AfterValidator, BaseModel, Field
 
+from sequence_planner.identity.openid.flow import FLOW_LIFE
 from sequence_planner.identity.openid.provider import Answer
-from sequence_planner.identity.provided import FLOW_LIFE
 from sequence_planner.identity.provider_sign_in import ProviderSignIn
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
@@ -74,7 +74,7 @@ class ProviderSessionAnswer(BaseModel):
 
 
 @router.post("", responses=refused(404, 429, 503))
-async def begin(
+async def begin_sign_in(
     body: BeginBody, request: Request, response: Response, identity: Identity, address: Address
 ) -> BegunAnswer:
     """Begin to sign in with the provider, which has ten minutes to answer.
@@ -88,7 +88,7 @@ async def begin(
 
 
 @router.post("/answer", responses=refused(404, 503))
-async def finish(
+async def finish_sign_in(
     body: ProviderAnswerBody, request: Request, response: Response, identity: Identity, address: Address, agent: Agent
 ) -> ProviderSessionAnswer:
     """Finish what this browser has begun; the session that it had ends.

@@ -78,7 +78,7 @@ async def revisions(shop: TheWorkshop) -> RevisionsView:
 
 
 @router.post("/revisions", status_code=201, dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def save(body: RevisionBody, shop: TheWorkshop, actor: Actor) -> RevisionView:
+async def save_revision(body: RevisionBody, shop: TheWorkshop, actor: Actor) -> RevisionView:
     """Save the draft as a revision; refused where somebody has changed it since (`draft-moved`)."""
     draft = await _at(shop, body.number)
     try:
@@ -88,7 +88,7 @@ async def save(body: RevisionBody, shop: TheWorkshop, actor: Actor) -> RevisionV
 
 
 @router.post("/revisions/{id}/restore", dependencies=[ENGINEER, JSON_ONLY], responses=refused(404))
-async def restore(id: Id, body: RestoreBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+async def restore_revision(id: Id, body: RestoreBody, shop: TheWorkshop, actor: Actor) -> FilesView:
     """Let the draft become a revision again, which can be undone; the files that are others now."""
     draft = await _at(shop, body.number)
     files = await _files(shop, id)

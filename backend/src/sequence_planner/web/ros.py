@@ -16,7 +16,7 @@ router = APIRouter(prefix="/ros", tags=["ros"], dependencies=[allowed(Role.VIEWE
 
 
 @router.get("/graph")
-async def graph(view: LiveView, client: Controller) -> NetworkView:
+async def ros_graph(view: LiveView, client: Controller) -> NetworkView:
     """All nodes, topics, services and actions that the station's transport knows, and how the station meets them.
 
     503 until the station is prepared and has joined the network.

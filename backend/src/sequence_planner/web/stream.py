@@ -25,7 +25,7 @@ from sequence_planner.web.access import Access, allowed
 from sequence_planner.web.broadcast import Broadcast, Subscriber
 from sequence_planner.web.problems import ProblemFound
 from sequence_planner.web.settings import StreamLimits
-from sequence_planner.web.stream_messages import ClientMessage
+from sequence_planner.web.stream_messages import Resync
 
 LOOK_EVERY = 1.0  # seconds between looks at whether a client still may listen
 LAST_WORDS = 30.0  # seconds in which a dropped client may still learn why
@@ -145,7 +145,7 @@ def _fault(frame: Message, longest: int) -> str | None:
     if len(text) > longest:
         return f"The frame is longer than {longest} characters."
     try:
-        ClientMessage.model_validate_json(text)
+        Resync.model_validate_json(text)
     except ValidationError as error:
         first = error.errors()[0]
         if first["type"] == "json_invalid":

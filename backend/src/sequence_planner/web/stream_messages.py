@@ -153,7 +153,3 @@ class Resync(StreamPart):
     """The client wants a new snapshot."""
 
     kind: Literal["resync"]
-
-
-class ClientMessage(RootModel[Resync]):
-    """Any message from a client."""

@@ -51,7 +51,7 @@ async def all_watches(identity: Identity, client: Controller) -> WatchesAnswer:
 
 
 @router.post("/offers", status_code=201, dependencies=[OPERATOR, JSON_ONLY], responses=refused(409))
-async def offer(body: OfferBody, identity: Identity, actor: Actor, view: LiveView) -> NewOfferAnswer:
+async def offer_pairing(body: OfferBody, identity: Identity, actor: Actor, view: LiveView) -> NewOfferAnswer:
     """Offer a pairing. Its code is answered this once and can be redeemed once, within two minutes."""
     if body.resource not in {each.name for each in _resources(view)}:
         detail = f'"{body.resource}" has no tasks for people. Choose one of the resources that GET /watches lists.'
@@ -71,7 +71,7 @@ async def withdraw_offer(offer: Identifier, identity: Identity, actor: Actor) ->
 
 
 @router.post("/pairing", status_code=201, dependencies=[allowed(None), JSON_ONLY], responses=refused(429, 503))
-async def pair(
+async def pair_watch(
     body: PairingBody, request: Request, response: Response, identity: Identity, address: Address, agent: Agent
 ) -> WatchSelfAnswer:
     """Redeem a code. The device gets its credential, which is worth nothing before an operator has confirmed it.
@@ -88,21 +88,21 @@ async def pair(
 
 
 @router.post("/{watch}/confirmation", status_code=204, dependencies=[OPERATOR, JSON_ONLY], responses=refused(404, 409))
-async def confirm(watch: Identifier, body: ConfirmationBody, identity: Identity, actor: Actor) -> None:
+async def confirm_watch(watch: Identifier, body: ConfirmationBody, identity: Identity, actor: Actor) -> None:
     """Confirm that the device that has redeemed the code is the one that was meant; within two minutes."""
     now = identity.now()
     await identity.write(lambda connection: watches.confirm(connection, watch, actor, now), by=actor)
 
 
 @router.delete("/{watch}", status_code=204, dependencies=[OPERATOR], responses=refused(404))
-async def revoke(watch: Identifier, identity: Identity, actor: Actor) -> None:
+async def revoke_watch(watch: Identifier, identity: Identity, actor: Actor) -> None:
     """Refuse a device that waits, or revoke one that was confirmed; within two seconds it is told nothing any more."""
     now = identity.now()
     await identity.write(lambda connection: watches.revoke(connection, watch, actor, now), by=actor)
 
 
 @router.get("/self", dependencies=[watch_only(waiting=True)])
-async def itself(request: Request) -> WatchSelfAnswer:
+async def this_watch(request: Request) -> WatchSelfAnswer:
     """What the watch that asks is called, whose tasks it shows, and whether it was confirmed yet."""
     watch: Watch = request.state.watch
     return _itself(watch)

@@ -90,7 +90,9 @@ async def all_webhooks(identity: Identity) -> WebhooksAnswer:
 
 
 @router.post("", status_code=201, responses=refused(409))
-async def make(body: WebhookBody, identity: Identity, actor: Actor, targets: AllowedTargets) -> NewWebhookAnswer:
+async def make_webhook(
+    body: WebhookBody, identity: Identity, actor: Actor, targets: AllowedTargets
+) -> NewWebhookAnswer:
     """Make a webhook. Its secret is answered this once; deliveries are signed with it."""
     try:
         await resolved(targets, targets.target(body.url))
@@ -106,7 +108,7 @@ async def make(body: WebhookBody, identity: Identity, actor: Actor, targets: All
 
 
 @bodiless.delete("/{webhook}", status_code=204, responses=refused(404))
-async def remove(webhook: Identifier, identity: Identity, actor: Actor) -> None:
+async def remove_webhook(webhook: Identifier, identity: Identity, actor: Actor) -> None:
     """Tell it of nothing more; what was not delivered yet is not sent any more."""
     now = identity.now()
     await identity.write(lambda connection: webhooks.remove(connection, webhook, actor, now), by=actor)

@@ -23,7 +23,7 @@ from sequence_planner.workshop.files import write_files
 from sequence_planner.workshop.pipelines.graph import Graph
 from sequence_planner.workshop.pipelines.live import with_live_edges
 from sequence_planner.workshop.pipelines.reading import Reader
-from sequence_planner.workshop.pipelines.view import DraftPipelineView, Standing
+from sequence_planner.workshop.pipelines.view import DraftPipelineView, Soundness
 
 from .drafts import MODELS, REACH, edited, files_of, graph_of, prepared, shipped
 
@@ -57,7 +57,7 @@ def test_every_edge_has_the_types_that_run(name: str, tmp_path: Path) -> None:
     assert feeds == dict(ready.pipelines.feeds)
     assert {variable.name for variable in graph.variables} <= set(ready.automaton.variables)
     for view in graph.pipelines.values():
-        assert (view.standing, view.findings) == (Standing.GOOD, [])
+        assert (view.standing, view.findings) == (Soundness.GOOD, [])
         assert all(type_ in graph.types for edge in view.edges for type_ in (edge.fields or {}).values())
     assert graph.findings == []
     named = [part for view in graph.pipelines.values() for part in all_parts(view)]
@@ -131,13 +131,13 @@ def test_a_stage_of_a_wrong_type_keeps_what_stands_before_it() -> None:
     graph = graph_of(edited(files_of(REACH), wrong))
     view = graph.pipelines[STATE]
     standings = [stage.standing for stage in view.stages]
-    assert standings == [Standing.GOOD] * 4 + [Standing.WRONG] + [Standing.UNKNOWN] * 2
+    assert standings == [Soundness.GOOD] * 4 + [Soundness.WRONG] + [Soundness.UNKNOWN] * 2
     assert "only texts are matched" in view.stages[4].findings[0].message
     assert [edge.fields is None for edge in view.edges] == [False] * 5 + [True] * 3
-    assert view.standing is Standing.WRONG
+    assert view.standing is Soundness.WRONG
     flow = graph.pipelines[HOLDING]
     assert (flow.sources[0].pipeline, flow.edges[0].fields) == (STATE, None)
-    assert graph.pipelines["/robot/scene"].standing is Standing.GOOD
+    assert graph.pipelines["/robot/scene"].standing is Soundness.GOOD
 
 
 @pytest.mark.parametrize(
@@ -153,7 +153,7 @@ def test_what_is_no_stage_keeps_what_stands_before_it(
 ) -> None:
     edit = SetEntry.model_validate({"file": ROBOT, "path": path, "was": was, "value": value})
     view = graph_of(edited(files_of(REACH), edit)).pipelines[STATE]
-    assert [stage.standing for stage in view.stages][:5] == [Standing.GOOD] * 3 + [Standing.WRONG, Standing.UNKNOWN]
+    assert [stage.standing for stage in view.stages][:5] == [Soundness.GOOD] * 3 + [Soundness.WRONG, Soundness.UNKNOWN]
     assert said in view.stages[3].findings[0].message
     assert view.edges[3].fields is not None
     assert view.edges[4].fields is None
@@ -167,7 +167,7 @@ def test_an_unknown_type_and_an_unknown_source_are_told_where_they_stand() -> No
     )
     pipelines = graph_of(files).pipelines
     assert "no message type" in pipelines[STATE].findings[0].message
-    assert [stage.standing for stage in pipelines[STATE].stages] == [Standing.UNKNOWN] * 7
+    assert [stage.standing for stage in pipelines[STATE].stages] == [Soundness.UNKNOWN] * 7
     first, second = pipelines[HOLDING].sources
     assert (first.pipeline, first.findings) == (STATE, [])
     assert second.pipeline is None

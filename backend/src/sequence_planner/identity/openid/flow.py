@@ -13,6 +13,8 @@ from hashlib import sha256
 
 from sequence_planner.identity.tokens import new_token
 
+FLOW_LIFE = 600.0  # seconds in which the provider has to answer
+
 
 @dataclass(frozen=True)
 class Flow:

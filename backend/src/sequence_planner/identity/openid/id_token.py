@@ -10,6 +10,7 @@ from joserfc import jws, jwt
 from joserfc.errors import JoseError
 from joserfc.jwk import ECKey, JWKRegistry, OKPKey, RSAKey
 
+from sequence_planner.identity.openid.flow import FLOW_LIFE
 from sequence_planner.identity.openid.refusals import unfit
 
 ALGORITHMS = ("RS256", "RS384", "RS512", "PS256", "PS384", "PS512", "ES256", "ES384", "ES512", "Ed25519", "EdDSA")
@@ -99,6 +100,8 @@ def _check(claims: Mapping[str, object], expected: Expected, now: float) -> None
         raise unfit("its token is of a time to come; look at the clocks of both machines")
     if "nbf" in claims and (not _is_time(before := claims["nbf"]) or before > now + LEEWAY):
         raise unfit("its token is not valid yet; look at the clocks of both machines")
+    if "auth_time" in claims and (not _is_time(was := claims["auth_time"]) or was < now - FLOW_LIFE - LEEWAY):
+        raise unfit("whoever it is about has signed in there some time ago, and not now")
 
 
 def _is_time(claim: object) -> TypeGuard[float]:

@@ -15,8 +15,8 @@ from sequence_planner.identity.openid.addresses import is_safe
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.tables import LONGEST_ISSUER
+from sequence_planner.secret_variables import CLIENT_SECRET
 
-SECRET = "SEQUENCE_PLANNER_OIDC_CLIENT_SECRET"
 LONGEST_SECRET = 4096
 OPENID = "openid"  # the scope without which it is no sign-in (OpenID Connect Core, 3.1.2.1)
 
@@ -80,9 +80,11 @@ class ProviderOptions:
 
     def _secret(self, environment: Mapping[str, str]) -> str | None:
         if self.secret_file is None:
-            return environment.get(SECRET) or None
-        if environment.get(SECRET):
-            raise ProviderOptionError(f"the secret is said twice: in {self.secret_file} and in {SECRET}; keep one")
+            return environment.get(CLIENT_SECRET) or None
+        if environment.get(CLIENT_SECRET):
+            raise ProviderOptionError(
+                f"the secret is said twice: in {self.secret_file} and in {CLIENT_SECRET}; keep one"
+            )
         try:
             secret = self.secret_file.read_text(encoding="utf-8").strip()
         except (OSError, UnicodeDecodeError) as error:

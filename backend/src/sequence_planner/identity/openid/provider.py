@@ -54,6 +54,7 @@ class Provider:
             "nonce": flow.nonce,
             "code_challenge": flow.challenge,
             "code_challenge_method": "S256",
+            "prompt": "login",  # the browser may still be known there, and somebody else be at it
         }
         return _with((await self._known.metadata()).authorization, asked_for)
 

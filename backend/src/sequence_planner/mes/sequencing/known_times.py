@@ -12,10 +12,11 @@ from sqlalchemy import Connection
 
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.mes.sequencing.instance import LONGEST
 
 REMEMBERED_RUNS: Final = 5  # of an operation; devices change their pace
 UNKNOWN_SECONDS: Final = 60.0  # that an operation is expected to take of which nothing is known
-_LOOK_BACK: Final = 20_000  # records that are read when the server starts
+_LOOK_BACK: Final = 20_000  # records that are read at most: nobody asks for days, and then for all of them at once
 _PAGE: Final = 1000
 _TICKED, _BEGUN = "ticked", "begun"
 
@@ -46,10 +47,13 @@ class KnownTimes:
         return of_goal
 
     def read_on(self, connection: Connection) -> bool:
-        """Read what has happened since; whether it changes what is known."""
-        if self._number is None:
-            bounds = run_journal.bounds(connection)
-            self._number = 0 if bounds is None else max(bounds[0].number - 1, bounds[1].number - _LOOK_BACK)
+        """Read what has happened since, or the last of it where that is too much; whether it changes what is known."""
+        if (bounds := run_journal.bounds(connection)) is None:
+            return False
+        begin = max(bounds[0].number - 1, bounds[1].number - _LOOK_BACK)
+        if self._number is None or self._number < begin:
+            self._number = begin
+            self._active.clear()  # what has become of it is among what is passed over
         before = self._known()
         while page := run_journal.after(connection, self._number, _PAGE):
             self._number = page[-1].number
@@ -67,7 +71,8 @@ class KnownTimes:
     def _hear_tick(self, time: float, told: dict[str, Any]) -> None:
         """Operations are completed and activated before abilities start."""
         for name in told.get("completed", ()):
-            if (run := self._active.pop(name, None)) is not None and time >= run[0]:
+            # Where the clock was set meanwhile, as after a start without one, it is not known.
+            if (run := self._active.pop(name, None)) is not None and 0 <= time - run[0] <= LONGEST:
                 self._seconds[name].append(time - run[0])
                 if run[1]:
                     self._used[name].append(frozenset(run[1]))

@@ -129,4 +129,6 @@ def _is_loopback(address: IPv4Address | IPv6Address) -> bool:
 
 def _is_public(address: IPv4Address | IPv6Address) -> bool:
     meant = _meant(address)
+    if isinstance(meant, IPv6Address) and meant.is_site_local:  # deprecated, and still private where it is used
+        return False
     return meant.is_global and not (meant.is_multicast or meant.is_reserved or meant.is_unspecified)

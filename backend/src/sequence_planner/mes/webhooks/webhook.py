@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection
 from typing import Final
+from urllib.parse import urlsplit
 
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import Connection, RowMapping, delete, func, insert, select
@@ -84,7 +85,7 @@ def make(
         "held_until": 0.0,
     }
     connection.execute(insert(WEBHOOKS), row)
-    record(connection, by, "webhook-created", f"webhook {row['title']}", now, id=id, url=url, kinds=asked)
+    record(connection, by, "webhook-created", f"webhook {row['title']}", now, id=id, to=_host(url), kinds=asked)
     return secret, get(connection, id)
 
 
@@ -109,7 +110,13 @@ def remove(connection: Connection, id: str, by: Actor, now: float) -> None:
     connection.execute(delete(WEBHOOK_DELIVERIES).where(WEBHOOK_DELIVERIES.c.webhook == id))
     connection.execute(delete(WEBHOOKS).where(WEBHOOKS.c.id == id))
     left = webhook.waiting + webhook.given_up
-    record(connection, by, "webhook-deleted", f"webhook {webhook.title}", now, id=id, url=webhook.url, undelivered=left)
+    to = _host(webhook.url)
+    record(connection, by, "webhook-deleted", f"webhook {webhook.title}", now, id=id, to=to, undelivered=left)
+
+
+def _host(url: str) -> str:
+    """All that the journal has of a URL: more people read that than webhooks, and a path or a query may be a secret."""
+    return urlsplit(url).netloc
 
 
 def _counts(connection: Connection) -> dict[tuple[str, bool], int]:

@@ -31,8 +31,8 @@ from sequence_planner.workshop.pipelines.view import (
     EntryView,
     Part,
     ReadVariableView,
+    Soundness,
     SourceView,
-    Standing,
     TypeKind,
     TypeView,
 )
@@ -116,7 +116,7 @@ class Graph:
             or any(each.findings for each in sources)
             or chain is None
         )
-        unknown = any(each.standing is Standing.UNKNOWN for each in stages) or edges[-1].fields is None
+        unknown = any(each.standing is Soundness.UNKNOWN for each in stages) or edges[-1].fields is None
         examples = entries_of(written.content, "examples")
         return DraftPipelineView(
             id=written.id,
@@ -129,7 +129,7 @@ class Graph:
             deadline=_number(written.content, "deadline") if written.role != "outgoing" else None,
             every=_number(written.content, "every"),
             joining=joining_of(written),
-            standing=Standing.WRONG if wrong else Standing.UNKNOWN if unknown else Standing.GOOD,
+            standing=Soundness.WRONG if wrong else Soundness.UNKNOWN if unknown else Soundness.GOOD,
             place=_there(document, path),
             stages_path=None if written.part is Part.STATUS else list(written.stages_path),
             sources=sources,
@@ -187,7 +187,7 @@ class Graph:
                     kind=kind,
                     place=None if entry is None else _there(written.document, path),
                     written=plain(entry),
-                    standing=Standing.WRONG if is_wrong else Standing.UNKNOWN if stage is None else Standing.GOOD,
+                    standing=Soundness.WRONG if is_wrong else Soundness.UNKNOWN if stage is None else Soundness.GOOD,
                     findings=[error_document(each) for each in said],
                     summary="" if stage is None else summary_of(stage.reads, stage.gives),
                     reads=[] if stage is None else sorted(stage.reads),

@@ -35,7 +35,7 @@ from sequence_planner.workshop.pipelines.view import (
     RunStepView,
     RunsView,
     RunView,
-    Standing,
+    Soundness,
     ValueView,
 )
 
@@ -51,7 +51,7 @@ def pipeline_of(graph: Graph, id_: str) -> DraftPipelineView:
 def obstacle(graph: Graph, view: DraftPipelineView) -> str | None:
     """Why a pipeline cannot be run."""
     chain = graph.sketch.built.chains.get(view.name)
-    if view.id != view.name or chain is None or not chain.is_sound or view.standing is Standing.UNKNOWN:
+    if view.id != view.name or chain is None or not chain.is_sound or view.standing is Soundness.UNKNOWN:
         said = [each.message for stage in view.stages for each in stage.findings] or [
             each.message for each in view.findings
         ]

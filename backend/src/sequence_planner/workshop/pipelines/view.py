@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from enum import StrEnum
-from typing import Literal
+from typing import Annotated, Literal
 
-from pydantic import JsonValue
+from pydantic import Field, JsonValue
 
 from sequence_planner.analysis.document import FindingDocument
 from sequence_planner.control.view_part import View
 from sequence_planner.workshop.edits import AddEntry, MoveEntry, RemoveEntry, SetEntry
 
-EntryEdit = AddEntry | RemoveEntry | MoveEntry | SetEntry
+EntryEdit = Annotated[AddEntry | RemoveEntry | MoveEntry | SetEntry, Field(discriminator="kind")]
 
 
 class Part(StrEnum):
@@ -27,7 +27,7 @@ class Part(StrEnum):
     STATUS = "status"
 
 
-class Standing(StrEnum):
+class Soundness(StrEnum):
     """Whether something of a pipeline is sound."""
 
     GOOD = "good"
@@ -100,7 +100,7 @@ class DraftStageView(View):
     kind: str
     place: EntryView | None
     written: JsonValue
-    standing: Standing
+    standing: Soundness
     findings: list[FindingDocument]
     summary: str
     reads: list[str]
@@ -173,7 +173,7 @@ class DraftPipelineView(View):
     deadline: float | None
     every: float | None
     joining: Literal["branch", "interleave", "merge"] | None
-    standing: Standing
+    standing: Soundness
     place: EntryView
     stages_path: list[str | int] | None
     sources: list[SourceView]

@@ -17,6 +17,8 @@ from pathlib import Path
 
 import structlog
 
+from sequence_planner.secret_variables import environment
+
 LOG = structlog.get_logger(__name__)
 
 STARTING = 10.0  # seconds within which a file must have been loaded
@@ -56,7 +58,7 @@ class FunctionProcess:
         command = [sys.executable, "-B", "-P", str(_PROGRAM), str(function.folder), str(function.path), function.name]
         pipe = subprocess.PIPE
         self._process = subprocess.Popen(
-            command, stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0, start_new_session=True
+            command, stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0, start_new_session=True, env=environment()
         )
         self._requests, self._answers, self._prints = (
             stream.fileno()

@@ -1,0 +1,54 @@
+"""A job order as it is answered over REST."""
+
+from __future__ import annotations
+
+from pydantic import BaseModel
+
+from sequence_planner.mes.order import JobOrder
+from sequence_planner.mes.states import OrderCommand, OrderState, Wish
+from sequence_planner.web.order_desk import OrderDesk
+
+_COMMANDS = {
+    Wish.PAUSE: OrderCommand.PAUSE,
+    Wish.RESUME: OrderCommand.RESUME,
+    Wish.STOP: OrderCommand.STOP,
+    Wish.ABORT: OrderCommand.ABORT,
+}
+
+
+class OrderAnswer(BaseModel):
+    """An order. Times are in seconds since the epoch; `stored_by` is the name of a person or a key.
+
+    `commanded` is what the station is still to do with it, `allowed` the commands that the order allows now. Since
+    `began` the station works on it. `waits_for` says in words why nothing is done for it now.
+    """
+
+    id: str
+    work_master: str
+    description: str
+    priority: int
+    due: float | None
+    earliest: float | None
+    state: OrderState
+    commanded: OrderCommand | None
+    allowed: list[OrderCommand]
+    revision: int
+    stored: float
+    stored_by: str
+    changed: float
+    began: float | None
+    ended: float | None
+    waits_for: list[str]
+
+
+_KEPT = OrderAnswer.model_fields.keys() & JobOrder.model_fields.keys()
+
+
+def answered(order: JobOrder, desk: OrderDesk | None) -> OrderAnswer:
+    """An order as it is told to who asks `desk`, which knows how it stands at the station."""
+    return OrderAnswer(
+        **order.model_dump(include=_KEPT),
+        commanded=None if order.wish is None else _COMMANDS[order.wish],
+        allowed=[] if order.removed is not None else list(order.allowed),
+        waits_for=[] if desk is None else desk.waits_for(order),
+    )

@@ -1,0 +1,59 @@
+"""Orders in the database: what is asked for again and again is found by an index, however many there were."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+from sqlalchemy import Connection, event
+
+from sequence_planner.actor import SYSTEM
+from sequence_planner.mes import orders, responses
+from sequence_planner.mes.order import OrderContent
+from sequence_planner.mes.states import OrderCommand, OrderState
+from sequence_planner.storage.database import Database
+
+ASKED: dict[str, Callable[[Connection], object]] = {
+    "how many": orders.count_open,
+    "open": orders.open_orders,
+    "all": lambda connection: orders.page(connection, None, 5, 10),
+    "ended": lambda connection: orders.page(connection, OrderState.ENDED, 5, 10),
+    "responses": lambda connection: responses.page(connection, 5, 10),
+    "newest responses": lambda connection: responses.latest(connection, None, 10),
+}
+
+
+def plans(connection: Connection, asked: Callable[[Connection], object]) -> list[str]:
+    """How SQLite finds what is asked for."""
+    said: list[tuple[str, tuple[object, ...]]] = []
+
+    def note(connection: object, cursor: object, statement: str, parameters: tuple[object, ...], *_: object) -> None:
+        said.append((statement, parameters))
+
+    event.listen(connection, "before_cursor_execute", note)
+    asked(connection)
+    event.remove(connection, "before_cursor_execute", note)
+    rows = [connection.exec_driver_sql(f"EXPLAIN QUERY PLAN {text}", values).all() for text, values in said]
+    return [row.detail for each in rows for row in each if "job_" in row.detail]
+
+
+def test_what_was_cleared_is_not_looked_at(tmp_path: Path) -> None:
+    with closing(Database.open(f"sqlite:///{tmp_path}/orders.sqlite")) as database:
+        database.upgrade()
+        with database.reading() as connection:
+            for name, asked in ASKED.items():
+                found = plans(connection, asked)
+                assert found, name
+                assert all("_shown" in each for each in found), found
+
+
+def test_the_response_to_an_order_that_is_cleared_is_not_shown(database: Database) -> None:
+    with database.writing() as connection:
+        for id in ("one", "two"):
+            orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id=id, start=True)
+            orders.command(connection, id, OrderCommand.ABORT, SYSTEM, None, 2.0)
+        orders.command(connection, "one", OrderCommand.CLEAR, SYSTEM, None, 3.0)
+        assert [each.job_order for each in responses.page(connection, 0, 10)] == ["two"]
+        assert [each.job_order for each in responses.latest(connection, None, 10)] == ["two"]
+        assert responses.get(connection, "one") is None
