@@ -16,7 +16,7 @@ import httpx
 from prometheus_client.parser import text_string_to_metric_families
 
 from running.days import example, mes_key
-from running.killing import PARTS, Mortal, standing
+from running.mortal import PARTS, Mortal, standing
 from stations.presses import write_presses
 
 PRESSES = 3

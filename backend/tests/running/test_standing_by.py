@@ -16,7 +16,7 @@ import pytest
 
 from control.rig import truck_engine
 from running.judging import Judge
-from running.killing import Mortal
+from running.mortal import Mortal
 from running.relay import Relay, relay
 from running.stations import eventually
 from running.wire import Wire, listening
@@ -73,7 +73,7 @@ def pair(postgresql: Server, tmp_path: Path) -> Iterator[Pair]:
             links[name] = stack.enter_context(relay(postgresql.folder, folder))
             own = url.replace(str(postgresql.folder).replace("/", "%2F"), str(folder).replace("/", "%2F"))
             assert own != url
-            both.append(Mortal(folder, database, wire, random.Random(name), own, name))
+            both.append(Mortal(folder, database, random.Random(name), own, name))
         first, second = both
         stack.callback(second.end)
         stack.callback(first.end)
