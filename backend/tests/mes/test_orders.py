@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
@@ -10,7 +11,7 @@ from sqlalchemy import Connection, event
 
 from sequence_planner.actor import SYSTEM
 from sequence_planner.mes import orders, responses
-from sequence_planner.mes.order import OrderContent
+from sequence_planner.mes.order import JobOrder, OrderContent
 from sequence_planner.mes.states import OrderCommand, OrderState
 from sequence_planner.storage.database import Database
 
@@ -57,3 +58,30 @@ def test_the_response_to_an_order_that_is_cleared_is_not_shown(database: Databas
         assert [each.job_order for each in responses.page(connection, 0, 10)] == ["two"]
         assert [each.job_order for each in responses.latest(connection, None, 10)] == ["two"]
         assert responses.get(connection, "one") is None
+
+
+def test_of_orders_that_are_known_only_what_has_changed_is_read(database: Database) -> None:
+    chance = random.Random(1)
+    known: list[JobOrder] = []
+    for number in range(40):
+        with database.writing() as connection:
+            content = OrderContent(work_master="a", priority=number)
+            orders.store(connection, content, SYSTEM, 1.0, id=f"order-{number}", start=chance.random() < 0.5)
+            for each in chance.sample(known, min(len(known), 3)):
+                given = each.allowed[0] if chance.random() < 0.8 else chance.choice(each.allowed)
+                orders.command(connection, each.id, given, SYSTEM, None, 2.0)
+        before = {each.number: each for each in known}
+        with database.reading() as connection:
+            known = orders.open_orders(connection, known)
+            assert known == orders.open_orders(connection)
+        kept = [each for each in known if before.get(each.number) == each]
+        assert all(each is before[each.number] for each in kept)
+    assert 5 < len(known) < 35
+
+
+def test_however_many_orders_there_are_all_are_read(database: Database) -> None:
+    with database.writing() as connection:
+        for number in range(501):
+            orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id=str(number), start=True)
+    with database.reading() as connection:
+        assert [each.id for each in orders.open_orders(connection)] == [str(number) for number in range(501)]

@@ -17,7 +17,7 @@ import httpx
 
 from running.back_to_work.engine import DEVICE_OF, NODE_OF, SPEED, HallHands
 from running.back_to_work.person import Person
-from running.killing import PARTS, Mortal, mortal, standing
+from running.mortal import PARTS, Mortal, mortal, standing
 from running.stations import command, environment, eventually
 from stations.disturbing import Trouble, summed
 from stations.hall import MODEL, Hall, hall
@@ -26,6 +26,7 @@ BOLT_FAULTS = ("nutrunner silent for 3 s", "robot silent for 2 s", "robot slow 3
 Responses = Sequence[Mapping[str, Any]]
 RELEASE = "engine.release"
 STANDS_AFTER = 20.0  # seconds without progress
+LONGEST_STANDSTILL = 60.0  # seconds in which emulated devices are back, and a killed process
 
 
 class DayStation(ABC):
@@ -41,6 +42,7 @@ class DayStation(ABC):
         self._began: float | None = None
         chance = station.chance
         self._coming = sorted(chance.uniform(2, self.seconds) for _ in range(troubles))
+        self._progress: tuple[object, float] = (None, time.monotonic())  # how far it was, and since when
 
     def people(self) -> None:
         """Do the tasks, and bring back to work what was killed; and let happen what is due."""
@@ -90,10 +92,16 @@ class BoltStation(DayStation):
         return line.partition(" for")[0]
 
     def work(self) -> None:
-        """See `DayStation.work`."""
+        """See `DayStation.work`. AssertionError, with what the station says, where it works an order and stands."""
         if self.station.production() == "waiting":
             self.station.begin_production()
         self.station.acknowledge()
+        browser, now = self.station.browser, time.monotonic()
+        number = browser.get("history?limit=1").json()["records"][0]["number"]
+        if number != self._progress[0] or not browser.get("job-orders?state=Running").json()["job_orders"]:
+            self._progress = number, now
+        stands = now - self._progress[1]
+        assert stands < LONGEST_STANDSTILL, f"it stands: {browser.get('alarms').text} {self.station.shown()}"
 
     def judge(self, responses: Responses) -> None:
         """What is made of bolts no emulated device knows."""
@@ -114,7 +122,6 @@ class EngineStation(DayStation):
         self._disturbance = Trouble(place, station.chance)
         self._hands = HallHands(place)
         self.person = Person(station, self._hands, serves=False)
-        self._progress: tuple[object, float] = (None, time.monotonic())
 
     def fault(self) -> str:
         """See `DayStation.fault`. Half of them pass by themselves."""

@@ -14,7 +14,7 @@ from typing import Any
 
 from mes.receiver import Receiver, receiving
 from running.day_stations import DayStation
-from running.killing import Mortal
+from running.mortal import Mortal
 from running.stations import REPOSITORY
 from sequence_planner.actor import SYSTEM
 from sequence_planner.identity import keys

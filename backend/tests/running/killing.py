@@ -1,336 +1,135 @@
-"""A station whose processes are killed and started one by one, and an operator who brings it back to work."""
+"""A station of which processes are killed at moments drawn by seed, and which then has to go on as if nothing was."""
 
 from __future__ import annotations
 
 import contextlib
 import os
-import random
 import resource
 import signal
-import subprocess
-import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
-from pathlib import Path
-
-import httpx
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from control.rig import truck_engine
-from running.judging import Judge, Kept
-from running.signing_in import signed_in
-from running.stations import MODEL, REPOSITORY, command, environment, eventually, free_port
+from running.judging import Judge
+from running.mortal import Mortal, mortal
 from running.wire import Wire, listening
-from sequence_planner.journal.run_journal import RunRecord
-from sequence_planner.storage.database import Database
-from sequence_planner.storage.environment import DATABASE
 
-SPEED = 10.0  # of the devices
 UNTIL_KILLED = 1.5  # seconds for which it works at most, until it is killed
-PATIENCE = 240.0  # on a machine that is busy with much else
 AT_WORK, AT_ONCE = "while it worked", "while it started"
-PARTS = {"server": ("server",), "controller": ("controller",), "both": ("controller", "server")}
 STANDSTILL = 1.0  # seconds in which nothing may happen while nothing can be recorded
 
 
 @dataclass
-class Mortal:
-    """The station in front of its operator. `seen` is what has been met.
+class Killing:
+    """What is done to a station, while somebody listens on the wire to its devices."""
 
-    Its database is a file in its folder, or where `url` says; with `standby` it shares that with others. Its devices
-    are emulated, unless they are real ones of another `model`; then nobody listens on the wire.
-    """
-
-    folder: Path
-    database: Database
-    wire: Wire | None
-    chance: random.Random
-    url: str = ""
-    standby: str | None = None
-    server: tuple[str, ...] = ()  # more options of it
-    model: Path = MODEL
-    emulated: bool = True
-    port: int = field(default_factory=free_port)
-    seen: Counter[str] = field(default_factory=Counter)
-    _parts: dict[str, subprocess.Popen[bytes]] = field(default_factory=dict)
-
-    def __post_init__(self) -> None:
-        self.kept = Kept(self.database)
-        self.url = self.url or f"sqlite:///{self.folder}/station.sqlite"
-        self.browser = signed_in(REPOSITORY / self.model, self.port, self.url)
-
-    def start(self, part: str) -> None:
-        """Start one of its processes."""
-        socket = ("--socket", str(self.folder / "socket"))
-        standby = ("--hot-standby", self.standby) if self.standby else ()
-        arguments = {
-            "emulate": ("--speed", str(SPEED)),
-            "controller": (*socket, *(("--emulated",) if self.emulated else ()), *standby),
-            "server": (*socket, "--page", str(self.folder), "--port", str(self.port), *self.server),
-        }[part]
-        model = ("--model", str(self.model)) if part == "server" else (str(self.model),)
-        with (self.folder / f"{part}.log").open("ab") as log:
-            self._parts[part] = subprocess.Popen(
-                command(part, *model, *arguments),
-                cwd=REPOSITORY,
-                env={**environment(), DATABASE: self.url},
-                stdout=log,
-                stderr=log,
-            )
-
-    def signal(self, part: str, number: signal.Signals) -> None:
-        """Send a signal to one of its processes."""
-        self._parts[part].send_signal(number)
-
-    def ended(self, part: str) -> int | None:
-        """The exit code of one of its processes; None while it lives."""
-        return self._parts[part].poll()
-
-    def kill(self, part: str) -> None:
-        """It has no time to end in good order."""
-        self._parts[part].send_signal(signal.SIGKILL)
-        self._parts[part].wait()
-
-    def kill_and_start(self, what: str) -> None:
-        """One of `PARTS` is killed, and started again."""
-        for part in PARTS[what]:
-            self.kill(part)
-            self.seen[f"{part}s killed"] += 1
-        for part in PARTS[what]:
-            self.start(part)
-
-    def end(self) -> None:
-        """All processes end in good order, those that were stopped too."""
-        for each in self._parts.values():
-            each.terminate()
-            each.send_signal(signal.SIGCONT)
-        for each in self._parts.values():
-            each.wait(timeout=20)
-
-    def children(self, part: str) -> list[int]:
-        """The processes that a part has started."""
-        listed = subprocess.run(
-            ["ps", "--ppid", str(self._parts[part].pid), "-o", "pid="], capture_output=True, text=True, check=False
-        )
-        return [int(line) for line in listed.stdout.split()]
-
-    def kill_workers(self) -> None:
-        """What the controller has started beside itself, such as its planner, is killed."""
-        for worker in self.children("controller"):
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(worker, signal.SIGKILL)
-                self.seen["workers killed"] += 1
-
-    def memory(self, part: str) -> int:
-        """The resident memory of one of its processes, in MB."""
-        status = Path(f"/proc/{self._parts[part].pid}/status").read_text(encoding="ascii")
-        return int(status.partition("VmRSS:")[2].split()[0]) // 1000
-
-    def metrics(self) -> str:
-        """The station in figures."""
-        return self.browser.get(f"http://127.0.0.1:{self.port}/metrics").raise_for_status().text
-
-    def production(self) -> str | None:
-        """What the station says of production; None while nobody answers."""
-        code = self._parts["controller"].poll()
-        assert code is None, f"the controller ended with {code}: {self.log('controller')}"
-        with contextlib.suppress(httpx.HTTPError):
-            answer = self.browser.get("station")
-            if answer.status_code == httpx.codes.OK:
-                return str(answer.json()["production"])
-        return None
-
-    def log(self, part: str) -> str:
-        """The last that a part has said."""
-        return (self.folder / f"{part}.log").read_text()[-3000:]
-
-    def wait(self, what: Callable[[], bool], why: str) -> None:
-        """Until that is true. AssertionError, with what the controller says, when it does not come true."""
-        try:
-            eventually(what, PATIENCE)
-        except AssertionError:
-            raise AssertionError(f"{why}: {self.shown()}\n{self.log('controller')}\n{self.log('server')}") from None
-
-    def shown(self) -> object:
-        """What the station shows."""
-        try:
-            return self.browser.get("station").json(), self.browser.get("plan").json()
-        except httpx.HTTPError as error:
-            return str(error)
-
-    def ask(self, method: str, path: str, body: dict[str, object]) -> httpx.Response:
-        """What is answered; control is taken where it is needed."""
-        answer = self.browser.request(method, path, json=body)
-        if answer.status_code == httpx.codes.CONFLICT and answer.json()["type"] == "/problems/control-needed":
-            self.browser.put("control", json={"over": None}).raise_for_status()
-            answer = self.browser.request(method, path, json=body)
-        return answer
-
-    def acknowledge(self) -> None:
-        """Do what people are asked to do. What has changed meanwhile is refused."""
-        for id_, task in self.browser.get("tasks").json()["tasks"].items():
-            self.ask("POST", f"tasks/{id_}/acknowledgement", {"revision": task["revision"]})
-
-    def decide(self) -> bool:
-        """Decide what devices shall do, where somebody has to; whether that was so."""
-        undecided = self.browser.get("station").json()["undecided"]
-        for name, each in undecided.items():
-            value = self.chance.choice([each["value"], *each["quiet"]])
-            answer = self.ask("PUT", "outputs", {"values": {name: value}, "reason": "looked at"})
-            self.seen["outputs decided on" if answer.is_success else "decisions refused"] += 1
-        return bool(undecided)
-
-    def begin_production(self) -> None:
-        """Decide what devices shall do, and start production."""
-        self.wait(lambda: self.production() == "waiting", "it is not up")
-
-        def started() -> bool:
-            self.decide()
-            answer = self.ask("POST", "production/start", {"reason": "looked at"})
-            if answer.status_code == httpx.codes.CONFLICT:
-                assert answer.json()["type"] in ("/problems/outputs-undecided",), answer.text
-            return answer.is_success
-
-        self.wait(started, "production cannot be started")
-
-    def get_back_to_work(self) -> None:
-        """Until something starts or finishes that was not done before. Nothing but what REST shows is known."""
-        self.begin_production()
-        self.kept.look()
-        self.go_on()
-
-    def go_on(self) -> None:
-        """Do what people are asked to do until something starts or finishes that was not done before."""
-
-        def goes_on() -> bool:
-            self.acknowledge()
-            return any(_does_work(each) for each in self.kept.look())
-
-        self.wait(goes_on, "nothing goes on")
+    station: Mortal
+    wire: Wire
 
     def killed(self) -> None:
         """The controller is killed at some moment and started again; AssertionError if anything is lost by that."""
         shown: dict[str, object] = {}
-        if self.chance.random() < 0.85:
-            self.get_back_to_work()
-            end = time.monotonic() + self.chance.uniform(0, UNTIL_KILLED)
+        if self.station.chance.random() < 0.85:
+            self.station.get_back_to_work()
+            end = time.monotonic() + self.station.chance.uniform(0, UNTIL_KILLED)
             while time.monotonic() < end:
-                self.acknowledge()
-                shown = self.browser.get("history?limit=1").json()["records"][0]
-                time.sleep(self.chance.uniform(0, 0.1))
-            self.seen[f"controllers killed {AT_WORK}"] += 1
+                self.station.acknowledge()
+                shown = self.station.browser.get("history?limit=1").json()["records"][0]
+                time.sleep(self.station.chance.uniform(0, 0.1))
+            self.station.seen[f"controllers killed {AT_WORK}"] += 1
         else:
-            time.sleep(self.chance.uniform(0, 4 * UNTIL_KILLED))
-            self.seen[f"controllers killed {AT_ONCE}"] += 1
-        self.kill("controller")
-        self.kept.look()
-        assert not shown or self.kept.has(shown), f"a record that was shown is gone: {shown}"
-        self.start("controller")
+            time.sleep(self.station.chance.uniform(0, 4 * UNTIL_KILLED))
+            self.station.seen[f"controllers killed {AT_ONCE}"] += 1
+        self.station.kill("controller")
+        self.station.kept.look()
+        assert not shown or self.station.kept.has(shown), f"a record that was shown is gone: {shown}"
+        self.station.start("controller")
 
     def troubled(self) -> None:
         """Something beside the controller dies, or there is no room left on the disk; then work goes on by itself."""
-        trouble = self.chance.choice([self.kill_workers, self.lose_server, self.fill_disk])
+        trouble = self.station.chance.choice([self.kill_workers, self.lose_server, self.fill_disk])
         trouble()
-        self.seen[trouble.__name__.replace("_", " ")] += 1
-        self.kept.look()
-        self.go_on()
+        self.station.seen[trouble.__name__.replace("_", " ")] += 1
+        self.station.kept.look()
+        self.station.go_on()
 
     def lose_server(self) -> None:
         """The server dies and is started again, while production goes on."""
-        self.kill("server")
-        time.sleep(self.chance.uniform(0, UNTIL_KILLED))
-        self.start("server")
-        self.wait(lambda: self.production() == "started", "production does not go on without the server")
+        self.station.kill("server")
+        time.sleep(self.station.chance.uniform(0, UNTIL_KILLED))
+        self.station.start("server")
+        self.station.wait(
+            lambda: self.station.production() == "started", "production does not go on without the server"
+        )
 
     def fill_disk(self) -> None:
         """The controller can write to no file any more: it says so, and commands nothing until it can again."""
-        controller = self._parts["controller"].pid
+        controller = self.station.pid("controller")
         resource.prlimit(controller, resource.RLIMIT_FSIZE, (0, resource.RLIM_INFINITY))
         try:
-            self.wait(lambda: "unjournalled" in self.alarms(), "nobody is told that nothing can be recorded")
-            self.kept.look()
+            self.station.wait(
+                lambda: "unjournalled" in self.station.alarms(), "nobody is told that nothing can be recorded"
+            )
+            self.station.kept.look()
             heard = self.commands
             time.sleep(STANDSTILL)
-            assert not self.kept.look(), "something was recorded on a full disk"
+            assert not self.station.kept.look(), "something was recorded on a full disk"
             assert self.commands == heard, "something was commanded that is not recorded"
         finally:
             unlimited = (resource.RLIM_INFINITY, resource.RLIM_INFINITY)
             resource.prlimit(controller, resource.RLIMIT_FSIZE, unlimited)
-        self.wait(lambda: "unjournalled" not in self.alarms(), "nothing can be recorded, though there is room again")
+        self.station.wait(
+            lambda: "unjournalled" not in self.station.alarms(), "nothing can be recorded, though there is room again"
+        )
+
+    def kill_workers(self) -> None:
+        """What the controller has started beside itself, such as its planner, is killed."""
+        for worker in self.station.children("controller"):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(worker, signal.SIGKILL)
+                self.station.seen["workers killed"] += 1
 
     @property
     def commands(self) -> int:
         """How many commands were heard on the wire."""
-        return sum(map(len, self._wire.heard.values()))
-
-    @property
-    def _wire(self) -> Wire:
-        assert self.wire is not None, "nobody listens"
-        return self.wire
-
-    def alarms(self) -> set[str]:
-        """What is wrong now, by its key."""
-        alarms: dict[str, dict[str, object]] = self.browser.get("alarms").json()["alarms"]
-        return {key for key, alarm in alarms.items() if alarm["ended"] is None}
+        return sum(map(len, self.wire.heard.values()))
 
     def judged(self) -> Counter[str]:
         """All that has been met; AssertionError when something happened twice, or should not have."""
-        self.kill("controller")  # or it would command more than the journal had when that was read
-        self.kept.look()
+        self.station.kill("controller")  # or it would command more than the journal had when that was read
+        self.station.kept.look()
         station, supervisor, _ = truck_engine()
         judge = Judge(station.automaton, supervisor)
-        judge.judge(self.database)
-        for topic, heard in self._wire.heard.items():
+        judge.judge(self.station.database)
+        for topic, heard in self.wire.heard.items():
             judge.require_decided(topic, heard)
-            self.seen["commands heard by devices"] += len(heard)
-        self.seen["records"] += self.kept.end.number
-        self.seen["starts"] += judge.starts.total()
-        return self.seen
+            self.station.seen["commands heard by devices"] += len(heard)
+        self.station.seen["records"] += self.station.kept.end.number
+        self.station.seen["starts"] += judge.starts.total()
+        return self.station.seen
 
 
 @contextlib.contextmanager
-def standing(
-    seed: str, *server: str, model: Path = MODEL, emulated: bool = True, wire: Wire | None = None
-) -> Iterator[Mortal]:
-    """A station of which nothing is started yet, with a folder of its own."""
-    with contextlib.ExitStack() as stack:
-        folder = Path(stack.enter_context(tempfile.TemporaryDirectory()))
-        database = Database.open(f"sqlite:///{folder}/station.sqlite")
-        stack.callback(database.close)
-        database.upgrade()
-        chance = random.Random(seed)
-        station = Mortal(folder, database, wire, chance, server=server, model=model, emulated=emulated)
-        stack.callback(station.end)
-        yield station
-
-
-@contextlib.contextmanager
-def mortal(seed: str, *server: str) -> Iterator[Mortal]:
-    """The bolt tightening station with devices of its own, about to start; `server` are more options of that."""
-    with listening(truck_engine()[0]) as wire, standing(seed, *server, wire=wire) as station:
-        for part in ("emulate", "server", "controller"):
-            station.start(part)
-        yield station
+def _killing(seed: str) -> Iterator[Killing]:
+    with listening(truck_engine()[0]) as wire, mortal(seed) as station:
+        yield Killing(station, wire)
 
 
 def lives(seed: str, kills: int) -> Counter[str]:
     """A station whose controller is killed so many times. AssertionError when anything is not as it should be."""
-    with mortal(seed) as station:
+    with _killing(seed) as killing:
         for _ in range(kills):
-            station.killed()
-        station.get_back_to_work()
-        return station.judged()
+            killing.killed()
+        killing.station.get_back_to_work()
+        return killing.judged()
 
 
 def troubles(seed: str, number: int) -> Counter[str]:
     """A station at work, in trouble so many times. AssertionError when anything is not as it should be."""
-    with mortal(seed) as station:
-        station.get_back_to_work()
+    with _killing(seed) as killing:
+        killing.station.get_back_to_work()
         for _ in range(number):
-            station.troubled()
-        return station.judged()
-
-
-def _does_work(record: RunRecord) -> bool:
-    return any(f'"{what}":[' in record.content for what in ("started", "ended"))
+            killing.troubled()
+        return killing.judged()

@@ -14,7 +14,7 @@ import httpx
 
 from control.rig import truck_engine
 from running.judging import Judge
-from running.killing import Mortal
+from running.mortal import Mortal
 from running.relay import Relay, relay
 from running.stations import MODEL
 from running.wire import Wire, listening
@@ -83,7 +83,7 @@ def pair(postgresql: Server, folder: Path, model: Path = MODEL) -> Iterator[Pair
             links[name] = stack.enter_context(relay(postgresql.folder, own))
             over = url.replace(str(postgresql.folder).replace("/", "%2F"), str(own).replace("/", "%2F"))
             assert over != url
-            both.append(Mortal(own, database, wire, random.Random(name), over, name, model=model))
+            both.append(Mortal(own, database, random.Random(name), over, name, model=model))
         first, second = both
         stack.callback(second.end)
         stack.callback(first.end)

@@ -16,10 +16,11 @@ import httpx
 from prometheus_client.parser import text_string_to_metric_families
 
 from running.days import example, mes_key
-from running.killing import PARTS, Mortal, standing
+from running.mortal import PARTS, Mortal, standing
 from stations.presses import write_presses
 
 PRESSES = 3
+STEPS = ("feed", "stamp", "trim")  # of each order
 PATIENCE = 3600.0  # seconds for all
 LOOK_EVERY = 1.0  # seconds
 PAGES = {
@@ -133,10 +134,13 @@ class Queue:
         ids = [f"{self.day.name}.{each}" for each in range(orders)]
         assert self.day.over == set(ids)
         assert self.day.differences() == []
-        wanted = [f"{id}/{step}_{1 + number % PRESSES}" for number, id in enumerate(ids) for step in ("stamp", "trim")]
+        wanted = [f"{id}/{step}_{1 + number % PRESSES}" for number, id in enumerate(ids) for step in STEPS]
         assert self.day.made == Counter(wanted)
-        outcomes = Counter(self.day.mes.response(id)["outcome"] for id in ids)
+        responses = [self.day.mes.response(id) for id in ids]
+        outcomes = Counter(each["outcome"] for each in responses)
         assert outcomes == {"completed": orders}, outcomes
+        undone = [each for found in responses for each in found["operations"] if each["started"] is None]
+        assert not undone, undone
         numbers = [each["number"] for each in self._all_events()]
         assert numbers == list(range(1, len(numbers) + 1))
 

@@ -15,7 +15,7 @@ from typing import Any
 import httpx
 import pytest
 
-from running.killing import Mortal, mortal
+from running.mortal import Mortal, mortal
 from sequence_planner.actor import SYSTEM
 from sequence_planner.identity import keys
 from sequence_planner.identity.roles import Scope

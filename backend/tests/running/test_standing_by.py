@@ -9,7 +9,7 @@ from pathlib import Path
 
 import httpx
 
-from running.killing import Mortal
+from running.mortal import Mortal
 from running.pairs import pair, standby, takes_over
 from running.stations import eventually
 from sequence_planner.lifeline import OVERTAKEN

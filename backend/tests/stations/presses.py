@@ -8,7 +8,7 @@ STATION = """\
 name: presses
 title: Presses
 enumerations:
-  part: [raw, stamped, trimmed]
+  part: [none, raw, stamped, trimmed]
 """
 
 RESOURCE = """\
@@ -21,8 +21,15 @@ measured:
 output:
   press: {{type: bool, initial: false}}
 estimated:
-  part: {{type: part, initial: raw}}
+  part: {{type: part, initial: none}}
 abilities:
+  feed:
+    enabled: not press and not down and part == none
+    start: {{do: [part := raw]}}
+  # It may have been left closed by whoever decided on its output.
+  open:
+    enabled: press and part in {{none, trimmed}}
+    start: {{do: [press := false]}}
 """
 
 ABILITY = """\
@@ -40,16 +47,18 @@ EFFECTS = """\
 """
 
 OPERATIONS = """\
-stamp_{n}: {{precondition: press_{n}.part == raw, goal: press_{n}.part != raw}}
+feed_{n}: {{precondition: press_{n}.part == none, goal: press_{n}.part != none}}
+stamp_{n}: {{precondition: press_{n}.part == raw, goal: "press_{n}.part in {{stamped, trimmed}}"}}
 trim_{n}: {{precondition: press_{n}.part == stamped, goal: press_{n}.part == trimmed}}
 """
 
 WORK_MASTER = """\
 part_{n}:
   title: A part of press {n}
-  brings: [press_{n}.part := raw]
+  brings: [press_{n}.part := none]
   operations:
-    stamp_{n}:
+    feed_{n}:
+    stamp_{n}: {{after: [feed_{n}]}}
     trim_{n}: {{after: [stamp_{n}]}}
 """
 

@@ -5,7 +5,7 @@ Each change is one transaction: the order, the record of who did it, and the eve
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from typing import Final
 
 from pydantic import JsonValue
@@ -23,6 +23,7 @@ from sequence_planner.mes.states import AT_ONCE, BEFORE_START, OVER, WISHES, Ord
 from sequence_planner.mes.tables import JOB_ORDERS
 
 MOST_OPEN: Final = 10_000  # orders that are not over
+_MOST_NAMED: Final = 500  # in one question to the database
 
 _SHOWN = JOB_ORDERS.c.removed.is_(None)
 # The states one by one, as the index has them: what is over is left out without being looked at.
@@ -201,12 +202,17 @@ def page(connection: Connection, state: OrderState | None, after: int, limit: in
     return [JobOrder.of(row) for row in connection.execute(chosen).mappings()]
 
 
-def open_orders(connection: Connection, state: OrderState | None = None) -> list[JobOrder]:
-    """All orders that are not over, as they were stored; only those in a state, if one is named."""
-    chosen = select(JOB_ORDERS).where(_OPEN).order_by(JOB_ORDERS.c.number)
-    if state is not None:
-        chosen = chosen.where(JOB_ORDERS.c.state == state.value)
-    return [JobOrder.of(row) for row in connection.execute(chosen).mappings()]
+def open_orders(connection: Connection, known: Sequence[JobOrder] = ()) -> list[JobOrder]:
+    """All orders that are not over, as they were stored. Of those `known` only what has changed since is read."""
+    revisions = select(JOB_ORDERS.c.number, JOB_ORDERS.c.revision).where(_OPEN).order_by(JOB_ORDERS.c.number)
+    numbers: dict[int, int] = {row.number: row.revision for row in connection.execute(revisions)}
+    found = {each.number: each for each in known if numbers.get(each.number) == each.revision}
+    changed = [number for number in numbers if number not in found]
+    for start in range(0, len(changed), _MOST_NAMED):
+        named = JOB_ORDERS.c.number.in_(changed[start : start + _MOST_NAMED])
+        chosen = select(JOB_ORDERS).where(_OPEN, named)
+        found |= {row["number"]: JobOrder.of(row) for row in connection.execute(chosen).mappings()}
+    return [found[number] for number in numbers if number in found]
 
 
 def those_over(connection: Connection, ids: Collection[str]) -> set[str]:

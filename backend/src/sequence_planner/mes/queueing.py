@@ -43,23 +43,32 @@ def queue(
     found, hindered = Queue(), _station_waits(view)
     worked = _worked(orders, view)
     first: dict[str, str] = {}  # by work master, the title of the first that is not worked yet
+    in_the_way_of: dict[str, list[str]] = {}  # by work master, what is; there are few of these, and many orders
     waiting = [each for each in orders if each.state is OrderState.ALLOWED_TO_START and not each.is_at_station]
     for order in sequence(waiting):
         waits = [*hindered, *_own_waits(order, masters, now)]
         if not waits and masters is not None:
-            waits = [
-                f"{title} is being worked" for title, other in worked if in_the_way(masters, order.work_master, other)
-            ] or [
-                f"{title} comes first"
-                for other, title in first.items()
-                if in_the_way(masters, order.work_master, other)
-            ]
-            first.setdefault(order.work_master, order.title)
+            master = order.work_master
+            if master not in in_the_way_of:
+                in_the_way_of[master] = _in_front(masters, master, worked, first)
+            waits = in_the_way_of[master]
+            if master not in first:
+                first[master] = order.title
+                in_the_way_of.clear()
         if waits or masters is None:
             found.waits[order.id] = waits or [UNHEARD]
         else:
             found.next.append(order)
     return found
+
+
+def _in_front(
+    masters: WorkMastersView, master: str, worked: Sequence[tuple[str, str]], first: Mapping[str, str]
+) -> list[str]:
+    """What an order of this work master waits for, of those that are worked or that come first."""
+    return [f"{title} is being worked" for title, other in worked if in_the_way(masters, master, other)] or [
+        f"{title} comes first" for other, title in first.items() if in_the_way(masters, master, other)
+    ]
 
 
 def _worked(orders: Sequence[JobOrder], view: StationView | None) -> list[tuple[str, str]]:

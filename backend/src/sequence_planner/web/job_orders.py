@@ -113,7 +113,9 @@ async def read_job_orders(
     """
     desk = desk_of(request)
     if sort is Sort.WORK:
-        ordered = desk.sequence(await identity.read(lambda connection: orders.open_orders(connection, state)))
+        known = desk.orders
+        found = await identity.read(lambda connection: orders.open_orders(connection, known))
+        ordered = desk.sequence([each for each in found if state is None or each.state is state])
         shown, rest = ordered[cursor : cursor + limit], len(ordered) - cursor - limit
         after = cursor + limit if rest > 0 else None
     else:

@@ -155,7 +155,8 @@ class OrderDesk:
         if anew or self._poked.is_set() or now - self._read > READ_EVERY:
             self._poked.clear()
             self._read = float("-inf")  # until they are read: what was poked for is not forgotten when that fails
-            self._orders = await self._office.read(orders.open_orders)
+            known = self._orders
+            self._orders = await self._office.read(lambda connection: orders.open_orders(connection, known))
             self._read = now
             self._dispatch.keep({each.id for each in self._orders})
 
