@@ -3,6 +3,7 @@ import type { Page } from '@playwright/test';
 import { mkdirSync } from 'node:fs';
 import { join } from 'node:path';
 import { done, restsOnPerson, takeControl } from '../station/seen.ts';
+import { ADA, EVA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
 const FOLDER = join(import.meta.dirname, '../../docs/screens');
@@ -100,4 +101,29 @@ test('the screens of engineers', async ({ operate, watch, browse }) => {
 	await page.getByRole('button', { name: 'Simulate' }).click();
 	await page.getByRole('heading', { name: 'What would happen' }).waitFor({ timeout: 60_000 });
 	await take(page, 'what-if', DESKS);
+});
+
+test.describe('where people are known', () => {
+	test.use({ byItself: false, devices: true, people: 'everybody' });
+
+	test('orders, and the screens of administrators', async ({ browse }) => {
+		const eva = await browse(EVA, '/orders');
+		await takeControl(eva);
+		const form = eva.getByRole('region', { name: 'A new order' });
+		for (const [description, priority] of [['Engine 4711', '0'], ['Engine 4712', '5'], ['Engine 4713', '1']] as const) {
+			await form.getByLabel('Description').fill(description);
+			await form.getByLabel('Priority').fill(priority);
+			await form.getByRole('button', { name: 'Store' }).click();
+			await eva.locator('[data-order]').filter({ hasText: description }).waitFor();
+		}
+		await eva.waitForTimeout(12_000); // until their order is computed
+		await take(eva, 'orders', DESKS);
+		for (const name of ['people', 'webhooks', 'backups']) {
+			const page = await browse(ADA, `/${name}`);
+			await page.locator('main h2').first().waitFor();
+			await page.waitForTimeout(1500);
+			await take(page, name, DESKS.slice(0, 1));
+			await page.close();
+		}
+	});
 });
