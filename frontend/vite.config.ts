@@ -7,6 +7,7 @@
 import adapter from '@sveltejs/adapter-static';
 import { sveltekit } from '@sveltejs/kit/vite';
 import { defineConfig } from 'vitest/config';
+import { noCycles } from './scripts/no-cycles.ts';
 import manifest from './package.json' with { type: 'json' };
 
 /** Where `npm run dev` finds a running station. */
@@ -32,16 +33,21 @@ export default defineConfig({
 			},
 			// The version is only compared for equality; a clock here would make every build differ.
 			version: { name: manifest.version, pollInterval: 0 }
-		})
+		}),
+		noCycles()
 	],
 	environments: {
 		client: {
 			build: {
 				rolldownOptions: {
 					output: {
-						// What pages share comes in few files: each one more takes longer to ask for than to bring.
+						// What pages share comes in few files: each one more takes longer to ask for than to bring. What all of it
+						// stands on is apart, or it would be merged with what stands on it, and files import one another in a circle.
 						codeSplitting: {
-							groups: [{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 20_000 }]
+							groups: [
+								{ name: 'svelte', test: /node_modules\/svelte\//, priority: 1 },
+								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 20_000 }
+							]
 						},
 						// Those are called after all pages that share them, which are no folders.
 						sanitizeFileName: (name) => name.replace(/^shared~.*/, 'shared').replace(/[^\w./-]/g, '_')

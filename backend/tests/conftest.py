@@ -24,6 +24,7 @@ HEAVY = (
     "web/test_connections.py",
     "web/test_ending.py",
     "web/test_looking.py",
+    "web/test_order_desk.py",
     "web/test_order_of_work.py",
     "web/test_stream.py",
     "web/test_watches.py",

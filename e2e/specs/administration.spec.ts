@@ -1,5 +1,7 @@
+import { rmSync, writeFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { examine } from '../station/barriers.ts';
-import { ADA } from '../station/station.ts';
+import { ADA, EVA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
 test.use({ shared: 'staffed', byItself: false, devices: true, people: 'everybody' });
@@ -34,6 +36,33 @@ test('a key is made, its secret is shown once, it gets another, and revoked it o
 	await ada.getByRole('dialog').getByRole('button', { name: 'Revoke' }).click();
 	await expect(ada.getByRole('status').filter({ hasText: 'The key Dashboard is revoked' })).toBeVisible();
 	expect([await read(secret), await read(next)]).toEqual([401, 401]);
+});
+
+test('a backup is made and checked by keyboard, damage to one is seen, and the commands that restore it are told', async ({ browse }) => {
+	const eva = await browse(EVA, '/backups');
+	await expect(eva.getByRole('heading', { name: 'This page needs the role administrator' })).toBeVisible();
+
+	const ada = await browse(ADA, '/backups');
+	const standing = ada.locator('[data-standing]');
+	await expect(standing).toContainText('There is no backup.');
+	await ada.getByRole('button', { name: 'Make a backup now' }).press('Enter');
+	const work = ada.getByTestId('backup-work');
+	await expect(work).toContainText('The last one was made, and is whole', { timeout: 60_000 });
+	await expect(standing).toContainText('The newest backup was made just now');
+	const row = ada.locator('[data-backup]');
+	await expect(row).toContainText('Ada');
+	await expect(row).toContainText('whole, read just now');
+	const file = (await row.getAttribute('data-backup')) ?? '';
+	const folder = await ada.locator('dd code').innerText();
+	await expect(ada.getByRole('group', { name: 'To restore the backup' })).toContainText(`restore ${folder}/${file} `);
+	await examine(ada, 'backups');
+
+	writeFileSync(join(folder, file), 'damaged');
+	await ada.getByRole('button', { name: `Check ${file}` }).press('Enter');
+	await expect(work).toContainText('The check has failed', { timeout: 60_000 });
+	await expect(standing).toContainText('There is no backup that is whole.');
+	await examine(ada, 'backups-damaged');
+	rmSync(join(folder, file));
 });
 
 test('sign-in and account are free of barriers, on every screen and in both themes', async ({ browse }) => {

@@ -37,6 +37,7 @@ _PATHS: Final = (
     "private_key",
     "database_file",
     "oidc_client_secret_file",
+    "backup_folder",
 )  # from the file's folder, where they are relative
 _SECRET: Final = "database"
 
@@ -71,6 +72,9 @@ class Configuration(BaseModel):
     oidc_others: str | None = None
     webhook_host: list[str] | None = None
     webhook_loopback: bool | None = None
+    backup_folder: Path | None = None
+    backups_kept: Annotated[int, Field(ge=1, le=1000)] | None = None
+    backup_every: Annotated[float, Field(ge=0.25, le=8760)] | None = None
     log_format: LogFormat | None = None
 
 

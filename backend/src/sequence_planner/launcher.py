@@ -17,13 +17,14 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import structlog
 
 from sequence_planner.announcement import UNWELL, announced, first_start, health
+from sequence_planner.backup.settings import Keeping
 from sequence_planner.control.unix_socket import LONGEST_PATH
 from sequence_planner.identity.openid.options import ProviderOptions
 from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED, OVERTAKEN
@@ -68,19 +69,27 @@ class Launch:
     provider: ProviderOptions = field(default_factory=ProviderOptions)
     log_format: LogFormat = LogFormat.TEXT
     webhooks: Targets = field(default_factory=Targets)
+    backups: Keeping = field(default_factory=Keeping)
 
 
 class Part:
     """A process of the station, which is started again when it dies. It gets the environment `given`, or one without
     secrets.
 
-    One that `has_spare` is followed at once by another process that was started before.
+    One that `has_spare` is followed at once by another process that was started before. Whenever it is started after
+    the first time it is told `again`.
     """
 
     def __init__(
-        self, name: str, command: list[str], given: Mapping[str, str] | None = None, has_spare: bool = False
+        self,
+        name: str,
+        command: list[str],
+        given: Mapping[str, str] | None = None,
+        has_spare: bool = False,
+        again: Sequence[str] = (),
     ) -> None:
         self.name = name
+        self._told_again = again
         self._has_spare = has_spare
         self.spare: subprocess.Popen[bytes] | None = None
         self._spare_due = 0.0
@@ -116,7 +125,7 @@ class Part:
         now = time.monotonic()
         if self.process is None:
             if now >= self._due:
-                self.spawn()
+                self.spawn(*self._told_again)
             return 0
         code = self.process.poll()
         if code is None:
@@ -133,7 +142,7 @@ class Part:
             if code == OVERTAKEN:
                 _say("another station has taken the command, and this one stands by")
             if not self._follow(now):
-                self.spawn()
+                self.spawn(*self._told_again)
             return 0
         self.restarts += 1
         if self._follow(now):
@@ -244,12 +253,15 @@ class _Launcher:
         # Not as an argument: the URL may hold a password, and everybody on this machine may read what `ps` shows.
         of_controller = {**environment(PASSWORD), DATABASE: url}
         of_server = {**environment(PASSWORD, CLIENT_SECRET), DATABASE: url}
-        self._controller = Part("controller", _command("controller", *controller), of_controller, has_spare=True)
+        self._controller = Part(
+            "controller", _command("controller", *controller), of_controller, has_spare=True, again=("--again",)
+        )
         server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
         server += ["--demonstration"] if request.database is None else []
         server += request.provider.arguments()
         server += [f"--webhook-host={host}" for host in request.webhooks.written]
         server += ["--webhook-loopback"] if request.webhooks.loopback else []
+        server += request.backups.arguments()
         self._server = Part("server", _command("server", *server, *_options(request.endpoint)), of_server)
         self._emulator = Part("emulated devices", _command("emulate", model, *speed, *transport))
 

@@ -69,6 +69,16 @@ def end_without_parent() -> None:
         _when(parent.join, lambda: os._exit(1))
 
 
+def lead_group_without_parent() -> None:
+    """Let this process, which `multiprocessing` has started, lead a group of its own, and end all of it as soon as its
+    parent has ended.
+    """
+    os.setsid()
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        _when(parent.join, lambda: os.killpg(0, signal.SIGKILL))
+
+
 def _when(wait: Callable[[], None], act: Callable[[], None]) -> None:
     def watch() -> None:
         wait()

@@ -251,7 +251,7 @@ def test_by_the_command_line(tmp_path: Path, model: Path, monkeypatch: pytest.Mo
     monkeypatch.setattr(postgresql_programs, "_INSTALLED", tmp_path)
     monkeypatch.setenv("PATH", str(tmp_path))
     with pytest.raises(StorageError, match="sudo apt-get install postgresql-client"):
-        postgresql_programs._program("pg_dump")
+        postgresql_programs.program("pg_dump")
 
 
 @pytest.mark.parametrize(

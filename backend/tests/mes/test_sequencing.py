@@ -10,6 +10,9 @@ import pytest
 from hypothesis import example, given, settings
 
 from mes.works import NOW, Exclusive, best, check, objective, questions, shop
+from sequence_planner.actor import SYSTEM
+from sequence_planner.control.job_commands import JobOperation, JobWait, SequenceJobs
+from sequence_planner.control.link_messages import LONGEST_COMMAND, CommandMessage, encode
 from sequence_planner.mes.sequencing.sequencing import by_rule, sequence
 from sequence_planner.mes.sequencing.waits import waits_among
 from sequence_planner.mes.sequencing.work import Operation, Schedule, Work
@@ -170,3 +173,30 @@ def test_times_far_away_do_no_harm() -> None:
     schedule = sequence(works, [], NOW, 5)
     assert sorted(schedule.jobs) == ["a", "b", "c"]
     assert schedule.late["a"] > 0
+
+
+def test_the_order_between_forty_jobs_fits_into_a_line_to_the_controller() -> None:
+    names = ["robot", "nutrunner", "operator", "gantry"]
+    works = [
+        Work(
+            f"order-2026-{job:08d}",
+            0,
+            None,
+            None,
+            {
+                f"assemble_engine_{job}.step_{step}": Operation(
+                    frozenset(), 5.0, frozenset({names[step % 4], names[(step + job) % 4]})
+                )
+                for step in range(20)
+            },
+            True,
+        )
+        for job in range(40)
+    ]
+    waits = [
+        JobWait(job=job, operation=operation, for_=[JobOperation(job=other, operation=its) for other, its in before])
+        for (job, operation), before in by_rule(works, [], NOW, "").waits.items()
+    ]
+    command = SequenceJobs(actor=SYSTEM, waits=waits)
+    line = encode(CommandMessage(id=1, command=command, expires=1.0, request=None))
+    assert 64 * 1024 < len(line) <= LONGEST_COMMAND

@@ -92,9 +92,10 @@ class Mortal:
             self.start(part)
 
     def end(self) -> None:
-        """All processes end in good order."""
+        """All processes end in good order, those that were stopped too."""
         for each in self._parts.values():
             each.terminate()
+            each.send_signal(signal.SIGCONT)
         for each in self._parts.values():
             each.wait(timeout=20)
 
@@ -159,16 +160,21 @@ class Mortal:
         for id_, task in self.browser.get("tasks").json()["tasks"].items():
             self.ask("POST", f"tasks/{id_}/acknowledgement", {"revision": task["revision"]})
 
+    def decide(self) -> bool:
+        """Decide what devices shall do, where somebody has to; whether that was so."""
+        undecided = self.browser.get("station").json()["undecided"]
+        for name, each in undecided.items():
+            value = self.chance.choice([each["value"], *each["quiet"]])
+            answer = self.ask("PUT", "outputs", {"values": {name: value}, "reason": "looked at"})
+            self.seen["outputs decided on" if answer.is_success else "decisions refused"] += 1
+        return bool(undecided)
+
     def begin_production(self) -> None:
         """Decide what devices shall do, and start production."""
         self.wait(lambda: self.production() == "waiting", "it is not up")
 
         def started() -> bool:
-            station = self.browser.get("station").json()
-            for name, undecided in station["undecided"].items():
-                value = self.chance.choice([undecided["value"], *undecided["quiet"]])
-                answer = self.ask("PUT", "outputs", {"values": {name: value}, "reason": "looked at"})
-                self.seen["outputs decided on" if answer.is_success else "decisions refused"] += 1
+            self.decide()
             answer = self.ask("POST", "production/start", {"reason": "looked at"})
             if answer.status_code == httpx.codes.CONFLICT:
                 assert answer.json()["type"] in ("/problems/outputs-undecided",), answer.text

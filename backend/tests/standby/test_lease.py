@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from threading import Thread
@@ -12,7 +13,8 @@ from hypothesis import strategies as st
 from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, rule, run_state_machine_as_test
 from sqlalchemy import delete, event, select
 
-from sequence_planner.standby.lease import EVERY, LASTS, MARGIN, Lease, open_lease
+from sequence_planner.standby.keeper import Keeper, LeaseLostError
+from sequence_planner.standby.lease import EVERY, LASTS, LEAVES, MARGIN, Lease, open_lease
 from sequence_planner.standby.tables import LEASE, STANDBYS
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
@@ -169,6 +171,31 @@ def test_a_database_that_is_away_is_told(tmp_path: object) -> None:
     with pytest.raises(StorageError, match="cannot be reached"):
         lease.try_to_take()
     assert not lease.held
+
+
+def test_who_is_cut_off_for_long_leaves_the_network_to_others(url: str, tmp_path: object) -> None:
+    now = Now()
+    away = open_lease(f"postgresql://nobody@/nothing?host={tmp_path}", NAMES[0], MODEL)
+    with stations(url, {NAMES[0]: MODEL}, now) as opened:
+        (lease,) = opened.values()
+        assert lease.try_to_take()
+        there, lease.engine = lease.engine, away.engine
+
+        async def cut_off() -> None:
+            keeper = Keeper(lease)
+            keeper.begin()
+            lost = asyncio.create_task(keeper.lost())
+            now.seconds += LASTS
+            done, _ = await asyncio.wait({lost}, timeout=3 * EVERY)
+            assert not done, "the database may come back before anybody else is there"
+            now.seconds += LEAVES
+            with pytest.raises(LeaseLostError):
+                await asyncio.wait_for(lost, 10.0)
+            await keeper.end(deployed=False)
+
+        asyncio.run(cut_off())
+        lease.engine = there
+    away.close()
 
 
 class Rivals(RuleBasedStateMachine):

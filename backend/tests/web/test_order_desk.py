@@ -104,6 +104,14 @@ def test_a_job_whose_order_is_over_is_aborted(mes: httpx.Client, controller: Wor
     until(lambda: [(each.job, each.what) for each in controller.said(CommandJob)][:1] == [("engine", "abort")])
 
 
+def test_a_job_whose_order_was_cancelled_is_aborted(mes: httpx.Client, controller: Working) -> None:
+    controller.refuses = {TakeJob: "job-conflict"}  # and is taken all the same, as by an older word
+    handed_over(mes, controller, "engine")
+    until(lambda: tell(mes, "engine", "Cancel").status_code == 200)
+    controller.shows(engine=JobState.RUNNING)
+    until(lambda: [(each.job, each.what) for each in controller.said(CommandJob)][:1] == [("engine", "abort")])
+
+
 def test_an_order_that_the_station_does_not_know_can_be_aborted(
     mes: httpx.Client, controller: Working, server: Server
 ) -> None:

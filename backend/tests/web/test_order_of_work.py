@@ -12,6 +12,7 @@ from sequence_planner.control.job_commands import SequenceJobs, TakeJob
 from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
 from sequence_planner.control.view import Mode
 from sequence_planner.control.work_master_view import WorkMasterView, WorkOperationView
+from sequence_planner.mes.sequencing.known_times import KnownTimes
 from sequence_planner.web import order_of_work
 
 from .example_answers import WORK_MASTERS
@@ -82,6 +83,26 @@ def test_orders_are_to_begin_as_they_are_due(mes: httpx.Client) -> None:
         assert tell(mes, name, "Abort").status_code == 200
 
 
+def waits_told(controller: Telling) -> list[tuple[str, str]]:
+    """Which job waits for which, as the controller was told last."""
+    said = [each for each in controller.commands if isinstance(each, SequenceJobs)]
+    return [(wait.job, each.job) for wait in said[-1].waits for each in wait.for_] if said else []
+
+
+def test_what_cannot_be_put_into_an_order_leaves_the_order_there_was(
+    mes: httpx.Client, controller: Telling, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("left", "right"):
+        store(mes, name, id=name, work_master=name, due=None, start=True)
+    until(lambda: mes.get(PLACE).json()["time"] is not None, 30)
+    monkeypatch.setattr(KnownTimes, "seconds", lambda *_: 1e9)
+    store(mes, "endless", id="endless", work_master="left", due=None, start=True)
+    steps = {"left": JobStepState.ACTIVE, "right": JobStepState.ELIGIBLE, "endless": JobStepState.ELIGIBLE}
+    jobs = {name: job(name, state, 1.0 if name == "left" else None) for name, state in steps.items()}
+    controller.show(controller.view.model_copy(update={"jobs": jobs}))
+    until(lambda: waits_told(controller) == [("right", "left")], 20)
+
+
 def test_the_station_is_told_which_operation_waits_for_which(
     mes: httpx.Client, controller: Telling, server: Server, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -95,13 +116,9 @@ def test_the_station_is_told_which_operation_waits_for_which(
     }
     controller.show(controller.view.model_copy(update={"jobs": jobs}))
 
-    def waits() -> list[tuple[str, str]]:
-        said = [each for each in controller.commands if isinstance(each, SequenceJobs)]
-        return [(wait.job, each.job) for wait in said[-1].waits for each in wait.for_] if said else []
-
-    until(lambda: waits() == [("right", "left")], 30)
+    until(lambda: waits_told(controller) == [("right", "left")], 30)
     monkeypatch.setattr(order_of_work, "HELD_UP", 0.0)  # as after a while in which it was not begun
     controller.show(
         controller.view.model_copy(update={"jobs": jobs | {"left": job("left", JobStepState.ELIGIBLE, None)}})
     )
-    until(lambda: waits() == [], 20)
+    until(lambda: waits_told(controller) == [], 20)

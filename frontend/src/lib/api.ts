@@ -331,6 +331,50 @@ export interface paths {
         patch?: never;
         trace?: never;
     };
+    "/api/v1/backups": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * All Backups
+         * @description Which backups there are, what is being done, and what would be in the way of another.
+         */
+        get: operations["all_backups"];
+        put?: never;
+        /**
+         * Make
+         * @description Make a backup in the background. Whoever asks while one is being made gets that one.
+         */
+        post: operations["make"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/backups/{file}/check": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Check
+         * @description Read a backup as a whole in the background, as if it were to be restored, but put nothing in place.
+         */
+        post: operations["check"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
     "/api/v1/capabilities": {
         parameters: {
             query?: never;
@@ -3032,6 +3076,130 @@ export interface components {
             title: string;
         };
         /**
+         * BackupAnswer
+         * @description A file in the folder, and the commands that restore it; `content` is null, and `wrong` says why, where the file
+         *     cannot be read.
+         */
+        BackupAnswer: {
+            checked: components["schemas"]["BackupCheckedAnswer"] | null;
+            content: components["schemas"]["BackupContentAnswer"] | null;
+            /** File */
+            file: string;
+            restoring: components["schemas"]["RestoreInstructions"] | null;
+            /** Size */
+            size: number;
+            /** Wrong */
+            wrong: string | null;
+        };
+        /**
+         * BackupAttemptAnswer
+         * @description How what was done last ended: `requested` where the server ended before.
+         */
+        BackupAttemptAnswer: {
+            /** By */
+            by: string;
+            doing: components["schemas"]["Doing"];
+            /** File */
+            file: string;
+            outcome: components["schemas"]["Outcome"];
+            /** Time */
+            time: number;
+            trouble: components["schemas"]["BackupTroubleAnswer"] | null;
+        };
+        /**
+         * BackupBusyAnswer
+         * @description What is done just now; `step` is null until it has begun.
+         */
+        BackupBusyAnswer: {
+            /** Begun */
+            begun: number;
+            /** By */
+            by: string;
+            doing: components["schemas"]["Doing"];
+            /** File */
+            file: string;
+            step: components["schemas"]["Step"] | null;
+        };
+        /**
+         * BackupCheckedAnswer
+         * @description How a backup was found when it was last read as a whole, which is also done when it is made.
+         */
+        BackupCheckedAnswer: {
+            /** By */
+            by: string;
+            /** Detail */
+            detail: string;
+            /** Time */
+            time: number;
+            /** Whole */
+            whole: boolean;
+        };
+        /**
+         * BackupContentAnswer
+         * @description What a backup says of itself. `how` and `by` are null where it does not tell who made it.
+         *
+         *     `time` is in seconds since the epoch; `audit` and `run` are the last records of who did what, and of what happened.
+         */
+        BackupContentAnswer: {
+            /** Audit */
+            audit: number;
+            /** By */
+            by: string | null;
+            /** Database */
+            database: string;
+            how: components["schemas"]["How"] | null;
+            /** Model Files */
+            model_files: number;
+            /** Program */
+            program: string;
+            /** Revisions */
+            revisions: boolean;
+            /** Run */
+            run: number;
+            /** Station */
+            station: string;
+            /** Time */
+            time: number;
+        };
+        /**
+         * BackupTroubleAnswer
+         * @description What is in the way: of which kind, and in words with what to do.
+         */
+        BackupTroubleAnswer: {
+            /** Detail */
+            detail: string;
+            kind: components["schemas"]["Trouble"];
+        };
+        /**
+         * BackupsAnswer
+         * @description Backups, the newest first, and where and how they are kept. `free` is in bytes, `every` in hours.
+         *
+         *     The newest is old when it is older than `old_after` (seconds). `trouble` is what keeps one from being made, `last`
+         *     how the last attempt ended, `user` who runs the station on its machine. With `same_disk` the disk of the database
+         *     keeps its backups as well.
+         */
+        BackupsAnswer: {
+            /** Backups */
+            backups: components["schemas"]["BackupAnswer"][];
+            busy: components["schemas"]["BackupBusyAnswer"] | null;
+            /** Every */
+            every: number | null;
+            /** Folder */
+            folder: string;
+            /** Free */
+            free: number | null;
+            /** Kept */
+            kept: number;
+            last: components["schemas"]["BackupAttemptAnswer"] | null;
+            /** Old After */
+            old_after: number;
+            /** Same Disk */
+            same_disk: boolean;
+            trouble: components["schemas"]["BackupTroubleAnswer"] | null;
+            /** User */
+            user: string;
+        };
+        /**
          * BeginBody
          * @description The page of this server that is opened in the end.
          */
@@ -3624,6 +3792,12 @@ export interface components {
             /** Safe */
             safe: boolean | number | string;
         };
+        /**
+         * Doing
+         * @description What is done with a backup, as the journal calls it.
+         * @enum {string}
+         */
+        Doing: "make-backup" | "check-backup";
         /**
          * DraftEdgeView
          * @description An edge: the types of a record's fields, null where nobody can say; `id` stays when others come and go.
@@ -4392,6 +4566,12 @@ export interface components {
             /** Type */
             type: string | null;
         };
+        /**
+         * How
+         * @description How it came that a backup was made.
+         * @enum {string}
+         */
+        How: "asked" | "schedule" | "command-line";
         /**
          * InvolvedView
          * @description A variable that decides a condition. With one of the values `wanted`, and nothing else different, it would hold.
@@ -5989,6 +6169,16 @@ export interface components {
             number: number;
         };
         /**
+         * RestoreInstructions
+         * @description Commands: the first moves away what there is, keys excepted; the second puts the backup in its place.
+         */
+        RestoreInstructions: {
+            /** Away */
+            away: string;
+            /** Restore */
+            restore: string;
+        };
+        /**
          * Resync
          * @description The client wants a new snapshot.
          */
@@ -6746,6 +6936,12 @@ export interface components {
             way_back: components["schemas"]["WayBackView"] | null;
         };
         /**
+         * Step
+         * @description How far the making of a backup has come.
+         * @enum {string}
+         */
+        Step: "copying" | "writing" | "checking";
+        /**
          * StepDocument
          * @description A step of a trace: what happens (`kind` and `names`), what changes, and the specifications that forbid the state
          *     after it; `text` says it in a line.
@@ -7222,6 +7418,12 @@ export interface components {
             /** Name */
             name: string;
         };
+        /**
+         * Trouble
+         * @description Kinds of trouble that people remedy in different ways.
+         * @enum {string}
+         */
+        Trouble: "no-space" | "no-folder" | "not-writable" | "no-program" | "not-whole" | "other";
         /**
          * TypeKind
          * @description What values a type has.
@@ -8490,6 +8692,126 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    all_backups: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BackupsAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    make: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NothingBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BackupBusyAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    check: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                file: string;
+            };
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NothingBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["BackupBusyAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             503: components["responses"]["Problem503"];
             /** @description A problem */

@@ -6,24 +6,26 @@ import contextlib
 import os
 import sqlite3
 from pathlib import Path
-from typing import Final, Literal
+from typing import Final, Literal, TypeAlias
 from urllib.parse import quote
 
 from sqlalchemy import Connection, inspect, text
 
-from sequence_planner.backup.postgresql_programs import run
+from sequence_planner.backup.postgresql_programs import read_through, run
+from sequence_planner.backup.trouble import BackupError, Trouble, no_space
 from sequence_planner.journal.verification import Verified, verify
 from sequence_planner.storage.address import SqliteFile, address
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
 
+Kind: TypeAlias = Literal["sqlite", "postgresql"]
 _BESIDE: Final = ("-wal", "-shm", "-journal")  # what SQLite keeps beside a file that is in use
 _OTHERS: Final = text(
     "SELECT count(*) FROM pg_stat_activity WHERE datname = current_database() AND pid <> pg_backend_pid()"
 )
 
 
-def kind_of(url: str) -> Literal["sqlite", "postgresql"]:
+def kind_of(url: str) -> Kind:
     """Which of the two a URL names. Raises `StorageError`."""
     return "sqlite" if isinstance(address(url), SqliteFile) else "postgresql"
 
@@ -81,6 +83,14 @@ def put(url: str, copied: Path) -> Verified:
     return verified
 
 
+def verified_copy(kind: Kind, copied: Path) -> Verified | None:
+    """The journal of a copy that is in no place yet; None where only a server reads it. Raises `StorageError`."""
+    if kind == "sqlite":
+        return _verified(copied)
+    read_through(copied)
+    return None
+
+
 def _require_nobody(connection: Connection, place: str) -> None:
     if inspect(connection).get_table_names():
         raise StorageError(
@@ -100,9 +110,11 @@ def _copy_file(file: SqliteFile, to: Path) -> None:
             source.backup(target)
             (found,) = target.execute("PRAGMA integrity_check").fetchone()
     except sqlite3.Error as error:
+        if error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_FULL:
+            raise no_space(to.parent, str(error)) from error
         raise StorageError(f"{file} cannot be copied: {error}") from error
     if found != "ok":
-        raise StorageError(f"{file} is damaged: {found}")
+        raise BackupError(Trouble.NOT_WHOLE, f"{file} is damaged: {found}")
 
 
 def _verified(file: Path) -> Verified:

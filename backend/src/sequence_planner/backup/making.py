@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import shutil
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from enum import StrEnum
 from importlib import metadata
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Final
 
-from sequence_planner.backup.archive import DATABASE, MODEL, REVISIONS, ChainEnd, Manifest, sums, write
+from sequence_planner.backup.archive import DATABASE, MODEL, REVISIONS, ChainEnd, Maker, Manifest, sums, write
 from sequence_planner.backup.copies import copy, kind_of
+from sequence_planner.backup.trouble import BackupError, Trouble, trouble_of
 from sequence_planner.journal.chain import Position
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
@@ -21,21 +23,39 @@ from sequence_planner.workshop.files import read_files, write_files
 _UNFINISHED: Final = ("tmp", ".lock")  # how git's files begin or end that are being written
 
 
-def back_up(url: str, model: Path, file: Path) -> Manifest:
+class Step(StrEnum):
+    """How far the making of a backup has come."""
+
+    COPYING = "copying"  # the database and what else belongs to it; the journal in the copy is verified
+    WRITING = "writing"  # all of that to the one file
+    CHECKING = "checking"  # what was written, by reading it again
+
+
+def back_up(
+    url: str,
+    model: Path,
+    file: Path,
+    maker: Maker | None = None,
+    tell: Callable[[Step], None] = lambda step: None,
+) -> Manifest:
     """Write the backup of the station in the folder `model` to `file`. Raises `StorageError`.
 
-    What cannot be restored is not kept: the journal is verified in the copy itself.
+    It says who the `maker` is. What cannot be restored is not kept: the journal is verified in the copy itself.
     """
     if file.exists():
         raise StorageError(f"{file} is there already: name another file")
     database = Database.open(url, create=False)
     try:
         database.check()
-        with TemporaryDirectory(prefix=".backup-", dir=file.absolute().parent) as gathered:
+        with TemporaryDirectory(prefix=f".{file.stem}-", dir=file.absolute().parent) as gathered:
             folder = Path(gathered)
+            tell(Step.COPYING)
             verified = copy(database, folder / DATABASE)
             if verified.wrong:
-                raise StorageError(f"{database.place} has a journal that is not whole: {'; '.join(verified.wrong)}")
+                raise BackupError(
+                    Trouble.NOT_WHOLE,
+                    f"{database.place} has a journal that is not whole: {'; '.join(verified.wrong)}",
+                )
             _copy_revisions(revisions_folder(url, model), folder / REVISIONS)
             write_files(read_files(model), folder / MODEL, stages=model)
             manifest = Manifest(
@@ -43,14 +63,16 @@ def back_up(url: str, model: Path, file: Path) -> Manifest:
                 program=metadata.version("sequence-planner"),
                 time=time.time(),
                 station=model.resolve().name,
+                maker=maker,
                 database=kind_of(url),
                 audit=_end(verified.audit),
                 run=_end(verified.run),
                 files=sums(folder),
             )
+            tell(Step.WRITING)
             write(folder, manifest, file)
     except OSError as error:
-        raise StorageError(f"the backup cannot be made: {error.strerror}: {error.filename}") from error
+        raise trouble_of(error, file.parent) from error
     finally:
         database.close()
     return manifest

@@ -11,11 +11,11 @@ from pydantic import JsonValue
 from sqlalchemy import delete
 
 from sequence_planner.actor import Actor
-from sequence_planner.backup.archive import DATABASE, MODEL, REVISIONS, ChainEnd, Manifest, opened
+from sequence_planner.backup.archive import DATABASE, MODEL, REVISIONS, Manifest, opened
 from sequence_planner.backup.copies import kind_of, put, require_empty
+from sequence_planner.backup.whole import not_as_told
 from sequence_planner.identity.tables import FIRST_START_LINKS, PAIRING_OFFERS, SESSIONS
 from sequence_planner.journal.audit import append
-from sequence_planner.journal.chain import Position
 from sequence_planner.journal.entry import Entry
 from sequence_planner.journal.verification import Verified
 from sequence_planner.storage.database import Database
@@ -37,7 +37,7 @@ def restore(file: Path, url: str, model: Path, by: Actor) -> Manifest:
         if manifest.database != kind_of(url):
             raise StorageError(f"{file} is of {manifest.database}, and can be restored to such a database only")
         _require_same_model(unpacked / MODEL, model)
-        _require_whole(put(url, unpacked / DATABASE), manifest, url)
+        _require_whole(put(url, unpacked / DATABASE), manifest)
         _sign_out(url, file, manifest, by)
         if (unpacked / REVISIONS).is_dir():
             shutil.copytree(unpacked / REVISIONS, revisions, dirs_exist_ok=True)
@@ -58,17 +58,9 @@ def _require_same_model(kept: Path, model: Path) -> None:
         )
 
 
-def _require_whole(verified: Verified, manifest: Manifest, url: str) -> None:
-    wrong = [*verified.wrong]
-    for name, end, then in (("audit", verified.audit, manifest.audit), ("run", verified.run, manifest.run)):
-        if not _is(end, then):
-            wrong.append(f"the chain {name} ends with record {end.number}, and the backup says {then.number}")
-    if wrong:
+def _require_whole(verified: Verified, manifest: Manifest) -> None:
+    if wrong := [*not_as_told(verified, manifest)]:
         raise StorageError(f"the journal is not whole, and nothing may be run on what was restored: {'; '.join(wrong)}")
-
-
-def _is(end: Position, then: ChainEnd) -> bool:
-    return (end.number, end.hash) == (then.number, then.hash)
 
 
 def _sign_out(url: str, file: Path, manifest: Manifest, by: Actor) -> None:

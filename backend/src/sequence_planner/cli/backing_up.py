@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import time
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated
@@ -9,6 +11,7 @@ from typing import Annotated
 import typer
 
 from sequence_planner.cli.options import DatabaseOption, StationFolder, database_url, refuse
+from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
 
 
@@ -18,10 +21,18 @@ def backup(
     database: DatabaseOption = None,
 ) -> None:
     """Write a station's database, revisions and model to one file, while it runs or not."""
+    from sequence_planner.backup.archive import How, Maker  # noqa: PLC0415
     from sequence_planner.backup.making import back_up  # noqa: PLC0415
+    from sequence_planner.backup.recording import Doing, ended  # noqa: PLC0415
+    from sequence_planner.cli.acting import at_the_command_line  # noqa: PLC0415
+    from sequence_planner.user import user_name  # noqa: PLC0415
 
+    url = database_url(model, database)
     try:
-        made = back_up(database_url(model, database), model, to)
+        made = back_up(url, model, to, Maker(how=How.COMMAND_LINE, name=user_name()))
+        with contextlib.closing(Database.open(url, create=False)) as opened, opened.writing() as connection:
+            details = {"folder": str(to.absolute().parent)}
+            ended(connection, Doing.MAKING, at_the_command_line(), to.name, time.time(), details=details)
     except StorageError as error:
         refuse(str(error))
     typer.echo(

@@ -34,6 +34,7 @@ def controller(
     database: DatabaseOption = None,
     hot_standby: Annotated[str | None, typer.Option("--hot-standby")] = None,
     launched: Launched = False,
+    again: Annotated[bool, typer.Option("--again", hidden=True, help="One that ran before has ended.")] = False,
     spare: Annotated[bool, typer.Option("--spare", hidden=True, help="Wait until the launcher says so.")] = False,
 ) -> None:
     """Run the controller alone; `run` does this."""
@@ -43,9 +44,10 @@ def controller(
     station = prepare(model)
     network = Network(station, transport, rosbridge)
     url = database_url(model, database)
+    again = again or spare
     try:
         until_interrupted(
-            lambda connect: control(Running(station, model, socket, connect, emulated, start, url, hot_standby)),
+            lambda connect: control(Running(station, model, socket, connect, emulated, start, url, hot_standby, again)),
             network,
         )
     except SynthesisEndedError as error:

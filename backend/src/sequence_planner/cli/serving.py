@@ -9,6 +9,7 @@ from typing import Annotated
 
 import typer
 
+from sequence_planner.backup.settings import KEPT, Keeping
 from sequence_planner.cli.configured import ConfigurationOption
 from sequence_planner.cli.options import DatabaseOption, StationFolder, database_url, refuse
 from sequence_planner.cli.parts import (
@@ -63,6 +64,22 @@ WebhookLoopback = Annotated[
     bool,
     typer.Option("--webhook-loopback", help="Such a host may be this machine too, and be reached by HTTP there."),
 ]
+BackupFolder = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FOLDER",
+        help="Where backups are kept, a folder that is there. By default one beside the database, made with the first.",
+    ),
+]
+BackupsKept = Annotated[
+    int, typer.Option(min=1, max=1000, help="How many backups are kept; the oldest go, but only for one that is whole.")
+]
+BackupEvery = Annotated[
+    float | None,
+    typer.Option(
+        min=0.25, max=8760, metavar="HOURS", help="Make a backup every so many hours; by default when asked only."
+    ),
+]
 Demonstration = Annotated[
     bool,
     typer.Option(
@@ -111,6 +128,9 @@ def run(
     log_format: Annotated[LogFormat, typer.Option(help="Write events as text for people or as JSON.")] = LogFormat.TEXT,
     webhook_host: WebhookHosts = None,
     webhook_loopback: WebhookLoopback = False,
+    backup_folder: BackupFolder = None,
+    backups_kept: BackupsKept = KEPT,
+    backup_every: BackupEvery = None,
 ) -> None:
     """Run a station: controller, server and page."""
     from sequence_planner.launcher import Launch, launch  # noqa: PLC0415
@@ -168,6 +188,7 @@ def run(
         provider=provider,
         log_format=log_format,
         webhooks=webhooks,
+        backups=Keeping(backup_folder, backups_kept, backup_every),
     )
     try:
         raise typer.Exit(launch(asked))
@@ -213,6 +234,9 @@ def server(
     oidc_others: Others = NO_OTHERS,
     webhook_host: WebhookHosts = None,
     webhook_loopback: WebhookLoopback = False,
+    backup_folder: BackupFolder = None,
+    backups_kept: BackupsKept = KEPT,
+    backup_every: BackupEvery = None,
     launched: Launched = False,
 ) -> None:
     """Run the server alone; `run` does this."""
@@ -248,6 +272,7 @@ def server(
             demonstration=demonstration,
             provider=provider,
             webhooks=_targets(webhook_host, webhook_loopback),
+            backups=Keeping(backup_folder, backups_kept, backup_every),
         )
     )
 

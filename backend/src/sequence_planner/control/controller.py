@@ -184,6 +184,10 @@ class Controller:
         self._writer.begin()
         self._tick_again()
 
+    def wait_to_command(self) -> None:
+        """Somebody else commands the station's devices, and is waited for: shown, and nothing else."""
+        self.devices.wait_to_command()
+
     async def command(self, command: Command) -> None:
         """Carry out a command. Raises `CommandRefused`."""
         self._orders.carry_out(command, Moment.now())

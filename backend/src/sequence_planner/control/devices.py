@@ -70,6 +70,11 @@ class Devices:
         self.commander.advertise()
         self.network.commands = True
 
+    def wait_to_command(self) -> None:
+        """This station is to command its devices, and only listens as long as somebody else does."""
+        self.network.waits = True
+        self.see_network()
+
     def publish(self, state: State, everything: bool) -> None:
         """Send the outputs of a state: all of them, or those that differ from what was sent before."""
         now = time.monotonic()

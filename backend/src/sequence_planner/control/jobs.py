@@ -110,9 +110,8 @@ class Jobs(Immutable):
 
     def awaited(self, job: Job, operation: str) -> frozenset[Step]:
         """The operations of other jobs under way that this one is still to wait for."""
-        others = {other.id: other for other in self.under_way}
-        waits = self.waits.get((job.id, operation), frozenset())
-        return frozenset((id_, name) for id_, name in waits if id_ in others and name not in others[id_].completed)
+        waits = self.waits.get((job.id, operation))
+        return frozenset(step for step in waits if self._lacks(*step)) if waits else frozenset()
 
     def eligible(self, job: Job, automaton: Automaton) -> frozenset[str]:
         """The operations that may be active for this job."""
@@ -189,6 +188,11 @@ class Jobs(Immutable):
         completed = {name: at for name, at in owner.completed.items() if name != operation}
         again = replace(owner, started=started, completed=completed)
         return self._each(lambda each: again if each is owner else each)
+
+    def _lacks(self, job: str, operation: str) -> bool:
+        """Whether an operation of a job under way is not completed."""
+        found = self.get(job)
+        return found is not None and found.under_way and operation not in found.completed
 
     def _each(self, step: Callable[[Job], Job]) -> Jobs:
         taken = tuple(step(job) for job in self.taken)

@@ -16,7 +16,7 @@ from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.view import StationView
 
-LONGEST_COMMAND = 64 * 1024  # bytes in a line from the server
+LONGEST_COMMAND = 2 * 1024 * 1024  # bytes in a line from the server: that of the order between many jobs is the longest
 LONGEST_VIEW = 16 * 1024 * 1024  # bytes in a line from the controller
 
 

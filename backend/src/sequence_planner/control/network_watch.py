@@ -15,13 +15,14 @@ class NetworkWatch:
     """The last look at the graph, as it concerns the station's topics.
 
     `peers` counts those that can be understood, `troubles` and `rivals` say in words what is wrong with others. As long
-    as the station only listens (`commands` is false), whoever commands its devices is no rival.
+    as the station only listens (`commands` is false), whoever commands its devices is no rival, unless the station
+    `waits` for that one to end.
     `seen` is all that there was, also on other topics, and of services where the transport can tell.
     """
 
     def __init__(self, pipelines: StationPipelines, registry: MessageRegistry) -> None:
         self.uses = uses(pipelines, registry)
-        self.commands = False
+        self.commands = self.waits = False
         self._speaking: set[str] = set()  # incoming topics that had a publisher
         self.seen: tuple[Sequence[Endpoint], Sequence[ServiceEnd] | None] = ((), None)
         self.peers: dict[str, int] = dict.fromkeys(self.uses, 0)
@@ -42,7 +43,7 @@ class NetworkWatch:
                 speaking.add(endpoint.topic)
             found = mismatches(endpoint, use)
             for each in found:
-                if each.kind == "rival" and not self.commands:
+                if each.kind == "rival" and not (self.commands or self.waits):
                     continue
                 (self.rivals if each.kind == "rival" else self.troubles)[endpoint.topic] = each.text
             if not found and endpoint.direction == use.peer:

@@ -44,6 +44,7 @@ class Preparation:
         self.analysis: AnalysisDocument | None = None
         self.trouble: str | None = None
         self.controller: Controller | None = None
+        self._others: str | None = None  # who else commands the devices, while that is waited for
         self._guards: Mapping[str, Guard] = {}
 
     def take(self, analysis: AnalysisDocument, found: Analysis) -> None:
@@ -60,8 +61,18 @@ class Preparation:
     def give(self, controller: Controller) -> None:
         """From now on the controller is told what else is found."""
         self.controller = controller
+        if self._others is not None:
+            controller.wait_to_command()
         if self.analysis is not None:
             controller.know(self.analysis, self._guards)
+
+    def note_others(self, why: str) -> None:
+        """Somebody else commands the devices, and is waited for."""
+        if self._others != why:
+            LOG.warning("the controller waits to command the devices", because=why)
+        self._others = why
+        if self.controller is not None:
+            self.controller.wait_to_command()
 
     def tasks(self) -> dict[str, TaskView]:
         """The open tasks by now."""
@@ -85,6 +96,8 @@ class Preparation:
         """Why nothing can be commanded yet."""
         if self.trouble is not None:
             return CommandRefused("no-supervisor", "The specifications cannot be met", f"{self.trouble}.")
+        if self._others is not None:
+            return CommandRefused("other-commander", "Somebody else commands the devices", f"{self._others}.")
         return CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
 
 

@@ -39,7 +39,7 @@ from sequence_planner.control.view_part import View
 from sequence_planner.history.codec import BEGUN, kind_of
 from sequence_planner.history.restoring import beginning
 from sequence_planner.journal.run_journal import last
-from sequence_planner.ros.exclusivity import require_sole_publisher
+from sequence_planner.ros.exclusivity import NotAloneError, require_sole_publisher
 from sequence_planner.ros.gated import gated
 from sequence_planner.ros.transport import Transport
 from sequence_planner.standby.keeper import Keeper
@@ -61,7 +61,8 @@ class Running:
     `start` starts production without a person, for demonstrations: as soon as emulated devices and nothing else are
     there to be commanded. These have just begun, so nothing is believed of them from before. `database` is the URL of
     where commands are recorded, `model` the folder that the station was read from. `standby` is the name of this
-    station where several share the database and one commands; else it is None.
+    station where several share the database and one commands; else it is None. A controller that is started `again`
+    waits as long as somebody else commands the devices, where another one would end with an error.
     """
 
     station: ReadyStation
@@ -72,6 +73,7 @@ class Running:
     start: bool
     database: str
     standby: str | None = None
+    again: bool = False
 
 
 async def control(running: Running) -> None:
@@ -151,7 +153,7 @@ class _Life:
     async def run(self) -> None:
         """All of it."""
         running, keeper = self._running, self._keeper
-        alone = self._living.create_task(_require_sole_command(running) if keeper is None else keeper.taken())
+        alone = self._living.create_task(self._alone() if keeper is None else keeper.taken())
         self._living.create_task(self._deploying.end())
         analysing = analyse(running.station.automaton, self._preparation, running.socket.parent)
         async with self._link, _beside(analysing):
@@ -168,6 +170,16 @@ class _Life:
                 await self._run_with(supervisor, transport, alone)
             finally:
                 transport.close()
+
+    async def _alone(self) -> None:
+        """Wait until nobody else commands the devices. Raises `TransportError`."""
+        while True:
+            try:
+                return await _require_sole_command(self._running)
+            except NotAloneError as error:
+                if not self._running.again:
+                    raise
+                self._preparation.note_others(str(error))
 
     async def _run_with(self, supervisor: Supervisor, transport: Transport, alone: asyncio.Task[None]) -> None:
         """Run the controller on the network."""

@@ -69,6 +69,7 @@ def _view(execution: Execution, jobs: Jobs, job: Job) -> JobView:
     master = execution.automaton.work_masters.get(job.work_master)
     # One that ended before the model was changed can have a work master that is not there any more.
     names = sorted(job.started.keys() | job.completed.keys()) if master is None else list(master.operations)
+    eligible = frozenset[str]() if master is None else jobs.eligible(job, execution.automaton)
     return JobView(
         title=job.title,
         work_master=job.work_master,
@@ -78,12 +79,12 @@ def _view(execution: Execution, jobs: Jobs, job: Job) -> JobView:
         begun=_epoch(job.begun),
         ended=_epoch(job.ended),
         waits_for=waits_for(execution, job),
-        steps={name: _step(execution, jobs, job, name) for name in names},
+        steps={name: _step(execution, jobs, job, name, eligible) for name in names},
     )
 
 
-def _step(execution: Execution, jobs: Jobs, job: Job, name: str) -> JobStepView:
-    state = _state(execution, jobs, job, name)
+def _step(execution: Execution, jobs: Jobs, job: Job, name: str, eligible: frozenset[str]) -> JobStepView:
+    state = _state(execution, job, name, eligible)
     waiting = state is JobStepState.WAITING and job.under_way
     return JobStepView(
         state=state,
@@ -93,10 +94,10 @@ def _step(execution: Execution, jobs: Jobs, job: Job, name: str) -> JobStepView:
     )
 
 
-def _state(execution: Execution, jobs: Jobs, job: Job, name: str) -> JobStepState:
+def _state(execution: Execution, job: Job, name: str, eligible: frozenset[str]) -> JobStepState:
     if name in job.completed:
         return JobStepState.COMPLETED
-    if name not in jobs.eligible(job, execution.automaton):
+    if name not in eligible:
         return JobStepState.WAITING
     return JobStepState.ACTIVE if name in execution.active else JobStepState.ELIGIBLE
 

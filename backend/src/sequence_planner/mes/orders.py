@@ -216,8 +216,8 @@ def open_orders(connection: Connection, known: Sequence[JobOrder] = ()) -> list[
 
 
 def those_over(connection: Connection, ids: Collection[str]) -> set[str]:
-    """Of these orders, those that are over."""
-    over = JOB_ORDERS.c.state.in_([str(each) for each in OVER])
+    """Of these orders, those that are over, or were cancelled: the station is to do nothing more for them."""
+    over = JOB_ORDERS.c.state.in_([str(each) for each in OVER]) | JOB_ORDERS.c.removed.is_not(None)
     return set(connection.execute(select(JOB_ORDERS.c.id).where(JOB_ORDERS.c.id.in_(ids), over)).scalars())
 
 

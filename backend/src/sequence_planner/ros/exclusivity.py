@@ -12,6 +12,11 @@ from collections.abc import Mapping, Sequence
 
 from sequence_planner.ros.transport import QualityOfService, Sample, Transport, TransportError
 
+
+class NotAloneError(TransportError):
+    """Somebody else publishes the same topics."""
+
+
 DISCOVERY = 1.5  # seconds in which peers on the same machine are found
 LONGEST_LEASE = 22.0  # seconds after which a dead participant of any vendor is forgotten
 
@@ -19,8 +24,8 @@ LONGEST_LEASE = 22.0  # seconds after which a dead participant of any vendor is 
 async def require_sole_publisher(transport: Transport, topics: Mapping[str, str], who: str) -> None:
     """Wait until nobody else publishes `topics` (name to type); `who` says for whom in the message.
 
-    `transport` is one of its own for this question, which must not publish them. Raises `TransportError` naming the
-    topic and the other node.
+    `transport` is one of its own for this question, which must not publish them. Raises `NotAloneError` naming the
+    topic and the other node, and `TransportError`.
     """
     heard: set[str] = set()
 
@@ -40,7 +45,7 @@ async def require_sole_publisher(transport: Transport, topics: Mapping[str, str]
         if alive or time.monotonic() > patience:
             topic = min(alive or others)
             node = f" (node {others[topic]})" if others[topic] else ""
-            raise TransportError(
+            raise NotAloneError(
                 f"somebody else publishes {topic}{node}: {who} would fight with it. "
                 "Stop the other one, or choose another ROS_DOMAIN_ID"
             )

@@ -23,7 +23,7 @@ ENDING = 3.0  # seconds
 
 
 class LeaseLostError(Exception):
-    """Another station has taken the lease: it commands from now on."""
+    """Another station has taken the lease, or may long have: it commands from now on."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +46,7 @@ class Keeper:
         self._taken: asyncio.Future[None] = self._loop.create_future()
         self._lost: asyncio.Future[None] = self._loop.create_future()
         self._ending = threading.Event()
-        self._overtaken = False
+        self._is_lost = False
         self._thread = threading.Thread(target=self._work, name="lease", daemon=True)
         self.standing = Standing(lease.name, False, None, (), None)
 
@@ -91,21 +91,28 @@ class Keeper:
                 self._step()
             except StorageError as error:
                 self._tell(str(error))
-            if self._overtaken:
+                if self._lease.is_gone:
+                    # It says nothing, but it is seen on the network, and whoever commands now waits until it is not.
+                    LOG.warning("this station leaves the command to others", because="the database does not answer")
+                    self._lose()
+            if self._is_lost:
                 return
             self._ending.wait(EVERY)
 
     def _step(self) -> None:
         if self._lease.is_ours:
             if not self._lease.renew():
-                self._overtaken = True
-                self._call(self._lost)
+                self._lose()
         elif self._lease.try_to_take():
             LOG.info("this station commands from now on", name=self._lease.name)
             self._call(self._taken)
         else:
             self._lease.stand_by()
         self._tell(None)
+
+    def _lose(self) -> None:
+        self._is_lost = True
+        self._call(self._lost)
 
     def _tell(self, trouble: str | None) -> None:
         """Show how things are; where the database does not answer it is said that nobody knows."""

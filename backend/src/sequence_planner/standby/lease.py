@@ -29,6 +29,7 @@ from sequence_planner.storage.trouble import storage_error
 
 LASTS: Final = 3.0  # seconds from a renewal
 MARGIN: Final = 0.5  # seconds by which its holder lets go of it before somebody else may take it
+LEAVES: Final = 10.0  # seconds without it after which its holder leaves the network, where others wait for that
 EVERY: Final = 0.4  # seconds between two renewals, and between two looks of those who wait for it
 ANSWERED: Final = 1.0  # seconds in which the database has to answer
 DEPLOYED: Final = ""  # in the place of a model's digest: of the one that its last holder comes back with
@@ -88,6 +89,11 @@ class Lease:
     def is_ours(self) -> bool:
         """Whether it was taken, and nobody else is known to have taken it since."""
         return self._epoch is not None
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether it was ours and has not been held for so long that somebody else has it, if anybody is there."""
+        return self.is_ours and self.clock() >= self._until + LEAVES
 
     @property
     def hindrance(self) -> str | None:

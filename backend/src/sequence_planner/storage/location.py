@@ -24,17 +24,29 @@ def revisions_folder(url: str, model: Path) -> Path:
     return place.path.with_name(f"{place.path.stem}.revisions.git")
 
 
+def backups_folder(url: str, model: Path) -> Path:
+    """Where backups are kept unless somebody says so: beside the revisions. Raises `StorageError` as they do."""
+    revisions = revisions_folder(url, model)
+    return revisions.with_name(revisions.name.replace(".revisions.git", ".backups"))
+
+
+def mark_of(model: Path) -> str:
+    """What tells the station in the folder `model` from others of this machine: the folder's name, and 8 hexadecimal
+    digits of the SHA-256 of its path.
+    """
+    resolved = model.resolve()
+    name = re.sub(r"[^\w.-]", "_", resolved.name)
+    digits = hashlib.sha256(os.fsencode(resolved)).hexdigest()[:8]
+    return f"{name}-{digits}"
+
+
 def default_url(model: Path) -> str:
     """The URL of a SQLite file for the station in the folder `model`, the same from wherever the folder is named.
 
     It is in `$XDG_STATE_HOME`, or else in `~/.local/state`, in a folder of `sequence-planner` that is named after the
-    model's folder and the first 8 hexadecimal digits of the SHA-256 of its path. Raises `StorageError` where there is
-    no home.
+    model's folder (`mark_of`). Raises `StorageError` where there is no home.
     """
-    resolved = model.resolve()
-    mark = hashlib.sha256(os.fsencode(resolved)).hexdigest()[:8]
-    name = re.sub(r"[^\w.-]", "_", resolved.name)
-    file = state_folder() / f"{name}-{mark}" / "station.sqlite"
+    file = state_folder() / mark_of(model) / "station.sqlite"
     return f"sqlite:///{quote(str(file))}"
 
 

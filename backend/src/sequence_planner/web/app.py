@@ -20,6 +20,7 @@ from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.middleware.gzip import GZipMiddleware
 
+from sequence_planner.backup.keeping import Shelf
 from sequence_planner.history.process import HistoryProcess
 from sequence_planner.mes.webhooks.deliverer import Deliverer
 from sequence_planner.mes.webhooks.sending import Sender
@@ -31,6 +32,7 @@ from sequence_planner.web import (
     approvals,
     attachments,
     audit,
+    backups,
     capabilities,
     control_routes,
     corrections,
@@ -63,6 +65,7 @@ from sequence_planner.web import (
     why_not,
 )
 from sequence_planner.web.access import check_declared
+from sequence_planner.web.backup_desk import BackupDesk
 from sequence_planner.web.binding import check_endpoint
 from sequence_planner.web.broadcast import Broadcast
 from sequence_planner.web.controller_client import ControllerClient
@@ -116,6 +119,8 @@ PARTS = (
     order_of_work.router,
     webhooks.router,
     webhooks.bodiless,
+    backups.router,
+    backups.bodiless,
     audit.router,
     history.router,
     job_orders.router,
@@ -145,6 +150,14 @@ def _workshop(office: IdentityOffice, model: Path, settings: Settings) -> Worksh
     return Workshop(office, model, revisions_folder(settings.database, model), settings.stream)
 
 
+def _backup_desk(office: IdentityOffice, settings: Settings, controller: ControllerClient) -> BackupDesk | None:
+    """Who looks after backups; nobody where there is no model to go with the database, or where it is forgotten."""
+    if settings.model is None or settings.demonstration:
+        return None
+    shelf = Shelf(settings.database, settings.model, settings.backups)
+    return BackupDesk(office, shelf, stands_by=lambda: controller.stands_by)
+
+
 def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     """The application for `settings`; while it is up it keeps `controller` connected and has the database open.
 
@@ -170,10 +183,13 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         folder = settings.model
         app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
+        app.state.backups = backup_desk = _backup_desk(office, settings, controller)
         deliverer = Deliverer(office.database, Sender(settings.webhooks), stands_by=lambda: controller.stands_by)
         shows = (controller, broadcast, network, flows, watch_show)
         parts = (*shows, Sweeper(office, controller), desk, sequencing, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
+        if backup_desk is not None:
+            running.append(asyncio.create_task(backup_desk.run()))
         if shop is not None:
             running.append(asyncio.create_task(shop.read_ahead()))
         try:

@@ -18,6 +18,10 @@ class Body(BaseModel):
     model_config = ConfigDict(extra="forbid")
 
 
+class NothingBody(Body):
+    """Nothing more is to be said."""
+
+
 def _name(text: str) -> str:
     try:
         return clean_name(text)

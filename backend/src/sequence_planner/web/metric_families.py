@@ -117,6 +117,14 @@ def of_view(view: StationView | None) -> Iterator[Metric]:
     yield GaugeMetricFamily(f"{PREFIX}_tasks", "Tasks that wait for a person.", len(view.tasks))
 
 
+def of_backups(newest: float | None) -> Iterator[Metric]:
+    """When the newest backup was made; nothing where there is none."""
+    if newest is not None:
+        yield GaugeMetricFamily(
+            f"{PREFIX}_backup_time_seconds", "When the newest backup was made, in seconds since the epoch.", newest
+        )
+
+
 def _topics(view: StationView) -> Iterator[Metric]:
     labels = ["topic", "direction"]
     age = GaugeMetricFamily(f"{PREFIX}_topic_age_seconds", "How long ago a topic had its last message.", labels=labels)

@@ -59,6 +59,7 @@ async def metrics(request: Request, client: Controller, identity: Identity) -> R
                 *families.of_server(state.noted, failing, restarts),
                 *families.of_controller(figures),
                 *families.of_view(client.view if client.heard else None),
+                *families.of_backups(None if state.backups is None else state.backups.newest),
             ]
         )
     )

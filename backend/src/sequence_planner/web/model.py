@@ -15,7 +15,7 @@ from sequence_planner.control.definition_view import AutomatonView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
-from sequence_planner.web.body import Body
+from sequence_planner.web.body import Body, NothingBody
 from sequence_planner.web.controller_client import ControllerClient
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor
@@ -61,10 +61,6 @@ class ChangeBody(Body):
 
     title: Annotated[str, Field(min_length=1, max_length=300)]
     edits: Annotated[list[Edit], Field(min_length=1, max_length=MOST_EDITS)]
-
-
-class NothingBody(Body):
-    """Nothing more is to be said."""
 
 
 class RenameBody(Body):

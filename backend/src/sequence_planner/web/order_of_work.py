@@ -78,9 +78,11 @@ class OrderOfWorkDesk:
         self._office = office
         self._controller = controller
         self._desk = desk
-        self._known: KnownTimes | None = None
+        self._resources: dict[str, str] = {}
+        self._known = KnownTimes(self._resources)
         self._sequencer: Sequencer | None = None
-        self._asked = Asked((), ())
+        self._asked = Asked((), ())  # last
+        self._answered = Asked((), ())  # what `found` answers
         self._asked_at = float("-inf")  # on the clock of `time.monotonic`
         self._places: dict[str, int] = {}
         self._said: SequenceJobs | None = None
@@ -119,15 +121,16 @@ class OrderOfWorkDesk:
             return
         question = asked(self._desk.orders, view, masters, await self._times(view))
         if len(question.works) < 2:
-            self._asked, self._places, self.found = Asked((), ()), {}, None
+            self._asked = self._answered = Asked((), ())
+            self._places, self.found = {}, None
         else:
             await self._ask(question)
         await self._tell(view)
 
     async def _times(self, view: StationView) -> KnownTimes:
         """How long operations take, as far as the run's journal tells by now."""
-        if self._known is None:
-            self._known = KnownTimes({name: ability.resource for name, ability in view.abilities.items()})
+        # Also of abilities that have come with another model since.
+        self._resources.update((name, ability.resource) for name, ability in view.abilities.items())
         known = self._known
         if len(self._desk.orders) > 1:
             await self._office.read(known.read_on)
@@ -142,7 +145,7 @@ class OrderOfWorkDesk:
             self._sequencer = Sequencer(asyncio.get_running_loop())
         self._asked, self._asked_at = question, now
         schedule = await self._sequencer.sequence(question.works, question.exclusive, self._office.now(), LIMIT)
-        self.found = self._office.now(), schedule
+        self.found, self._answered = (self._office.now(), schedule), question
         self._places = {job: place for place, job in enumerate(schedule.jobs)}
 
     async def _tell(self, view: StationView) -> None:
@@ -152,7 +155,7 @@ class OrderOfWorkDesk:
         going = {job for job in view.jobs if now - self._held_up.get(job, now) < HELD_UP}
         waits = {}
         if self.found is not None:
-            works = [work for work in self._asked.works if work.job in going]
+            works = [work for work in self._answered.works if work.job in going]
             waits = waits_among(works, self.found[1])
         said = SequenceJobs(
             actor=SYSTEM,

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from ipaddress import IPv4Address, IPv6Address, ip_address
 from pathlib import Path
 
+from sequence_planner.backup.settings import Keeping
 from sequence_planner.identity.openid.settings import ProviderSettings
 from sequence_planner.mes.webhooks.targets import Targets
 
@@ -104,7 +105,7 @@ class Settings(Endpoint):
 
     With `transport` the network is joined for what a person wants to attach, as the controller joins it. `database`
     is the URL of where identity and journal are kept. With `demonstration` one may be opened without signing in, with
-    `provider` people may sign in there. `webhooks` is where events may be sent to.
+    `provider` people may sign in there. `webhooks` is where events may be sent to, `backups` how they are kept.
     """
 
     controller_socket: Path
@@ -116,6 +117,7 @@ class Settings(Endpoint):
     provider: ProviderSettings | None = None
     stream: StreamLimits = field(default_factory=StreamLimits)
     webhooks: Targets = field(default_factory=Targets)
+    backups: Keeping = field(default_factory=Keeping)
 
 
 def address_of(host: str) -> IPv4Address | IPv6Address | None:

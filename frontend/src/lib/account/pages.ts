@@ -53,7 +53,8 @@ export const MENU: readonly Page[] = [
 	{ address: '/watches', title: 'watches', role: 'operator' },
 	{ address: '/people', title: 'people', role: 'administrator' },
 	{ address: '/keys', title: 'keys', role: 'administrator' },
-	{ address: '/webhooks', title: 'webhooks', role: 'administrator' }
+	{ address: '/webhooks', title: 'webhooks', role: 'administrator' },
+	{ address: '/backups', title: 'backups', role: 'administrator' }
 ];
 
 const ALL: readonly Page[] = [...GROUPS.flatMap((group) => group.pages), ...MENU];

@@ -3,6 +3,7 @@ import { front } from './en-front.ts';
 import { ability } from './en/ability.ts';
 import { account } from './en/account.ts';
 import { alarms } from './en/alarms.ts';
+import { backups } from './en/backups.ts';
 import { check } from './en/check.ts';
 import { deploy } from './en/deploy.ts';
 import { history } from './en/history.ts';
@@ -17,4 +18,4 @@ import { station } from './en/station.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, check, deploy, history, model, operate, orders, pipelines, restart, ros, state, station, webhooks, whatIf };
+export const en = { ...front, ability, account, alarms, backups, check, deploy, history, model, operate, orders, pipelines, restart, ros, state, station, webhooks, whatIf };

@@ -3,6 +3,7 @@ import { front } from './sv-front.ts';
 import { ability } from './sv/ability.ts';
 import { account } from './sv/account.ts';
 import { alarms } from './sv/alarms.ts';
+import { backups } from './sv/backups.ts';
 import { check } from './sv/check.ts';
 import { deploy } from './sv/deploy.ts';
 import { history } from './sv/history.ts';
@@ -18,4 +19,4 @@ import { webhooks } from './sv/webhooks.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, check, deploy, history, model, operate, orders, pipelines, restart, ros, state, station, webhooks, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, backups, check, deploy, history, model, operate, orders, pipelines, restart, ros, state, station, webhooks, whatIf };

@@ -20,5 +20,6 @@ export const pages = {
 	watches: 'Watches',
 	people: 'People',
 	keys: 'Keys',
-	webhooks: 'Webhooks'
+	webhooks: 'Webhooks',
+	backups: 'Backups'
 };

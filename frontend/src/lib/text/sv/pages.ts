@@ -21,5 +21,6 @@ export const pages: Text['pages'] = {
 	watches: 'Klockor',
 	people: 'Personer',
 	keys: 'Nycklar',
-	webhooks: 'Webhooks'
+	webhooks: 'Webhooks',
+	backups: 'Säkerhetskopior'
 };

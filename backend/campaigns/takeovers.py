@@ -1,0 +1,33 @@
+"""Two stations of which one takes over from the other, again and again: a campaign of `make campaign`."""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+
+from comparing.campaign import Kind, Subject, main
+
+from running import takeovers
+
+NUMBER = 10  # of one pair
+
+
+def pairs(seed: str) -> Counter[str]:
+    """A pair of stations."""
+    return takeovers.takeovers(seed, NUMBER)
+
+
+SUBJECT = Subject(
+    "takeovers",
+    "A hot standby that takes over",
+    "Two bolt tightening stations for the same devices share a PostgreSQL server, real processes with DDS and REST;\n"
+    f"the model says `takeover: automatic`. {NUMBER} times the one that commands is killed, or stopped (SIGSTOP) and\n"
+    "let go on after the other has taken over, or cut off from the database, drawn by seed. Each time the other has\n"
+    f"to command within {takeovers.SOON:g} s and go on with production by itself, unless a person has to decide on an\n"
+    "output shall be; a foreign subscriber may hear nobody again once another has spoken; and at the end the journal\n"
+    "of all of them is done again, as in `kills`.",
+    {"pairs": Kind(pairs, 3, kept_every=1)},
+)
+
+if __name__ == "__main__":
+    sys.exit(main(SUBJECT))
