@@ -135,6 +135,7 @@ def main() -> None:
             for number in range(ROUNDS):
                 people(act, number)
                 systems(act, number)
+                backups(act)
                 watches(act, number, address)
                 act("PUT", "/control", {"over": None})
                 tasks_and_alarms(act)
@@ -169,6 +170,14 @@ def systems(act: Acts, number: int) -> None:
     webhook = f"/webhooks/{made['webhook']['id']}"
     act("POST", f"{webhook}/dead-letters/again", {})
     act("DELETE", webhook)
+
+
+def backups(act: Acts) -> None:
+    """One is made, and checked."""
+    file = act("POST", "/backups", {})["file"]
+    act.wait(lambda: act("GET", "/backups")["busy"] is None)
+    act("POST", f"/backups/{file}/check", {})
+    act.wait(lambda: act("GET", "/backups")["busy"] is None)
 
 
 def watches(act: Acts, number: int, address: str) -> None:
@@ -224,6 +233,7 @@ def ways_back(act: Acts) -> None:
         return any(each["running_since"] for each in abilities if each["resource"] == "robot")
 
     act.wait(lambda: not moving())
+    time.sleep(0.5)  # until its devices have said so
     act("POST", "/restart/enter", {})
     now = act("GET", "/state")["variables"]["bolts[bolt_pair_1]"]["value"]
     values = {"bolts[bolt_pair_1]": "empty" if now != "empty" else "placed"}

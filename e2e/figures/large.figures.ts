@@ -20,6 +20,8 @@ const REPORT = join(ROOT, 'docs/campaigns/editing.md');
 const ROUNDS = Number(process.env['ROUNDS'] ?? '7');
 /** Milliseconds between two keys of somebody who types fast. */
 const PACE = 70;
+/** Milliseconds until a browser has begun, and the server has signed somebody in. */
+const SETTLED = 1000;
 
 const MACHINE = 'resources/machine_100.yaml';
 /** What a person who opens the page sees of the tree, and can use. */
@@ -45,6 +47,7 @@ async function fresh(browser: Browser, station: Station): Promise<{ context: Bro
 	await context.addCookies([{ ...(await station.signIn(ERIK)), url: station.url }]);
 	const page = await context.newPage();
 	await prepare(page);
+	await page.waitForTimeout(SETTLED);
 	return { context, page };
 }
 

@@ -64,7 +64,7 @@ def test_a_forgotten_password_is_set_anew(url: str) -> None:
     with database.reading() as connection:
         found = find_password(connection, "Eva")
     assert found is not None
-    assert found[1].startswith("$argon2id$v=19$m=19456,t=2,p=1$")
+    assert found[1].startswith("$argon2id$v=19$m=12288,t=3,p=1$")
     database.close()
 
 

@@ -30,7 +30,7 @@ _COMMON = frozenset(
 
 # The least that the Password Storage Cheat Sheet of OWASP asks for, in KiB and passes: the same machine runs a station,
 # and somebody whom a robot waits for is signed in in a moment.
-COSTS = Parameters(Type.ID, version=19, salt_len=16, hash_len=32, memory_cost=19 * 1024, time_cost=2, parallelism=1)
+COSTS = Parameters(Type.ID, version=19, salt_len=16, hash_len=32, memory_cost=12 * 1024, time_cost=3, parallelism=1)
 
 T = TypeVar("T")
 
