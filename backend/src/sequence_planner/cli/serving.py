@@ -51,6 +51,7 @@ Names = Annotated[
     list[str] | None,
     typer.Option("--name", metavar="HOST[:PORT]", help="A name by which people open the page; can be repeated."),
 ]
+_NICENESS = 2  # of the server: ticks come before whoever looks on
 HOT_STANDBY = re.compile(r"[A-Za-z0-9][A-Za-z0-9.-]{0,59}")
 WebhookHosts = Annotated[
     list[str] | None,
