@@ -45,8 +45,8 @@ export default defineConfig({
 						// stands on is apart, or it would be merged with what stands on it, and files import one another in a circle.
 						codeSplitting: {
 							groups: [
-								{ name: 'svelte', test: /node_modules\/svelte\//, priority: 1 },
-								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 20_000 }
+								{ name: 'svelte', test: /node_modules\/svelte\//, priority: 1, entriesAware: true },
+								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 10_000 }
 							]
 						},
 						// Those are called after all pages that share them, which are no folders.
