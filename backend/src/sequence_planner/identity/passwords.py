@@ -19,7 +19,7 @@ from sequence_planner.identity.refusal import IdentityRefused
 from sequence_planner.identity.tokens import new_token
 
 SHORTEST, LONGEST = 12, 256  # characters
-MOST_WAITING = 16  # so the last of them waits about a second
+MOST_WAITING = 16  # so the last of them waits less than a second
 _SHORT_NAME = 4  # characters; shorter names may be in a password by chance
 _KINDER = 5  # how much lower the priority of hashing is than that of the rest (setpriority(2))
 _COMMON = frozenset(
