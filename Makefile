@@ -31,14 +31,14 @@ run: install page ## Start the station with emulated devices and its page at htt
 emulator: install ## Start the emulated devices again
 	$(BIN)/sequence-planner emulate $(STATION)
 
-hall: install ## The eight nodes of the truck engine station and the world they stand in, for `run` without --emulator
+hall: install ## The computers of the truck engine station and the world they stand in, for `run` without --emulator
 	$(BIN)/python -m sequence_planner.emulation.truck_station all --messages models/truck_engine_station/messages
 
 test: static pytest e2e ## Run every check
 
 # What needs no station uses one core for each of two checks at a time.
 static: install-test frontend/node_modules/done.stamp e2e/node_modules/done.stamp
-	$(MAKE) -j2 --output-sync=target SIDE_BY_SIDE=yes lint typecheck svelte-check vitest page types-of-e2e
+	$(MAKE) -j2 --output-sync=target SIDE_BY_SIDE=yes lint typecheck svelte-check vitest page types-of-e2e openapi
 
 lint: install-test
 	cd backend && .venv/bin/ruff check && .venv/bin/ruff format --check
@@ -52,7 +52,7 @@ pytest-light: install-test postgresql e2e/node_modules/done.stamp
 	cd backend && .venv/bin/pytest -m 'not heavy' -n auto --dist worksteal --junitxml=../.ci/results/pytest.xml
 
 pytest-heavy: install-test foreign postgresql
-	cd backend && .venv/bin/pytest -m heavy -n 3 --dist loadfile --no-loadscope-reorder --junitxml=../.ci/results/pytest-heavy.xml
+	cd backend && .venv/bin/pytest -m heavy -n 2 --dist loadfile --no-loadscope-reorder --junitxml=../.ci/results/pytest-heavy.xml
 
 svelte-check: frontend/node_modules/done.stamp
 	cd frontend && npm run check
@@ -62,6 +62,10 @@ vitest: frontend/node_modules/done.stamp
 
 types-of-e2e: e2e/node_modules/done.stamp
 	cd e2e && npm run check
+
+# Linted as it is checked in, which `pytest` holds against the program.
+openapi: e2e/node_modules/done.stamp
+	cd e2e && npm run openapi
 
 e2e: install page e2e/node_modules/done.stamp chromium
 	cd e2e && PLAYWRIGHT_JUNIT_OUTPUT_FILE=../.ci/results/playwright.xml npx playwright test --reporter=list,junit
@@ -178,4 +182,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator hall wheel test static types-of-e2e figures pictures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium
+.PHONY: help run emulator hall wheel test static types-of-e2e openapi figures pictures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium

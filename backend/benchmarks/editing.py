@@ -64,23 +64,24 @@ def drafting(model: dict[str, str], folder: Path) -> None:
     with closing(Database.open(f"sqlite:///{folder}/station.sqlite")) as database:
         database.upgrade()
         with database.writing() as connection:
-            drafts.take_up(connection, model, 1.0)
+            empty = drafts.read(connection)
+            drafts.take_up(connection, empty, model, drafts.taking_up(empty, model), 1.0)
 
         def read() -> drafts.Draft:
             with database.reading() as connection:
                 return drafts.read(connection)
 
         draft, reader = read(), Reader()
-        told("all files for the page, first", lambda: reader.views(draft, draft.files))
+        told("all files for the page, first", lambda: reader.shown(draft, draft.files))
         told("the same by ruamel.yaml alone", lambda: [YAML(typ="rt").load(text) for text in model.values()])
-        told("all files for the page, again", lambda: reader.views(read(), model), LOOKS)
+        told("all files for the page, again", lambda: reader.shown(read(), model), LOOKS)
         told("what is in the folder and in the database, before each answer", lambda: (seen.read(), read()), LOOKS)
         edit = SetEntry(file="resources/machine_7.yaml", path=["title"], was="Machine 7", value="Mill")
 
         def change() -> None:
             proposal = drafts.editing(read(), [edit], "a title")
             with database.writing() as connection:
-                drafts.write(connection, read(), drafts.Proposal(model, proposal.kind, None, ""), SYSTEM, 2.0)
+                drafts.write(connection, read(), drafts.Proposal(dict(model), proposal.kind, None, ""), SYSTEM, 2.0)
 
         told("an edit, worked out and written", change, LOOKS)
 

@@ -13,8 +13,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from sequence_planner.automaton.grounding.station import ground
-from sequence_planner.cli.check import checked_model
-from sequence_planner.cli.loading import load_model
+from sequence_planner.cli.analysing import Limits
+from sequence_planner.cli.check import check_model
 from sequence_planner.model.composing import compose, compose_slowly
 from sequence_planner.model.loading import load_station
 from sequence_planner.pipelines.building import load_messages
@@ -131,9 +131,9 @@ def measure(name: str, folder: Path) -> None:
     print(f"  load               {seconds(lambda: load_station(folder)):7.3f} s")
     print(f"  ground             {seconds(lambda: ground(inferred)):7.3f} s")
     print(f"  ready to run       {seconds(lambda: prepare_station(folder)):7.3f} s")
-    checked = checked_model(folder, load_model(folder))
-    whole = seconds(lambda: checked_model(folder, load_model(folder)))
-    print(f"  load and check all {whole:7.3f} s   {len(checked.warnings)} warnings")
+    checked = check_model(folder, Limits())
+    whole = seconds(lambda: check_model(folder, Limits()))
+    print(f"  load and check all {whole:7.3f} s   {len(checked.findings)} findings")
 
 
 def read_each(read: Callable[[str], object], texts: list[str]) -> None:

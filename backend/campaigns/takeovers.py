@@ -21,11 +21,12 @@ SUBJECT = Subject(
     "takeovers",
     "A hot standby that takes over",
     "Two bolt tightening stations for the same devices share a PostgreSQL server, real processes with DDS and REST;\n"
-    f"the model says `takeover: automatic`. {NUMBER} times the one that commands is killed, or stopped (SIGSTOP) and\n"
-    "let go on after the other has taken over, or cut off from the database, drawn by seed. Each time the other has\n"
-    f"to command within {takeovers.SOON:g} s and go on with production by itself, unless a person has to decide on an\n"
-    "output shall be; a foreign subscriber may hear nobody again once another has spoken; and at the end the journal\n"
-    "of all of them is done again, as in `kills`.",
+    f"the model says `takeover: automatic`. {NUMBER} times the one that commands is killed, killed and started again\n"
+    "at once, stopped (SIGSTOP) and let go on after the other has taken over, or cut off from the database, drawn by\n"
+    f"seed. Each time the other has to command within {takeovers.SOON:g} s. Where another process beside the killed\n"
+    "one says in time that all is recorded it goes on with production by itself, unless a person has to decide what\n"
+    "an output shall be; else it begins paused, says why, and a person lets it go on. A foreign subscriber may hear\n"
+    "nobody again once another has spoken; and at the end the journal of all of them is done again, as in `kills`.",
     {"pairs": Kind(pairs, 3, kept_every=1)},
 )
 

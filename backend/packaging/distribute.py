@@ -12,6 +12,7 @@ from pathlib import Path
 from setuptools import build_meta
 
 BACKEND = Path(__file__).resolve().parents[1]
+README = '[project]\nreadme = "README.md"\n'  # which lies beside the project only where it is distributed
 LEFT_OUT = shutil.ignore_patterns("__pycache__", "*.egg-info", "page")
 
 
@@ -25,7 +26,8 @@ def distribute(page: Path, to: Path) -> list[Path]:
         staged = Path(folder) / "staged"
         shutil.copytree(BACKEND / "src", staged / "src", ignore=LEFT_OUT)
         shutil.copytree(page, staged / "src" / "sequence_planner" / "page")
-        shutil.copy(BACKEND / "pyproject.toml", staged)
+        project = (BACKEND / "pyproject.toml").read_text(encoding="utf-8")
+        (staged / "pyproject.toml").write_text(project.replace("[project]\n", README, 1), encoding="utf-8")
         shutil.copy(BACKEND.parent / "README.md", staged)
         with contextlib.chdir(staged):
             sdist = to / build_meta.build_sdist(str(to))

@@ -113,9 +113,18 @@ def test_enormous_ranges_are_refused_before_they_are_enumerated(cell: Path) -> N
     assert "the range 0..999999999999 has more than 1000 values: use a coarser measure" in err
 
 
+def test_a_specification_that_forbids_the_initial_state(cell: Path) -> None:
+    edit(cell / "specifications.yaml", "arm.pose == out and\n    parts[left] == full", "arm.pose == home")
+    code, out, err = check(cell)
+    assert (code, out) == (2, "")
+    assert err.startswith(f"{cell}/specifications.yaml:1:1: `never` forbids the initial state, in which arm.pose == ")
+
+
 def test_a_specification_that_cannot_be_met(cell: Path) -> None:
     """The model can be read, so that is a finding; `run` refuses it."""
-    edit(cell / "specifications.yaml", "arm.pose == out and\n    parts[left] == full", "arm.pose == home")
+    edit(cell / "specifications.yaml", "arm.pose == out and\n    parts[left] == full", "arm.pose == unknown")
+    effect = "      gets_lost: {kind: starting, when: not moving and pose == home, do: [pose := unknown]}\n"
+    edit(cell / "resources" / "arm.yaml", "    effects:\n", f"    effects:\n{effect}")
     code, out, err = check(cell)
     assert (code, err) == (1, "")
     assert f"{cell}/specifications.yaml:1:1: warning: specification never cannot be met" in out

@@ -14,6 +14,10 @@ from typer.core import TyperGroup
 from typer.main import get_command
 
 from sequence_planner.cli import app
+from sequence_planner.journal import signing_key
+from sequence_planner.mes.webhooks import sealing
+from sequence_planner.storage.address import address
+from sequence_planner.storage.location import backups_folder, revisions_folder
 
 ROOT = Path(__file__).parents[2]
 
@@ -30,7 +34,11 @@ SERVICE = {
             "type": "object",
             "additionalProperties": False,
             "required": ["context"],
-            "properties": {"context": {"type": "string"}, "dockerfile": {"type": "string"}},
+            "properties": {
+                "context": {"type": "string"},
+                "dockerfile": {"type": "string"},
+                "args": {"type": "object", "additionalProperties": {"type": "string"}},
+            },
         },
         "command": STRINGS,
         "depends_on": {
@@ -140,8 +148,13 @@ def test_they_say_whether_they_are_well(compose: dict[str, Any]) -> None:
 def test_each_runs_a_model_of_this_repository_on_rclpy(compose: dict[str, Any]) -> None:
     for service in stations(compose):
         options = run_options(service["command"])
-        assert (ROOT / options["model"]).is_dir()
         assert options["transport"] == "rclpy"
+        environment = container(service)
+        assert str(options["model"]) == environment["STATION_FOLDER"]
+        [variable] = re.findall(r"^\$\{STATION:-(.*)\}$", service["build"]["args"]["STATION"])
+        assert (ROOT / variable / "station.yaml").is_file()
+        # Services work between programs of one kind of middleware only: whoever has the other says so.
+        assert service["environment"]["RMW_IMPLEMENTATION"] == "${RMW_IMPLEMENTATION:-rmw_cyclonedds_cpp}"
 
 
 def test_only_the_demonstration_is_without_sign_in(compose: dict[str, Any]) -> None:
@@ -196,8 +209,45 @@ def test_the_way_beyond_the_loopback_fits_the_file(compose: dict[str, Any], guid
             assert any(file.is_relative_to(folder) for folder in folders)
 
 
-def test_the_image_is_ros_jazzy(compose: dict[str, Any]) -> None:
-    for service in stations(compose):
-        recipe = ROOT / service["build"]["context"] / service["build"]["dockerfile"]
-        bases = [line.split()[1] for line in recipe.read_text().splitlines() if line.startswith("FROM ")]
-        assert bases == ["ros:jazzy"]
+def container(service: dict[str, Any]) -> dict[str, str]:
+    """The environment that the image gives its programs."""
+    recipe = (ROOT / service["build"]["context"] / service["build"]["dockerfile"]).read_text()
+    return dict(re.findall(r"^(?:ENV)?\s+([A-Z_]+)=(\S+)", recipe, re.MULTILINE))
+
+
+def volumes_of(service: dict[str, Any]) -> dict[str, str]:
+    """The named volumes of a service, by where it has them."""
+    parts = [each.split(":") for each in service.get("volumes", [])]
+    return {target: source for source, target, *_ in parts if not source.startswith((".", "/"))}
+
+
+def test_what_a_station_writes_survives_the_container(compose: dict[str, Any]) -> None:
+    kept, server, prometheus = (
+        compose["services"][name] for name in ("station-with-postgresql", "postgresql", "prometheus")
+    )
+    environment, volumes = container(kept), volumes_of(kept)
+    # Keys of webhooks and checkpoints, revisions, backups; the model that is deployed; the generated code.
+    assert volumes[environment["XDG_STATE_HOME"]] == "state"
+    assert volumes[environment["STATION_FOLDER"]] == "model"
+    assert volumes[environment["XDG_CACHE_HOME"]] == "messages"
+    assert volumes_of(server) == {"/var/lib/postgresql/data": "postgresql"}
+    assert volumes_of(prometheus) == {"/prometheus": "prometheus"}
+    # They are Compose's own, which `down` leaves alone, and no two services write to one but the code.
+    assert all(each == {} for each in compose["volumes"].values())
+    sources = [source for service in compose["services"].values() for source in volumes_of(service).values()]
+    assert sorted(set(sources)) == sorted(compose["volumes"])
+    assert [each for each in set(sources) if sources.count(each) > 1] == ["messages"]
+
+
+def test_keys_revisions_and_backups_are_in_the_volume_of_the_state(
+    compose: dict[str, Any], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kept = compose["services"]["station-with-postgresql"]
+    environment, url = container(kept), kept["environment"]["SEQUENCE_PLANNER_DATABASE"]
+    for name, value in environment.items():
+        monkeypatch.setenv(name, value)
+    model, place = Path(environment["STATION_FOLDER"]), address(url)
+    keys = {signing_key.key_file(place), sealing.key_file(place)}
+    places = keys | {revisions_folder(url, model), backups_folder(url, model)}
+    assert len(places) == 4
+    assert all(place.is_relative_to(environment["XDG_STATE_HOME"]) for place in places)

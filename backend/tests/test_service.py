@@ -104,6 +104,11 @@ def test_wheel_and_sdist_have_all_that_runs(tmp_path: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         names = set(archive.namelist())
         archive.extractall(tmp_path / "installed")
+        (metadata,) = [archive.read(name).decode() for name in names if name.endswith(".dist-info/METADATA")]
+    assert metadata.startswith("Metadata-Version: ")
+    for said in ("Author: The developers of Sequence Planner", "Keywords: automation", "Classifier: Typing :: Typed"):
+        assert said in metadata
+    assert "# Sequence Planner" in metadata  # the README
     source, page = ROOT / "backend" / "src", PAGE
     modules = {each.relative_to(source).as_posix() for each in source.rglob("*.py") if "page" not in each.parts}
     built = {f"sequence_planner/page/{each.relative_to(page).as_posix()}" for each in page.rglob("*") if each.is_file()}

@@ -19,7 +19,7 @@ test('a device falls silent: its alarm is acknowledged, shelved, taken back and 
 	await stands('unacknowledged');
 	await expect(alarm(other)).toContainText('Nothing is heard on 2 topics');
 	await expect(alarm(other)).toContainText(/waits|without it/);
-	await expect(alarm(other)).toContainText('Check that the node of robot runs');
+	await expect(alarm(other)).toContainText('Check that the node of Robot UR10 runs');
 	await expect(alarm(other).getByRole('link', { name: 'Topic /ur10/state' })).toHaveAttribute('href', /topic=%2Fur10/);
 
 	await alarm(operate).getByRole('button', { name: 'Acknowledge' }).click();

@@ -3,7 +3,7 @@ import { readFileSync } from 'node:fs';
 import { join } from 'node:path';
 import { examine } from '../station/barriers.ts';
 import type { Replacement } from '../station/drafting.ts';
-import { startProduction, takeControl } from '../station/seen.ts';
+import { startProduction } from '../station/seen.ts';
 import { ERIK, Station, VERA } from '../station/station.ts';
 import { expect, test } from '../station/test.ts';
 
@@ -114,8 +114,10 @@ test('a changed model is saved, compared, refused while at work, deployed when h
 	expect(refused.status).toBe(409);
 	await page.getByRole('dialog').getByRole('button', { name: 'Hold' }).click();
 	await need(page, 'standing', true);
+	await expect(page.getByRole('radio', { name: 'They go on as they stand.' })).toBeChecked();
 	await deploy(page, 'Rebuilt');
 	await expect(page).toHaveTitle(new RegExp(TITLED));
+	await holdsTool(station);
 	expect(readFileSync(join(station.model, 'station.yaml'), 'utf8')).toContain(TITLED);
 
 	await page.getByRole('button', { name: 'Back to this revision… As the station was' }).click();
@@ -123,12 +125,17 @@ test('a changed model is saved, compared, refused while at work, deployed when h
 	await page.getByRole('button', { name: 'Take it back' }).click();
 	await expect(revision(page, 'As the station was')).toHaveAttribute('data-draft', 'true');
 	await good(page);
-	await takeControl(page);
 	await page.getByRole('button', { name: 'Deploy…' }).click();
+	await need(page, 'control', true);
+	await page.getByRole('radio', { name: /^Reset the simulation/ }).check();
 	await deploy(page, 'As the station was');
+	await expect.poll(async () => new Map(await station.values()).get('robot.tool_is_attached')).toBe('false');
 	await expect(page).toHaveTitle(/^Bolt tightening station ·/);
 	await page.getByRole('link', { name: 'To Operate' }).click();
 	await expect(page.getByTestId('mode')).toContainText('waits for the start of production');
+	// Control is kept, and there is nothing to decide: this is all that a start takes.
+	await page.getByRole('button', { name: 'Start production' }).click();
+	await expect(page.getByTestId('mode')).not.toContainText('waits for the start of production');
 	expect(complaints).toEqual([]);
 });
 

@@ -45,6 +45,15 @@ test('a variable and an ability with guard and action are added; what is wrong i
 	await expect(file(page)).toContainText('is_checked');
 	await expect(row(page, ROBOT).locator('[data-changed="changed"]')).toBeVisible();
 
+	// What was added is taken back: what it was in is chosen then, and not what is there no more.
+	await page.getByRole('button', { name: /^Undo: / }).click();
+	await expect(row(page, ROBOT, 'estimated', 'is_checked')).toHaveCount(0);
+	await expect(form(page).getByRole('heading').first()).toBeVisible();
+	await expect(form(page)).not.toContainText('There is no such part any more');
+	await page.getByRole('button', { name: /^Redo: / }).click();
+	await row(page, ROBOT, 'estimated', 'is_checked').click();
+	await expect(form(page).getByRole('heading').first()).toContainText('is_checked');
+
 	await add(page, 'Ability: Abilities of robot', 'check_pose');
 	await expression(page, 'Enabled').fill('pose == home and not is_chekced');
 	await expect(field(page, 'enabled')).toContainText('did you mean `is_checked`?');

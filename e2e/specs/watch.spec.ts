@@ -1,5 +1,5 @@
 import { findings, outsideCircle, overflow, smallTargets } from '../station/barriers.ts';
-import { done, picture, restsOnPerson } from '../station/seen.ts';
+import { done, picture, restsOnPerson, takeControl } from '../station/seen.ts';
 import { EVA } from '../station/station.ts';
 import { DESK, expect, test, WRIST } from '../station/test.ts';
 import type { Page } from '@playwright/test';
@@ -29,20 +29,45 @@ test('a problem told on the watch is an alarm until it is solved, and the next t
 	watch
 }) => {
 	await restsOnPerson(operate, watch);
-	const alarm = operate.locator('[data-alarm]').filter({ hasText: 'has a problem with' });
+	const alarm = operate.locator('[data-alarm^="problem:"]');
 	const problem = watch.locator('button[data-problem]');
 	await problem.tap();
+	await expect(watch.locator('button[data-wrong]')).toHaveCount(4);
+	expect(await outsideCircle(watch)).toEqual([]);
+	expect(await smallTargets(watch)).toEqual([]);
+	expect(await findings(watch)).toEqual([]);
+	await picture(watch, 'watch-wrong');
+	await watch.locator('button[data-wrong="missing"]').tap();
 	await expect(alarm).toHaveAttribute('data-state', 'unacknowledged');
+	await expect(alarm).toContainText('a part is missing');
 	await expect(watch.getByTestId('problem')).toBeVisible();
-	await expect(operate.getByTestId('problem')).toContainText('has a problem with it');
+	await expect(operate.getByTestId('problem')).toContainText('has a problem with it: Part missing');
 	expect(await outsideCircle(watch)).toEqual([]);
 	expect(await findings(watch)).toEqual([]);
 	await picture(watch, 'watch-problem');
 	await problem.tap();
 	await expect(watch.getByTestId('problem')).toHaveCount(0);
 	await expect(alarm).toHaveAttribute('data-state', 'returned');
+	await expect(alarm).toContainText('had a problem with');
+	await expect(alarm).toContainText('Over since');
 	await alarm.getByRole('button', { name: 'Acknowledge' }).click();
 	await expect(alarm).toHaveCount(0);
+
+	// What the station does is said with the task, and what a press would do.
+	for (const [act, words] of [
+		['Pause', 'Paused'],
+		['Hold', 'Held: keep clear']
+	] as const) {
+		await operate.getByRole('button', { name: act, exact: true }).click();
+		await expect(watch.getByTestId('standing')).toHaveText(words);
+		await expect(watch.getByText('Nothing moves yet')).toBeVisible();
+		await expect(watch.getByText('Moves next')).toHaveCount(0);
+		expect(await outsideCircle(watch)).toEqual([]);
+		await picture(watch, `watch-${act.toLowerCase()}`);
+	}
+	await takeControl(operate);
+	await operate.getByRole('button', { name: 'Continue', exact: true }).first().click();
+	await expect(watch.getByTestId('standing')).toHaveCount(0);
 
 	// The wearer's own page on a phone, where text is larger.
 	await watch.setViewportSize(PHONE.viewport);

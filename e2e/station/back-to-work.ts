@@ -70,6 +70,7 @@ export class Back {
 					await this.restart.getByRole('button', { name: 'I have done it' }).first().click();
 				return true;
 			case 'take':
+			case 'check':
 				return this.#take();
 			case 'leave':
 				return this.#press('Leave restart mode');

@@ -22,6 +22,7 @@ from sqlalchemy.exc import ArgumentError
 
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.logs import FORMAT, LogFormat
+from sequence_planner.memory_limit import LEAST, MOST
 from sequence_planner.ros.choice import TransportChoice
 from sequence_planner.ros.environment import INTERFACE
 from sequence_planner.secret_variables import CLIENT_SECRET
@@ -30,7 +31,7 @@ from sequence_planner.storage.address import read_url
 PREFIX: Final = "SEQUENCE_PLANNER_"
 FILE: Final = f"{PREFIX}CONFIGURATION"  # the variable that names the file
 _ELSEWHERE: Final = {INTERFACE, FORMAT, FILE, CLIENT_SECRET}  # variables that others read
-_LISTS: Final = ("proxy", "name", "oidc_scope", "oidc_role", "webhook_host")
+_LISTS: Final = ("proxy", "name", "oidc_scope", "oidc_role", "webhook_host", "webhook_network")
 _PATHS: Final = (
     "model",
     "certificate",
@@ -71,11 +72,13 @@ class Configuration(BaseModel):
     oidc_role: list[str] | None = None
     oidc_others: str | None = None
     webhook_host: list[str] | None = None
+    webhook_network: list[str] | None = None
     webhook_loopback: bool | None = None
     backup_folder: Path | None = None
     backups_kept: Annotated[int, Field(ge=1, le=1000)] | None = None
     backup_every: Annotated[float, Field(ge=0.25, le=8760)] | None = None
     log_format: LogFormat | None = None
+    memory: Annotated[float, Field(ge=LEAST, le=MOST)] | None = None
 
 
 class ConfigurationError(Exception):

@@ -1,8 +1,10 @@
 """One command starts all processes of a station, and sees to it that they live.
 
-Controller and server are started again when they die. Of the controller a spare is kept, a process that has imported
-all that it needs and waits: half of what a start takes is over then. Emulated devices are not started again: like real
-ones they stay away until somebody brings them back, but where another model was deployed they begin anew with it.
+Controller and server are started again when they die. A model that was deployed and cannot be started gives way to the
+one before it. Of each a spare is kept, a process that has imported all that it needs and waits: most of what a start
+takes is over then. The socket on which people reach the server is this process's, so that who connects meanwhile waits,
+and is not turned away. Emulated devices are not started again: like real ones they stay away until somebody brings them
+back, but where another model was deployed they begin anew with it, as those before them stood.
 Production is started without a person only once; a controller that had to be started again waits for one. None of them
 outlives this process, even if it is killed: each holds a pipe from it (see `lifeline`).
 """
@@ -17,18 +19,30 @@ import sys
 import tempfile
 import threading
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from socket import socket as ListeningSocket  # noqa: N812 - `socket` is the path of another one
 
 import structlog
 
 from sequence_planner.announcement import UNWELL, announced, first_start, health
 from sequence_planner.backup.settings import Keeping
 from sequence_planner.control.unix_socket import LONGEST_PATH
+from sequence_planner.deployment_under_way import UnderWay
+from sequence_planner.emulation.standing import standing_file
 from sequence_planner.identity.openid.options import ProviderOptions
-from sequence_planner.lifeline import DEMONSTRATION_DATABASE, DEPLOYED, NEEDED, OVERTAKEN
+from sequence_planner.lifeline import (
+    DEMONSTRATION_DATABASE,
+    DEPLOYED,
+    LAST_WORDS_FILE,
+    LAST_WORDS_SUFFIX,
+    NEEDED,
+    NOT_EMULATED,
+    OVERTAKEN,
+)
 from sequence_planner.logs import FORMAT, LogFormat, configure_logs
+from sequence_planner.memory_limit import USUAL, VARIABLE
 from sequence_planner.mes.webhooks.targets import Targets
 from sequence_planner.parts_file import write_restarts
 from sequence_planner.secret_variables import CLIENT_SECRET, PASSWORD, environment
@@ -36,8 +50,10 @@ from sequence_planner.service_manager import ServiceManager
 from sequence_planner.storage.address import PostgresqlServer
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.environment import DATABASE
-from sequence_planner.web.binding import check_demonstration, check_free
+from sequence_planner.storage.error import StorageError
+from sequence_planner.web.binding import bind, check_demonstration, check_endpoint
 from sequence_planner.web.settings import Endpoint, SettingsError
+from sequence_planner.workshop import draft as drafts
 
 # The page as the build leaves it: in the package where that was installed, or beside the backend in the repository.
 PACKAGED = Path(__file__).resolve().parent / "page"
@@ -55,7 +71,11 @@ SPARE = "--spare"  # of a command: it waits until it is needed
 
 @dataclass(frozen=True)
 class Launch:
-    """What to run, and how; without the URL of a `database` a demonstration, whose own is forgotten at the end."""
+    """What to run, and how; without the URL of a `database` a demonstration, whose own is forgotten at the end.
+
+    A database that is empty where a station was is used only where a `new` one is meant. `unusable` says why the model
+    means nothing: where it has a draft it can be repaired in the browser.
+    """
 
     model: Path
     endpoint: Endpoint
@@ -70,6 +90,9 @@ class Launch:
     log_format: LogFormat = LogFormat.TEXT
     webhooks: Targets = field(default_factory=Targets)
     backups: Keeping = field(default_factory=Keeping)
+    new: bool = False
+    memory: float = USUAL  # GB, for each process that checks a model
+    unusable: str | None = None
 
 
 class Part:
@@ -77,7 +100,7 @@ class Part:
     secrets.
 
     One that `has_spare` is followed at once by another process that was started before. Whenever it is started after
-    the first time it is told `again`.
+    the first time it is told `again`. It gets the `inherited` descriptors.
     """
 
     def __init__(
@@ -87,20 +110,25 @@ class Part:
         given: Mapping[str, str] | None = None,
         has_spare: bool = False,
         again: Sequence[str] = (),
+        inherited: Sequence[int] = (),
+        last_words: Path | None = None,
     ) -> None:
         self.name = name
+        self._inherited = inherited
+        self._last_words = last_words
         self._told_again = again
         self._has_spare = has_spare
         self.spare: subprocess.Popen[bytes] | None = None
         self._spare_due = 0.0
         self._environment = environment() if given is None else given
+        if last_words is not None:
+            self._environment = {**self._environment, LAST_WORDS_FILE: str(last_words)}
         self.process: subprocess.Popen[bytes] | None = None
         self._command = command
         self._pause = FIRST_PAUSE
         self._due = 0.0  # on the clock of `time.monotonic`, as is `_begun`
         self._begun = 0.0
         self._again = False
-        self.deployed = False  # it has made room for another model
         self.restarts = 0  # how often it has died and was started again
 
     @property
@@ -115,10 +143,35 @@ class Part:
         self._spare_due = self._begun + SPARE_AFTER
 
     def _popen(self, *more: str) -> subprocess.Popen[bytes]:
+        if self._last_words is not None:
+            self._last_words.unlink(missing_ok=True)
         # A session of its own: an interrupt from the terminal reaches the launcher alone, which then ends the others.
         return subprocess.Popen(
-            [*self._command, *more], stdin=subprocess.PIPE, start_new_session=True, env=self._environment
+            [*self._command, *more],
+            stdin=subprocess.PIPE,
+            start_new_session=True,
+            env=self._environment,
+            pass_fds=self._inherited,
         )
+
+    @property
+    def ended(self) -> int | None:
+        """The exit code of a process that has ended and was not looked after yet."""
+        return None if self.process is None else self.process.poll()
+
+    def said(self, code: int) -> str:
+        """Why it has ended: what it said last, if anything."""
+        with contextlib.suppress(OSError):
+            if self._last_words is not None and (words := self._last_words.read_text(encoding="utf-8").strip()):
+                return words
+        return f"the {self.name} ended with code {code}, and the log says why"
+
+    def stop(self) -> None:
+        """End it, and not its spare."""
+        if self.process is not None:
+            self.process.terminate()
+            _wait(self.process)
+        self.process = None
 
     def look_after(self) -> int:
         """Start it again some time after it has died. The exit code when it could not be run from the first."""
@@ -138,7 +191,6 @@ class Part:
         self._forget()
         self._again = True
         if code in (DEPLOYED, OVERTAKEN):
-            self.deployed = code == DEPLOYED
             if code == OVERTAKEN:
                 _say("another station has taken the command, and this one stands by")
             if not self._follow(now):
@@ -195,12 +247,7 @@ class Part:
         for process in (self.process, self.spare):
             if process is None:
                 continue
-            try:
-                process.wait(timeout=PATIENCE)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-            _close(process)
+            _wait(process)
         self.process = self.spare = None
 
     def _forget(self) -> None:
@@ -212,33 +259,57 @@ class Part:
 def launch(request: Launch) -> int:
     """Run all processes until SIGTERM, SIGINT or SIGHUP; returns the exit code.
 
-    Raises `SettingsError` when host, port or certificate cannot be used, or the folder for temporary files has too long
-    a name, and `StorageError` when the database cannot be used.
+    Raises `SettingsError` when host, port or certificate cannot be used, the model cannot and has no draft, or the
+    folder for temporary files has too long a name, and `StorageError` when the database cannot be used.
     """
-    os.environ[FORMAT] = request.log_format  # of all parts, and what these start
-    if request.log_format is LogFormat.JSON:
-        configure_logs()
-    check_free(request.endpoint)
-    if request.database is None:
-        check_demonstration(request.endpoint)
-    stop = threading.Event()
-    for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
-        if signal.getsignal(number) is not signal.SIG_IGN:  # as it is under `nohup`
-            signal.signal(number, lambda *_: stop.set())
-    with tempfile.TemporaryDirectory(prefix="sequence-planner-") as folder:
-        socket = Path(folder) / "controller.socket"
-        if len(str(socket).encode()) > LONGEST_PATH:
-            raise SettingsError(f"the path of {socket} is too long for a socket; set TMPDIR to a shorter folder")
-        url = request.database or f"sqlite:///{socket.parent / DEMONSTRATION_DATABASE}"
-        with contextlib.closing(Database.open(url)) as database:
-            if request.hot_standby is not None and not isinstance(database.place, PostgresqlServer):
-                raise SettingsError(f"several stations cannot share {database.place}: --hot-standby takes PostgreSQL")
-            database.upgrade()
-        return _Launcher(request, url, socket, stop).run()
+    # Of all parts, and what these start.
+    with _variables({FORMAT: request.log_format.value, VARIABLE: str(request.memory)}):
+        if request.log_format is LogFormat.JSON:
+            configure_logs()
+        check_endpoint(request.endpoint)
+        if request.database is None:
+            check_demonstration(request.endpoint)
+        stop = threading.Event()
+        for number in (signal.SIGTERM, signal.SIGINT, signal.SIGHUP):
+            if signal.getsignal(number) is not signal.SIG_IGN:  # as it is under `nohup`
+                signal.signal(number, lambda *_: stop.set())
+        with tempfile.TemporaryDirectory(prefix="sequence-planner-") as folder:
+            socket = Path(folder) / "controller.socket"
+            if len(str(socket).encode()) > LONGEST_PATH:
+                raise SettingsError(f"the path of {socket} is too long for a socket; set TMPDIR to a shorter folder")
+            url = request.database or f"sqlite:///{socket.parent / DEMONSTRATION_DATABASE}"
+            if request.unusable is not None:
+                if not _has_draft(url):
+                    raise SettingsError(request.unusable)
+                _say(f"{request.unusable}\nthe model cannot be used: change its draft on its page, and deploy that")
+            with contextlib.closing(Database.open(url, new=request.new)) as database:
+                if request.hot_standby is not None and not isinstance(database.place, PostgresqlServer):
+                    text = f"several stations cannot share {database.place}: --hot-standby takes PostgreSQL"
+                    raise SettingsError(text)
+                database.upgrade(new=request.new)
+            with contextlib.closing(bind(request.endpoint)) as listener:
+                return _Launcher(request, url, socket, listener, stop).run()
+
+
+@contextlib.contextmanager
+def _variables(values: Mapping[str, str]) -> Iterator[None]:
+    """Set variables of the environment, and what they were before in the end."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ |= values
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
 
 
 class _Launcher:
-    def __init__(self, request: Launch, url: str, socket: Path, stop: threading.Event) -> None:
+    def __init__(
+        self, request: Launch, url: str, socket: Path, listener: ListeningSocket, stop: threading.Event
+    ) -> None:
         self._request = request
         self._url = url
         self._stop = stop
@@ -254,16 +325,33 @@ class _Launcher:
         of_controller = {**environment(PASSWORD), DATABASE: url}
         of_server = {**environment(PASSWORD, CLIENT_SECRET), DATABASE: url}
         self._controller = Part(
-            "controller", _command("controller", *controller), of_controller, has_spare=True, again=("--again",)
+            "controller",
+            _command("controller", *controller),
+            of_controller,
+            has_spare=True,
+            again=("--again",),
+            last_words=self._folder / f"controller{LAST_WORDS_SUFFIX}",
         )
         server = ["--socket", str(socket), "--page", str(PAGE), "--model", model, "--transport", request.transport]
         server += ["--demonstration"] if request.database is None else []
+        server += ["--emulated"] if request.emulator else []
+        server += ["--rosbridge", request.rosbridge] if request.rosbridge else []
         server += request.provider.arguments()
         server += [f"--webhook-host={host}" for host in request.webhooks.written]
+        server += [f"--webhook-network={network}" for network in request.webhooks.networks]
         server += ["--webhook-loopback"] if request.webhooks.loopback else []
         server += request.backups.arguments()
-        self._server = Part("server", _command("server", *server, *_options(request.endpoint)), of_server)
-        self._emulator = Part("emulated devices", _command("emulate", model, *speed, *transport))
+        # It listens as long as this process lives: whoever connects while a server has died waits for the next one.
+        server += [*_options(request.endpoint), f"--listener={listener.fileno()}"]
+        kept = (listener.fileno(),)
+        self._server = Part("server", _command("server", *server), of_server, has_spare=True, inherited=kept)
+        self._listener = listener
+        self._standing = standing_file(self._folder)
+        emulator = _command("emulate", model, *speed, *transport, "--keep-in", str(self._standing))
+        self._emulator = Part("emulated devices", emulator, last_words=self._folder / f"emulator{LAST_WORDS_SUFFIX}")
+        self._deployment = UnderWay(
+            request.model, self._folder, self._controller, self._emulator if request.emulator else None
+        )
 
     def run(self) -> int:
         """Start everything and watch over it."""
@@ -278,12 +366,10 @@ class _Launcher:
                 if told != (restarts := {each.name: each.restarts for each in (self._controller, self._server)}):
                     write_restarts(self._folder, restarts)
                     told = restarts
+                self._deployment.look()
                 code = self._notice_emulator() or self._controller.look_after() or self._server.look_after()
                 if code:
                     return code
-                if self._controller.deployed:
-                    self._controller.deployed = False
-                    self._begin_emulator_anew()
             return 0
         finally:
             self._stop.set()
@@ -294,19 +380,14 @@ class _Launcher:
             for part in parts:
                 part.end()
 
-    def _begin_emulator_anew(self) -> None:
-        """Another model may have other devices."""
-        if self._request.emulator:
-            self._emulator.terminate()
-            self._emulator.end()
-            self._emulator.spawn()
-
     def _notice_emulator(self) -> int:
-        """Say that the emulated devices have ended. The exit code when they refuse to run beside others."""
+        """Say that the emulated devices have ended. The exit code when at first they refuse to run beside others."""
         code = self._emulator.has_ended()
-        if code == UNUSABLE and not self._emulator.steady:
+        if code == UNUSABLE and not self._emulator.steady and not self._deployment.was:
             return code
-        if code is not None:
+        if code == NOT_EMULATED:
+            _say("there are no emulated devices: change the model on its page, under Engineering, and deploy it")
+        elif code is not None:
             _say(
                 "the emulated devices have ended; start them again with `make emulator`, "
                 f"or `sequence-planner emulate {self._request.model}`"
@@ -336,6 +417,17 @@ class _Launcher:
                 self._manager.alive()
 
 
+def _has_draft(url: str) -> bool:
+    """Whether somebody has edited the model in the browser, so that it can be repaired there. No database is made."""
+    try:
+        with contextlib.closing(Database.open(url, create=False)) as database:
+            database.upgrade()
+            with database.reading() as connection:
+                return drafts.read(connection).number > 0
+    except StorageError:
+        return False
+
+
 def _options(endpoint: Endpoint) -> list[str]:
     """The options of `server` that mean `endpoint`."""
     options = [f"--host={endpoint.host}", f"--port={endpoint.port}"]
@@ -347,6 +439,16 @@ def _options(endpoint: Endpoint) -> list[str]:
 
 def _command(*arguments: str) -> list[str]:
     return [sys.executable, "-m", "sequence_planner.cli", *arguments, "--launched"]
+
+
+def _wait(process: subprocess.Popen[bytes]) -> None:
+    """Wait until it has ended in good order, or kill it if that takes too long."""
+    try:
+        process.wait(timeout=PATIENCE)
+    except subprocess.TimeoutExpired:
+        process.kill()
+        process.wait()
+    _close(process)
 
 
 def _close(process: subprocess.Popen[bytes]) -> None:

@@ -21,11 +21,21 @@ from pathlib import Path
 from sequence_planner import parts_file
 
 STANDARD_INPUT = 0
+LAST_WORDS_FILE = "SEQUENCE_PLANNER_LAST_WORDS"  # the variable of the environment that names it
+LAST_WORDS_SUFFIX = ".last-words"
 DEMONSTRATION_DATABASE = "demonstration.sqlite"  # in the launcher's folder; nothing of it is kept
 # With what SQLite writes beside it, the revisions of the model, and what the launcher tells.
-LEFT_BEHIND = ("demonstration.*", f"{parts_file.NAME}*")
+LEFT_BEHIND = (
+    "demonstration.*",
+    f"{parts_file.NAME}*",
+    "deployment",
+    "analysis",
+    "emulated*.*",
+    f"*{LAST_WORDS_SUFFIX}",
+)
 DEPLOYED = 75  # the exit code with which the controller makes room for one that runs another model
 OVERTAKEN = 76  # the exit code of a controller when another station has taken the command
+NOT_EMULATED = 77  # the exit code of emulated devices that cannot be run with this model
 NEEDED = b"\n"  # what a spare reads when it is needed
 LAST_WORDS = 5.0  # seconds in which a process may end in good order
 
@@ -55,6 +65,13 @@ def end_with_launcher(folder: Path | None = None) -> None:
         os._exit(1)
 
     _when(_closed, end)
+
+
+def leave_last_words(text: str) -> None:
+    """Tell the launcher why this process ends."""
+    if file := os.environ.get(LAST_WORDS_FILE):
+        with contextlib.suppress(OSError):
+            Path(file).write_text(text, encoding="utf-8")
 
 
 def is_needed() -> bool:

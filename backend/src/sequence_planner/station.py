@@ -10,9 +10,13 @@ from sequence_planner.automaton.grounding.abilities import GroundBefore
 from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.station import ground
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.tick import initial_state
 from sequence_planner.checking.connections import Connections
+from sequence_planner.checking.never_given import check_never_given
+from sequence_planner.checking.warning import ModelWarning, described
 from sequence_planner.collection import collection_put_off
-from sequence_planner.expressions.syntax import TRUE
+from sequence_planner.expressions.evaluation import evaluate
+from sequence_planner.expressions.syntax import TRUE, variables
 from sequence_planner.model.flow_documents import ExampleDocument
 from sequence_planner.model.loading import ReadBefore, Station, load_station
 from sequence_planner.model.source import Finding, ModelError
@@ -43,6 +47,10 @@ class ReadyStation:
     def connections(self) -> Connections:
         """What topics, services and actions feed and carry."""
         return Connections(frozenset(self.pipelines.feeds), self.pipelines.carried)
+
+    def suspicions(self) -> list[ModelWarning]:
+        """What is suspicious in its pipelines."""
+        return list(check_never_given(self.automaton, self.pipelines))
 
     def failures(self) -> list[Finding]:
         """What is wrong with the pipelines as they run: stages that cannot be loaded, and else examples that fail."""
@@ -78,6 +86,7 @@ def read_station(folder: Path, before: Before | None = None) -> MeantStation:
     station = with_inferred_variables(written, registry)
     automaton = ground(station, before.abilities)
     _require_plannable(automaton)
+    _require_possible_beginning(automaton)
     return MeantStation(station, registry, automaton)
 
 
@@ -107,7 +116,23 @@ def _examples(station: Station) -> Iterator[tuple[str, list[ExampleDocument]]]:
 
 def _of_ros_1(station: Station) -> frozenset[str]:
     topics = [topic for resource in station.resources.values() for topic in resource.topics.items()]
-    return frozenset(str(name) for name, document in topics if document.ros == 1)
+    return frozenset(name for name, document in topics if document.ros == 1)
+
+
+def _require_possible_beginning(automaton: Automaton) -> None:
+    """Raises `ModelError` where a specification forbids the initial state: there is no supervisor then."""
+    state = initial_state(automaton)
+    findings = []
+    for name, specification in automaton.specifications.items():
+        if evaluate(specification.forbidden, state) is True:
+            values = described(state, dict.fromkeys(variables(specification.forbidden)))
+            message = (
+                f"`{name}` forbids the initial state, in which {values}: begin otherwise (`initial` of a variable), or "
+                "forbid less"
+            )
+            findings.append(Finding(automaton.places[name], message))
+    if findings:
+        raise ModelError(findings)
 
 
 def _require_plannable(automaton: Automaton) -> None:

@@ -1,42 +1,56 @@
+# Made by make_rclpy.py from tests/ros/jazzy/rclpy.json.
 from collections.abc import Callable
-
-class QoSOfferedDeadlineMissedInfo:
-    total_count: int
-
-class QoSRequestedDeadlineMissedInfo:
-    total_count: int
-
-class QoSLivelinessLostInfo:
-    total_count: int
-
-class QoSLivelinessChangedInfo:
-    not_alive_count: int
-    not_alive_count_change: int
-
-class QoSOfferedIncompatibleQoSInfo:
-    total_count: int
-    last_policy_kind: int
-
-class QoSRequestedIncompatibleQoSInfo:
-    total_count: int
-    last_policy_kind: int
+from typing import Any
 
 class PublisherEventCallbacks:
     def __init__(
         self,
         *,
-        deadline: Callable[[QoSOfferedDeadlineMissedInfo], None] | None = None,
-        incompatible_qos: Callable[[QoSOfferedIncompatibleQoSInfo], None] | None = None,
-        liveliness: Callable[[QoSLivelinessLostInfo], None] | None = None,
-        use_default_callbacks: bool = True,
+        deadline: Callable[[Any], None] | None = ...,
+        liveliness: Callable[[Any], None] | None = ...,
+        incompatible_qos: Callable[[Any], None] | None = ...,
+        incompatible_type: Callable[[Any], None] | None = ...,
+        matched: Callable[[Any], None] | None = ...,
+        use_default_callbacks: bool = ...,
     ) -> None: ...
 
 class SubscriptionEventCallbacks:
     def __init__(
         self,
         *,
-        deadline: Callable[[QoSRequestedDeadlineMissedInfo], None] | None = None,
-        incompatible_qos: Callable[[QoSRequestedIncompatibleQoSInfo], None] | None = None,
-        liveliness: Callable[[QoSLivelinessChangedInfo], None] | None = None,
-        use_default_callbacks: bool = True,
+        deadline: Callable[[Any], None] | None = ...,
+        incompatible_qos: Callable[[Any], None] | None = ...,
+        liveliness: Callable[[Any], None] | None = ...,
+        message_lost: Callable[[Any], None] | None = ...,
+        incompatible_type: Callable[[Any], None] | None = ...,
+        matched: Callable[[Any], None] | None = ...,
+        use_default_callbacks: bool = ...,
     ) -> None: ...
+
+class QoSLivelinessChangedInfo:
+    alive_count: int
+    alive_count_change: int
+    not_alive_count: int
+    not_alive_count_change: int
+
+class QoSLivelinessLostInfo:
+    total_count: int
+    total_count_change: int
+
+class QoSOfferedDeadlineMissedInfo:
+    total_count: int
+    total_count_change: int
+
+class QoSOfferedIncompatibleQoSInfo:
+    last_policy_kind: int
+    total_count: int
+    total_count_change: int
+
+class QoSRequestedDeadlineMissedInfo:
+    total_count: int
+    total_count_change: int
+
+class QoSRequestedIncompatibleQoSInfo:
+    last_policy_kind: int
+    total_count: int
+    total_count_change: int

@@ -1,36 +1,54 @@
+# Made by make_rclpy.py from tests/ros/jazzy/rclpy.json.
 from enum import IntEnum
+from typing import Any
 
 from rclpy.duration import Duration
 
-class HistoryPolicy(IntEnum):
-    KEEP_LAST = 1
-
-class ReliabilityPolicy(IntEnum):
-    SYSTEM_DEFAULT = 0
-    RELIABLE = 1
-    BEST_EFFORT = 2
-
 class DurabilityPolicy(IntEnum):
-    SYSTEM_DEFAULT = 0
-    TRANSIENT_LOCAL = 1
-    VOLATILE = 2
+    BEST_AVAILABLE = ...
+    SYSTEM_DEFAULT = ...
+    TRANSIENT_LOCAL = ...
+    UNKNOWN = ...
+    VOLATILE = ...
+
+class HistoryPolicy(IntEnum):
+    KEEP_ALL = ...
+    KEEP_LAST = ...
+    SYSTEM_DEFAULT = ...
+    UNKNOWN = ...
 
 class LivelinessPolicy(IntEnum):
-    AUTOMATIC = 1
+    AUTOMATIC = ...
+    BEST_AVAILABLE = ...
+    MANUAL_BY_TOPIC = ...
+    SYSTEM_DEFAULT = ...
+    UNKNOWN = ...
 
-def qos_policy_name_from_kind(policy_kind: int) -> str: ...
+class ReliabilityPolicy(IntEnum):
+    BEST_AVAILABLE = ...
+    BEST_EFFORT = ...
+    RELIABLE = ...
+    SYSTEM_DEFAULT = ...
+    UNKNOWN = ...
 
 class QoSProfile:
-    reliability: ReliabilityPolicy
-    durability: DurabilityPolicy
-    deadline: Duration
-    liveliness: LivelinessPolicy
-    liveliness_lease_duration: Duration
     def __init__(
         self,
         *,
-        history: HistoryPolicy,
-        depth: int,
-        reliability: ReliabilityPolicy,
-        durability: DurabilityPolicy,
+        deadline: Duration = ...,
+        depth: int = ...,
+        durability: DurabilityPolicy = ...,
+        history: HistoryPolicy = ...,
+        liveliness: LivelinessPolicy = ...,
+        liveliness_lease_duration: Duration = ...,
+        reliability: ReliabilityPolicy = ...,
     ) -> None: ...
+    deadline: Duration
+    depth: int
+    durability: DurabilityPolicy
+    history: HistoryPolicy
+    liveliness: LivelinessPolicy
+    liveliness_lease_duration: Duration
+    reliability: ReliabilityPolicy
+
+def qos_policy_name_from_kind(policy_kind: Any | int) -> str: ...

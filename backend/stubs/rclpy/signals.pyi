@@ -1,7 +1,6 @@
-from enum import Enum
-
-class SignalHandlerOptions(Enum):
-    NO = 0
-    SIGINT = 1
-    SIGTERM = 2
-    ALL = 3
+# Made by make_rclpy.py from tests/ros/jazzy/rclpy.json.
+class SignalHandlerOptions:
+    ALL: SignalHandlerOptions
+    NO: SignalHandlerOptions
+    SIGINT: SignalHandlerOptions
+    SIGTERM: SignalHandlerOptions

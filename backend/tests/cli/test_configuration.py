@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
@@ -40,7 +41,8 @@ def written(folder: Path, text: str, mode: int = 0o644) -> Path:
 
 
 def test_it_has_all_that_the_command_line_has() -> None:
-    parameters = set(inspect.signature(run).parameters) - {"context", "configuration"}
+    # That a new station is meant is said once, by a person, and never by a file that stays.
+    parameters = set(inspect.signature(run).parameters) - {"context", "configuration", "new"}
     assert parameters == set(Configuration.model_fields)
 
 
@@ -158,5 +160,47 @@ def test_what_is_told_is_shown_without_passwords(tmp_path: Path, monkeypatch: py
     assert "s3cret" not in out
     _, document = as_json("configuration", "show", file)
     assert document["host"] == {"value": '"::"', "where": f"{file}:2"}
-    code, out, _ = command("configuration", "check", file)
-    assert (code, out) == (0, f"{file} can be used: port, host, database\n")
+    code, out, err = command("configuration", "check", file)  # no server is there
+    assert (code, out) == (2, "")
+    assert err.startswith(f"{file}:3: ")
+    assert "s3cret" not in err
+
+
+def test_a_check_looks_whether_what_is_named_is_there_and_fit(tmp_path: Path) -> None:
+    """The file as it stands in the documentation, on a machine where nothing of it is there."""
+    (tmp_path / "empty").write_text("", encoding="utf-8")
+    file = written(
+        tmp_path,
+        'model = "missing"\ncertificate = "press.pem"\nprivate_key = "press.key"\ndatabase_file = "url"\n'
+        'oidc_client_secret_file = "empty"\nbackup_folder = "backups"\n',
+    )
+    code, out, err = command("configuration", "check", file)
+    assert (code, out) == (2, "")
+    assert err.splitlines() == [
+        f"{file}:1: {tmp_path}/missing/station.yaml:1:1: a station is a folder with a station.yaml: there is none here",
+        f"{file}:2: {tmp_path}/press.pem cannot be read: No such file or directory; use --certificate",
+        f"{file}:4: {tmp_path}/url cannot be read: No such file or directory",
+        f"{file}:5: {tmp_path}/empty is empty: write the secret there",
+        f"{file}:6: {tmp_path}/backups cannot hold backups: there is no folder {tmp_path}/backups",
+    ]
+
+
+def test_a_check_of_a_database_makes_none(tmp_path: Path) -> None:
+    file = written(tmp_path, f'model = "{CELL}"\ndatabase = "sqlite:///{tmp_path}/station.sqlite"\n')
+    assert command("configuration", "check", file) == (0, f"{file} can be used: model, database\n", "")
+    assert not (tmp_path / "station.sqlite").exists()
+    (tmp_path / "station.sqlite").write_text("no database", encoding="utf-8")
+    code, _, err = command("configuration", "check", file)
+    assert (code, err.startswith(f"{file}:2: ")) == (2, True)
+    assert "station.sqlite" in err
+
+
+def test_one_half_of_https_is_not_enough(tmp_path: Path) -> None:
+    file = written(tmp_path, 'private_key = "press.key"\n')
+    assert command("configuration", "check", file)[2] == (
+        f"{file}:1: `certificate` is missing beside it: HTTPS needs both\n"
+    )
+
+
+def test_the_version() -> None:
+    assert command("--version") == (0, f"sequence-planner {version('sequence-planner')}\n", "")

@@ -19,7 +19,7 @@ from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.commands import StartProduction
 from sequence_planner.control.controller import Controller
-from sequence_planner.control.process import what_is_known
+from sequence_planner.control.last_life import what_is_known
 from sequence_planner.control.view import StationIdentity
 from sequence_planner.ros.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.ros.transport import QualityOfService, Sample

@@ -40,7 +40,15 @@ def test_a_contradiction_that_lasts_is_asked_about_until_it_has_gone() -> None:
     assert asked(station, 101.0 + SETTLED) == []
     station.execution.correct({BOLT: "placed"}, "Eva", WHY, station.now)
     assert asked(station, 102.0 + SETTLED) == []
-    assert asked(station, 102.0 + 2 * SETTLED) == [BOLT]
+    assert asked(station, 102.0 + 2 * SETTLED) == []  # somebody has just said so
+
+
+def test_who_has_looked_is_not_asked_again_while_that_counts() -> None:
+    station = contradictory(what_is_never_together())
+    station.doubting.look(100.0)
+    assert asked(station, 100.0 + SETTLED) == [BOLT]
+    station.execution.confirm(frozenset({BOLT}), "Eva", station.now)
+    assert asked(station, 101.0 + SETTLED) == []
 
 
 def test_what_is_forced_asks_nobody() -> None:

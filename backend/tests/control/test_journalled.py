@@ -13,8 +13,8 @@ from control.bench import Arm, Bench, bench, cell, until
 from control.journalling import journal
 from core.actors import EVA
 from sequence_planner.control.commands import Command, CommandRefused, SetMode, TakeControl
+from sequence_planner.control.last_life import what_is_known
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.process import what_is_known
 from sequence_planner.control.production_commands import TakeStep
 from sequence_planner.control.restart_commands import ConfirmEstimates, DecideOutputs
 from sequence_planner.control.starting import go_on, start_when_alone

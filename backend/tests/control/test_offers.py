@@ -90,6 +90,10 @@ class Desk:
     def correct(self, **values: Value) -> None:
         self.execution.correct(values, "Eva", "seen", self.now)
 
+    def believe(self, **values: Value) -> None:
+        """As an ability would have written it: nobody has said that it is so."""
+        self.execution.state = self.execution.corrected(values)
+
     def take(
         self, offer: OfferView, starts: list[str] | None = None, corrections: dict[str, GivenValue] | None = None
     ) -> None:
@@ -238,7 +242,7 @@ def test_where_there_was_time_for_corrections_alone_asking_again_finds_more(monk
             there.execution.start_production()
             there.correct(loaded=True)
             there.tick()
-            there.correct(jammed=True)
+            there.believe(jammed=True)
             there.tick()
             hurried = await there.offers.advice()
             assert [bool(offer.corrections) for offer in hurried.offers] == [True]
@@ -274,7 +278,7 @@ def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_t
             there.execution.start_production()
             there.correct(loaded=True)
             there.tick()
-            there.correct(jammed=True)
+            there.believe(jammed=True)
             there.tick()
             assert there.execution.active == {"deliver"}
             there.enter(Mode.RESTART)
@@ -328,5 +332,26 @@ def test_a_resource_comes_back_where_nobody_knows_whether_an_operation_can_begin
             assert (offer.kind, offer.online, offer.goals) == ("physical", ["station"], ["deliver"])
             execution.set_service(ServiceKind.OPERATION, "deliver", False, "Eva", "not today", there.now)
             assert [offer.kind for offer in (await there.offers.advice()).offers] == ["replan"]
+
+    asyncio.run(scenario())
+
+
+def test_what_somebody_has_said_is_contradicted_by_no_offer() -> None:
+    async def scenario() -> None:
+        async with desk() as there:
+            there.execution.start_production()
+            there.correct(loaded=True)
+            there.tick()
+            there.believe(jammed=True)
+            there.tick()
+            there.enter(Mode.RESTART)
+            advice = await there.offers.advice()
+            said = {change.name for offer in (*advice.offers, *advice.if_checked) for change in offer.corrections}
+            assert said == {"jammed"}, "that it is loaded was said"
+            assert not advice.offers[0].corrections
+            there.execution.confirm(frozenset({"jammed"}), "Eva", there.now)
+            advice = await there.offers.advice()
+            assert advice.offers
+            assert not any(offer.corrections for offer in (*advice.offers, *advice.if_checked))
 
     asyncio.run(scenario())

@@ -61,7 +61,7 @@ def test_a_device_that_was_pushed_away_and_does_not_come_back_is_noticed() -> No
 def test_it_is_an_alarm_that_says_what_the_device_says() -> None:
     execution, _ = made()
     station = prepare_station(MODEL)
-    alarms = PlanAlarms(execution, Feeds(station.pipelines, station.registry))
+    alarms = PlanAlarms(execution, Feeds(station.pipelines, station.registry), lambda: False)
     execution.start_production()
     tick(execution, "between", 1.0)
     assert not [cause for cause in alarms.causes(None, 5.0) if cause.key.startswith("still:")]

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import pytest
 
 from control.test_local_formulas import beginning
 from control.test_receding_horizon import asked, ticks
 from core.building import Does, automaton
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.structure import Automaton, HumanTask, Timeouts
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.timetable import Timetable
+from sequence_planner.control.timetable import Timetable, waiting_for_people
+from sequence_planner.control.view import Mode
 from sequence_planner.expressions.types import EnumerationType, Value
 from sequence_planner.immutable import replace
 from sequence_planner.planning.plan import Plan, PlanAnswer, PlanTick, Verdict
@@ -94,6 +97,39 @@ def test_runs_there_were_tell_more_than_the_model() -> None:
     watched.tick(0)
     watched.tick(1, at="detour")
     assert watched.expected == {"return": (1, 4), "aside": (4, 5), "onwards": (5, 8), "away": (8, 11)}
+
+
+AGAIN = ticks(("", "aside"), ("detour", "return"), ("here", "aside")) + TICKS[1:]
+
+
+def after_a_long_run(station: Automaton, disturb: Callable[[Execution], None] = lambda execution: None) -> float:
+    """How long the next run of an ability is expected to take, of which one has taken 900 s."""
+    watched = Watched(station, AGAIN)
+    watched.tick(0)
+    disturb(watched.execution)
+    watched.tick(900, at="detour")
+    watched.execution.change_mode(Mode.AUTOMATIC, "Eva", Moment(1900, 900))
+    start, end = watched.expected["aside"]
+    return end - start
+
+
+def test_what_a_person_takes_is_no_duration_of_an_ability() -> None:
+    assert after_a_long_run(SLOW) == 900
+    aside = SLOW.abilities["aside"]
+    asks = replace(aside, human=HumanTask("Push it aside.", "done"))
+    person = replace(SLOW, abilities={**SLOW.abilities, "aside": asks})
+    assert waiting_for_people(person) == {"aside"}
+    assert after_a_long_run(person) == 3
+    elsewhere = replace(SLOW.abilities["away"], human=HumanTask("Say where it is.", "at"))
+    awaiting = replace(SLOW, abilities={**SLOW.abilities, "away": elsewhere})
+    assert "aside" in waiting_for_people(awaiting)
+    assert after_a_long_run(awaiting) == 3
+
+
+def test_a_run_in_which_the_station_stood_tells_nothing_of_how_long_it_takes() -> None:
+    assert after_a_long_run(SLOW, lambda execution: execution.change_mode(Mode.PAUSED, "Eva", Moment(1001, 1))) == 3
+    late = replace(SLOW.abilities["aside"], timeouts=Timeouts(finish=30.0))
+    assert after_a_long_run(replace(SLOW, abilities={**SLOW.abilities, "aside": late})) == 3
 
 
 @pytest.mark.parametrize("plan_dropped", [True, False])

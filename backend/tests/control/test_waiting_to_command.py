@@ -62,7 +62,7 @@ def test_it_says_for_whom_it_waits_and_commands_once_that_has_ended(tmp_path: Pa
             assert refused.value.slug == "other-commander"
             other.close()
 
-            async def begin() -> None:
+            async def begin() -> bool:
                 while True:
                     with contextlib.suppress(CommandRefused):
                         return await client.send(start)

@@ -57,7 +57,7 @@ def test_whatever_a_device_is_brought_to_is_read(tmp_path: Path) -> None:
             assert not heard.running.trouble("/arm")
 
 
-def test_what_cannot_be_said_is_a_finding_of_emulate_and_not_of_check(tmp_path: Path) -> None:
+def test_what_cannot_be_said_is_a_finding_of_emulate_and_of_check_where_devices_are_emulated(tmp_path: Path) -> None:
     resource = """
 topics:
   /scene:
@@ -72,5 +72,9 @@ measured: {grip: {type: grips}}
     assert status == 2
     assert "tank.yaml:7:9: `/scene` → stage 1 `map` cannot be emulated: no value of `code` becomes" in said
     assert "closed" in said
-    _, told, said = command("check", station)
-    assert "emulated" not in told + said
+    status, told, said = command("check", station)
+    assert (status, said) == (1, "")
+    assert "tank.yaml:7:9: warning: no message ever makes `tank.grip` `closed`" in told
+    status, _, said = command("check", station, "--emulator")
+    assert status == 2
+    assert "tank.yaml:7:9: `/scene` → stage 1 `map` cannot be emulated: no value of `code` becomes" in said

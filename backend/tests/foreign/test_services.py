@@ -9,6 +9,7 @@ against peers that were told to speak the station's mapping.
 from __future__ import annotations
 
 import asyncio
+import importlib.util
 import os
 import time
 from collections.abc import Awaitable, Callable
@@ -16,9 +17,11 @@ from collections.abc import Awaitable, Callable
 import pytest
 from structlog.testing import capture_logs
 
+from foreign.genuine import CYCLONE
 from foreign.peers import FAST_DDS, PATIENCE, ROS2_CLIENT, Peer, built, eventually, running
 from sequence_planner.ros import names
-from sequence_planner.ros.choice import open_transport
+from sequence_planner.ros.choice import TransportChoice, open_transport
+from sequence_planner.ros.cyclone_network import loopback_configuration
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import NoAnswerError, NoServerError, Transport
 
@@ -41,12 +44,17 @@ def vouched(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(names, "client_of", lambda data: b"vouched")
 
 
-def play(registry: MessageRegistry, role: Role, scenario: Callable[[Transport, Peer], Awaitable[None]]) -> None:
+def play(
+    registry: MessageRegistry,
+    role: Role,
+    scenario: Callable[[Transport, Peer], Awaitable[None]],
+    choice: TransportChoice = "cyclonedds",
+) -> None:
     """Run `scenario` beside a peer: its program, and what it does."""
     program = built(role[0])
 
     async def live() -> None:
-        transport = open_transport("cyclonedds", registry, "station", asyncio.get_running_loop(), DOMAIN)
+        transport = open_transport(choice, registry, "station", asyncio.get_running_loop(), DOMAIN)
         try:
             async with running(program, DOMAIN, *role[1:]) as peer:
                 await scenario(transport, peer)
@@ -67,6 +75,26 @@ def test_a_server_that_does_not_tell_its_mapping_is_not_called(registry: Message
         assert peer.lines == []
 
     play(registry, role, scenario)
+
+
+@pytest.mark.skipif(
+    importlib.util.find_spec("rclpy") is None,
+    reason="rclpy is not importable here: run this suite where ROS 2 Jazzy is installed",
+)
+@pytest.mark.skipif(os.environ.get("RMW_IMPLEMENTATION") != CYCLONE, reason="rclpy is not on rmw_cyclonedds_cpp here")
+def test_a_server_on_another_dds_is_not_called_over_rclpy_either(
+    registry: MessageRegistry, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # The peer is on the loopback interface alone, which rclpy takes for one of many.
+    monkeypatch.setenv("CYCLONEDDS_URI", loopback_configuration())
+
+    async def scenario(station: Transport, peer: Peer) -> None:
+        request = registry.encode(f"{TYPE}_Request", {"a": 2, "b": 3})
+        with pytest.raises(NoServerError, match=r"on eProsima Fast DDS, .* so nothing was sent"):
+            await station.call(SERVICE, TYPE, request, PATIENCE)
+        assert peer.lines == []
+
+    play(registry, (FAST_DDS, "serve"), scenario, "rclpy")
 
 
 @pytest.mark.parametrize("role", [ASKS_AS_WE_DO, (ROS2_CLIENT, "call", "enhanced")])

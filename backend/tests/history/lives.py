@@ -165,6 +165,7 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
         kind = choices.pick(tuple(ErrandKind))
         operation = choices.pick((None, *station.operations))
         taken = Errand(kind, "by hand", plan, goal, choices.chance(2), choices.chance(2), operation, "Eva", "so")
+        taken = changed(taken, into_safe=choices.chance(3))
         if kind is ErrandKind.TRIAL and station.abilities:
             tried = choices.pick(tuple(station.abilities))
             plan = Plan((PlanTick((), (tried,)), PlanTick((), ())), False, False)

@@ -89,8 +89,8 @@ class Receiver:
 
 
 @contextmanager
-def receiving(certified: Certified | None = None) -> Iterator[Receiver]:
-    server = Server(("127.0.0.1", 0), Handler)
+def receiving(certified: Certified | None = None, address: str = "127.0.0.1") -> Iterator[Receiver]:
+    server = Server((address, 0), Handler)
     if certified is not None:
         context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
         context.load_cert_chain(certified.certificate, certified.private_key)

@@ -214,13 +214,12 @@ def test_every_start_belongs_to_one_job_at_most(steps: list[tuple[str, str]]) ->
 
 
 def test_orders_go_on_as_the_journal_says_wherever_the_server_is_killed(database: Database) -> None:
+    Following(database).read_on(MASTERS)
     run = random_run([(name, what) for what in ("begin", "begin", "start", "done", "restart", "end") for name in JOBS])
     with database.writing() as connection:
         for name in JOBS:
             content = OrderContent(work_master=name, description=f"Part {name}")
             order = orders.store(connection, content, SYSTEM, 1.0, id=name, start=True)
-            if name == "a":
-                Following(database).begin(connection)
             assert orders.hand_over(connection, order, 1.0) is not None
     for record in run.records:  # one by one, and by a server that has just been started
 
@@ -244,9 +243,9 @@ def test_orders_go_on_as_the_journal_says_wherever_the_server_is_killed(database
 
 
 def test_what_another_server_has_read_is_news_here_too(database: Database) -> None:
+    Following(database).read_on(MASTERS)
     with database.writing() as connection:
         order = orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id="a", start=True)
-        Following(database).begin(connection)
         orders.hand_over(connection, order, 1.0)
     one, other = Following(database), Following(database)
     assert one.read_on(MASTERS) == other.read_on(MASTERS) == (False, False)
@@ -260,9 +259,9 @@ def test_what_another_server_has_read_is_news_here_too(database: Database) -> No
 
 
 def test_an_order_that_is_over_stays_so_and_is_commanded_no_more(database: Database) -> None:
+    Following(database).read_on(MASTERS)
     with database.writing() as connection:
         order = orders.store(connection, OrderContent(work_master="a"), SYSTEM, 1.0, id="a", start=True)
-        Following(database).begin(connection)
         orders.hand_over(connection, order, 1.0)
         assert orders.command(connection, "a", OrderCommand.ABORT, SYSTEM, None, 2.0).wish == "abort"
 

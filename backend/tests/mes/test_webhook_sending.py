@@ -23,7 +23,7 @@ from mes.receiver import (
     talks_nonsense,
 )
 from sequence_planner.mes.webhooks.sending import Patience, Sender, Undelivered
-from sequence_planner.mes.webhooks.targets import Targets
+from sequence_planner.mes.webhooks.targets import Targets, network
 from web.certificates import certify
 
 OVER = threading.Event()
@@ -174,3 +174,40 @@ def test_https_is_spoken_with_whom_the_certificate_names(monkeypatch: pytest.Mon
         with pytest.raises(Undelivered, match=r"(?i)certificate"):
             post(meant, meant.url(host=NAME, scheme="https"))
         assert len(meant.received) == 1
+
+
+# 127.0.50.0/24 stands for a network of the plant: --webhook-loopback lets what is on the list be this machine.
+PLANT = Targets(loopback=True, networks=(network("127.0.50.0/24"),))
+
+
+def deliver(receiver: Receiver, targets: Targets) -> None:
+    url = f"http://{NAME}:{receiver.port}/hook"
+    asyncio.run(Sender(targets, PATIENCE).post(url, {"webhook-id": "event-1"}, b"{}"))
+
+
+def test_a_host_in_a_network_of_the_list_is_delivered_to(monkeypatch: pytest.MonkeyPatch) -> None:
+    with receiving(address="127.0.50.7") as plant:
+        asked = resolving(monkeypatch, "127.0.50.7")
+        deliver(plant, PLANT)
+        assert [each.headers["host"] for each in plant.received] == [f"{NAME}:{plant.port}"]
+        assert asked == [NAME], "what was looked at is what was connected to"
+
+
+def test_a_name_that_means_another_network_later_is_delivered_to_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    with receiving(address="127.0.51.7") as other:
+        asked = resolving(monkeypatch, "127.0.51.7", "169.254.169.254", "10.0.0.1")
+        for words in ("not on the list", "not on the list", "not on the list"):
+            with pytest.raises(Undelivered, match=words):
+                deliver(other, PLANT)
+        assert other.received == []
+        assert asked == [NAME] * 3
+
+
+def test_without_loopback_a_network_of_it_is_not_sent_to(monkeypatch: pytest.MonkeyPatch) -> None:
+    with receiving(address="127.0.50.7") as plant:
+        resolving(monkeypatch, "127.0.50.7")
+        with pytest.raises(Undelivered, match="this machine"):
+            asyncio.run(
+                Sender(Targets(networks=PLANT.networks), PATIENCE).post(f"https://{NAME}:{plant.port}/", {}, b"{}")
+            )
+        assert plant.received == []

@@ -1,14 +1,14 @@
-"""Nothing is sent but to hosts on the list, by HTTPS, at public addresses; whatever somebody writes as a URL."""
+"""Nothing is sent but to hosts and networks on the list, by HTTPS; whatever somebody writes as a URL."""
 
 from __future__ import annotations
 
-from ipaddress import ip_address
+from ipaddress import ip_address, ip_network
 
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from sequence_planner.mes.webhooks.targets import Target, TargetRefused, Targets, host_and_port
+from sequence_planner.mes.webhooks.targets import Target, TargetRefused, Targets, host_and_port, network
 
 LISTED = frozenset(map(host_and_port, ["mes.example", "mes.example:8443", "127.0.0.1:8080", "[::1]:8080"]))
 TARGETS, WITH_LOOPBACK = Targets(LISTED), Targets(LISTED, loopback=True)
@@ -128,7 +128,7 @@ def test_this_machine_is_sent_to_only_where_that_was_said(address: str) -> None:
 def test_public_addresses_are_sent_to_by_https_only(address: str) -> None:
     TARGETS.judge(MES, [address])
     with pytest.raises(TargetRefused, match="only https"):
-        WITH_LOOPBACK.judge(Target("http", "mes.example", 80, "/"), [address])
+        WITH_LOOPBACK.judge(Target("http", "mes.example", 443, "/"), [address])
 
 
 @given(
@@ -154,3 +154,101 @@ def test_the_list_is_written_as_it_is_read() -> None:
     for wrong in ("", "mes.example/hook", "a@mes.example", "mes example", "https://mes.example"):
         with pytest.raises(TargetRefused):
             host_and_port(wrong)
+
+
+PLANT = Targets(
+    LISTED, networks=tuple(map(network, ("10.1.2.0/24", "192.168.7.9/32", "fd00:7::/32", "169.254.9.9/32")))
+)
+LOGISTICS = Target("https", "logistics.plant", 8443, "/")
+
+
+@pytest.mark.parametrize(
+    "address",
+    ["10.1.2.0", "10.1.2.255", "192.168.7.9", "fd00:7::1", "::ffff:10.1.2.3", "64:ff9b::a01:203", "169.254.9.9"],
+)
+@pytest.mark.parametrize("target", [MES, LOGISTICS])
+def test_a_network_on_the_list_may_be_sent_to_whatever_the_name(target: Target, address: str) -> None:
+    assert PLANT.target(f"https://{target.authority}/") == target
+    PLANT.judge(target, [address])
+    with pytest.raises(TargetRefused, match="only https"):
+        PLANT.target("http://logistics.plant/")
+
+
+@pytest.mark.parametrize(
+    "address", ["10.1.3.0", "10.0.0.1", "192.168.7.8", "172.16.0.1", "fd00:8::1", "::ffff:10.9.9.9"]
+)
+def test_no_other_private_network_is(address: str) -> None:
+    with pytest.raises(TargetRefused, match="in a network that is not on the list"):
+        PLANT.judge(MES, ["10.1.2.3", address])
+    with pytest.raises(TargetRefused, match="or its network"):
+        PLANT.judge(LOGISTICS, [address])
+
+
+def test_a_public_address_needs_its_host_or_its_network_on_the_list() -> None:
+    PLANT.judge(MES, ["93.184.215.14", "10.1.2.3"])
+    with pytest.raises(TargetRefused, match="not on the list"):
+        PLANT.judge(LOGISTICS, ["10.1.2.3", "93.184.215.14"])
+    Targets(networks=(network("93.184.215.0/24"),)).judge(LOGISTICS, ["93.184.215.14"])
+
+
+@pytest.mark.parametrize(
+    ("within", "address"),
+    [
+        ("127.0.0.0/8", "127.0.0.1"),
+        ("::/1", "::1"),
+        ("169.254.0.0/16", "169.254.169.254"),
+        ("169.254.0.0/16", "::ffff:169.254.169.254"),
+        ("169.254.0.0/16", "64:ff9b::a9fe:a9fe"),
+        ("127.0.0.0/8", "64:ff9b::7f00:1"),
+        ("127.0.0.0/8", "2002:7f00:1::1"),
+        ("fe80::/10", "fe80::1"),
+        ("224.0.0.0/3", "224.0.0.1"),
+        ("224.0.0.0/3", "240.0.0.1"),
+        ("224.0.0.0/3", "255.255.255.255"),
+        ("0.0.0.0/1", "0.0.0.0"),
+        ("0.0.0.0/1", "0.0.0.7"),
+        ("::/1", "::"),
+        ("ff00::/8", "ff02::1"),
+    ],
+)
+def test_what_is_special_is_sent_to_only_where_exactly_that_is_on_the_list(within: str, address: str) -> None:
+    wide = Targets(LISTED, networks=(network(within),))
+    for target in (MES, LOGISTICS):
+        with pytest.raises(TargetRefused, match=r"this machine|exactly that address"):
+            wide.judge(target, [address])
+    meant = address.replace("::ffff:", "").replace("64:ff9b::a9fe:a9fe", "169.254.169.254")
+    if "." in meant or meant in ("::1", "fe80::1", "::", "ff02::1"):
+        Targets(networks=(network(meant),)).judge(LOGISTICS, [address])
+
+
+def test_an_address_that_is_named_as_a_host_is_sent_to_and_no_other() -> None:
+    exact = Targets(frozenset(map(host_and_port, ("10.9.8.7", "169.254.1.2:8443"))))
+    exact.judge(exact.target("https://10.9.8.7/hook"), ["10.9.8.7"])
+    exact.judge(exact.target("https://169.254.1.2:8443/"), ["169.254.1.2"])
+    for url in ("https://10.9.8.6/", "https://169.254.1.2/", "https://169.254.169.254:8443/"):
+        with pytest.raises(TargetRefused, match="not on the list"):
+            exact.target(url)
+    with pytest.raises(TargetRefused, match="not public"):
+        exact.judge(exact.target("https://10.9.8.7/hook"), ["10.9.8.7", "10.9.8.8"])
+
+
+@given(st.ip_addresses(), st.ip_addresses(v=4), st.integers(1, 32), st.booleans())
+def test_whatever_is_sent_to_is_public_or_in_a_network_of_the_list(
+    asked: object, inside: object, prefix: int, listed: bool
+) -> None:
+    wide = network(str(ip_network(f"{inside}/{prefix}", strict=False)))
+    targets = Targets(LISTED, networks=(wide,))
+    try:
+        targets.judge(MES if listed else LOGISTICS, [str(asked)])
+    except TargetRefused:
+        return
+    address = ip_address(str(asked))
+    assert address in wide or getattr(address, "ipv4_mapped", None) or address.is_global or address.version == 6
+    assert prefix == 32 or not (address.is_loopback or address.is_link_local or address.is_multicast)
+    assert listed or address in wide or address.version == 6
+
+
+@pytest.mark.parametrize("wrong", ["10.1.2.3/24", "0.0.0.0/0", "::/0", "plant", "", "10.1.2.0/33", "10.1.2.0/24:443"])
+def test_what_is_no_network_is_refused(wrong: str) -> None:
+    with pytest.raises(TargetRefused, match="network"):
+        network(wrong)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sequence_planner.model.reading import MOST_ENTRIES
+from sequence_planner.model.reading import MOST_ENTRIES, MOST_REPEATED
 from sequence_planner.station import prepare_station
 
 from .breaking import assert_found, copy_of_cell, findings, replace, write
@@ -24,6 +24,7 @@ STAGE = (
 )
 NOT_YAML = "this is not YAML:"
 INDENTATION = "this does not belong to what is above it: look at the indentation and the quotes"
+NO_NAME = "a `name:` stands here where none may: look at the indentation, and quote a text that has `: `"
 DURATION = "expected seconds, or the fewest and the most as in `[0.5, 1.5]`"
 
 
@@ -99,7 +100,7 @@ DURATION = "expected seconds, or the fewest and the most as in `[0.5, 1.5]`"
         (ARM, "title: Arm", "title: Arm\n? ‹[a, b]\n: c", "a list or mapping cannot be a name"),
         (OPERATIONS, "fetch:", "  priority: 9\n‹fetch:", f"{NOT_YAML} {INDENTATION}"),
         (ARM, "    enabled:", "   ‹enabled:", f"{NOT_YAML} {INDENTATION}"),
-        (ARM, "title: Arm", "title: Arm\n topics‹: {}", f"{NOT_YAML} mapping values are not allowed here"),
+        (ARM, "title: Arm", "title: Arm\n topics‹: {}", f"{NOT_YAML} {NO_NAME}"),
         (
             OPERATIONS,
             "  precondition: parts",
@@ -163,7 +164,14 @@ def test_aliases_that_multiply_are_refused_and_soon(tmp_path: Path) -> None:
     levels = "".join(f"l{n}: &l{n} [{', '.join([f'*l{n - 1}'] * 9)}]\n" for n in range(1, 12))
     write(station, ARM, f"l0: &l0 [x, x]\n{levels}")
     [line] = findings(station)
-    assert line.endswith(f"too large: with its aliases it has more than {MOST_ENTRIES} entries")
+    assert f"too large: its aliases stand for more than {MOST_REPEATED} entries" in line
+
+
+def test_a_text_that_has_too_many_entries_is_refused(tmp_path: Path) -> None:
+    station = copy_of_cell(tmp_path)
+    write(station, ARM, f"l0: [{'x, ' * MOST_ENTRIES}]\n")
+    [line] = findings(station)
+    assert f"too large: it has more than {MOST_ENTRIES} entries" in line
 
 
 def test_anchors_and_aliases_mean_what_they_repeat(tmp_path: Path) -> None:

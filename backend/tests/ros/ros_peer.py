@@ -1,11 +1,13 @@
 """A peer in a process of its own: what it hears on /ping it says on /pong in capitals, until its input ends.
 
-    python ros_peer.py ours|device|plain|route DOMAIN
+    python ros_peer.py ours|device|plain|route|stream DOMAIN
 
 `ours` speaks through the station's transport. `device` does too, shows that it is alive twice a second, and serves
 /add and the action /fibonacci. `plain` shares no code with it: a program written with cyclonedds as its
 manual teaches, which knows ROS 2's names and leaves the bytes to cyclonedds' own codec.
 `route` is such a program too, and publishes on /route a type that no file of a station defines.
+`stream` publishes on twenty topics a hundred times a second, once all of them are subscribed to; it is held up now
+and then, and catches up.
 """
 
 import asyncio
@@ -121,5 +123,32 @@ async def route(domain: int) -> None:
     await until_input_ends()
 
 
+STREAMED, ROUNDS, HELD_UP = [f"/device_{number}/state" for number in range(20)], 300, 30
+
+
+async def stream(domain: int) -> None:
+    registry, loop = MessageRegistry.from_folder(None), asyncio.get_running_loop()
+    transport = open_transport("cyclonedds", registry, "device", loop, domain)
+    for topic in STREAMED:
+        transport.advertise(topic, TEXT, QualityOfService(depth=1000))
+    ended = asyncio.create_task(until_input_ends())
+
+    def subscribed() -> set[str]:
+        return {each.topic for each in transport.graph() if each.direction == "subscriber"}
+
+    while not subscribed() >= set(STREAMED):  # noqa: ASYNC110 - nobody tells of that
+        await asyncio.sleep(0.1)
+    begun = loop.time() + 0.5  # The others know of us a little later.
+    for number in range(ROUNDS):
+        if number % HELD_UP == 0:
+            await asyncio.sleep(begun + number / 100 - loop.time())
+        for topic in STREAMED:
+            transport.publish(topic, TEXT, registry.encode(TEXT, {"data": str(number)}))
+    await ended
+    transport.close()
+
+
+KINDS = {"ours": ours, "device": device, "plain": plain, "route": route, "stream": stream}
+
 if __name__ == "__main__":
-    asyncio.run({"ours": ours, "device": device, "plain": plain, "route": route}[sys.argv[1]](int(sys.argv[2])))
+    asyncio.run(KINDS[sys.argv[1]](int(sys.argv[2])))

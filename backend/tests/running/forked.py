@@ -39,7 +39,7 @@ from sequence_planner.control.answering_process import Listener
 from sequence_planner.control.commands import AcknowledgeTask, CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.heard import Heard
-from sequence_planner.control.process import what_is_known
+from sequence_planner.control.last_life import what_is_known
 from sequence_planner.control.restart_commands import DecideOutputs
 from sequence_planner.control.view import Production, StationIdentity
 from sequence_planner.emulation.devices import EmulatedDevices

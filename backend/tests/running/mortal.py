@@ -129,6 +129,10 @@ class Mortal:
                 return str(answer.json()["production"])
         return None
 
+    def mode(self) -> str:
+        """The mode that the station says it is in."""
+        return str(self.browser.get("station").raise_for_status().json()["mode"])
+
     def log(self, part: str) -> str:
         """The last that a part has said."""
         return (self.folder / f"{part}.log").read_text()[-3000:]
@@ -182,10 +186,17 @@ class Mortal:
 
         self.wait(started, "production cannot be started")
 
-    def get_back_to_work(self) -> None:
-        """Until something starts or finishes that was not done before. Nothing but what REST shows is known."""
+    def get_back_to_work(self, *, at_rest: bool = False) -> None:
+        """Until something starts or finishes that was not done before. Nothing but what REST shows is known.
+
+        Where it is `at_rest`, as nobody was sure that nobody had paused it, it says so, and a person lets it go on.
+        """
         self.begin_production()
         self.kept.look()
+        if at_rest:
+            assert self.mode() == "paused" and "begins-at-rest" in self.alarms()
+            self.ask("PUT", "mode", {"mode": "automatic"}).raise_for_status()
+        assert self.mode() == "automatic"
         self.go_on()
 
     def go_on(self) -> None:

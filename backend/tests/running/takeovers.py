@@ -16,6 +16,7 @@ from sequence_planner.lifeline import OVERTAKEN
 from storage.servers import binaries, running_server
 
 SOON = 5.0  # seconds in which the other has to command
+AGAIN = "killed and started again at once"
 STEP = 0.5  # seconds of what is told of that
 
 
@@ -41,12 +42,12 @@ def takeovers(seed: str, number: int) -> Counter[str]:
         commands, other = both.stations
         commands.get_back_to_work()
         for count in range(number):
-            what = chance.choice(["killed", "stopped", "cut off"])
+            what = chance.choice([AGAIN, "killed", "stopped", "cut off"])
             seen[f"{what} while it commanded"] += 1
             took = _trouble(both, commands, other, what)
             seen[f"the other commands within {STEP * (1 + took // STEP):.1f} s"] += 1
             assert took < SOON, f"{what}: the other took {took:.1f} s"
-            seen["a person decided what an output shall be" if _goes_on(other) else "it went on by itself"] += 1
+            seen[_goes_on(other, by_itself=what == AGAIN)] += 1
             other.go_on()
             assert both.ear.require_one_after_the_other() == count + 2
             _back(both, commands, what)
@@ -60,8 +61,10 @@ def takeovers(seed: str, number: int) -> Counter[str]:
 
 def _trouble(both: Pair, station: Mortal, other: Mortal, what: str) -> float:
     """Seconds until the other commands."""
-    if what == "killed":
+    if what in (AGAIN, "killed"):
         station.kill("controller")
+        if what == AGAIN:
+            station.start("controller")
     elif what == "stopped":
         station.signal("controller", signal.SIGSTOP)
     else:
@@ -70,17 +73,28 @@ def _trouble(both: Pair, station: Mortal, other: Mortal, what: str) -> float:
     return takes_over(other)
 
 
-def _goes_on(station: Mortal) -> bool:
-    """Production goes on, once a person has decided on outputs, where somebody has to; whether that was so."""
+def _goes_on(station: Mortal, *, by_itself: bool) -> str:
+    """How production goes on: by itself only where it was told in time that all is recorded, once a person has decided
+    on outputs where somebody has to. Else it says that it begins paused, and a person lets it go on.
+    """
     decided = []
 
-    def started() -> bool:
-        if station.production() == "waiting":
-            decided.append(station.decide())
-        return station.production() == "started"
+    def at_rest() -> bool:
+        return station.production() == "waiting" and "begins-at-rest" in station.alarms()
 
-    station.wait(started, "it does not go on")
-    return any(decided)
+    def goes_on() -> bool:
+        if not at_rest() and station.production() == "waiting":
+            decided.append(station.decide())
+        return at_rest() or station.production() == "started"
+
+    station.wait(goes_on, "it does not go on")
+    if not at_rest():
+        assert by_itself, "nobody knows whether somebody has stopped it"
+        return "a person decided what an output shall be" if any(decided) else "it went on by itself"
+    assert station.mode() == "paused"
+    station.begin_production()
+    station.ask("PUT", "mode", {"mode": "automatic"}).raise_for_status()
+    return "it was told too late that all is recorded" if by_itself else "a person let it go on"
 
 
 def _back(both: Pair, station: Mortal, what: str) -> None:
@@ -89,7 +103,9 @@ def _back(both: Pair, station: Mortal, what: str) -> None:
         station.signal("controller", signal.SIGCONT)
     elif what == "cut off":
         both.links[str(station.standby)].mend()
-    if what != "killed":
+    if what == AGAIN:
+        station.kill("controller")
+    elif what != "killed":
         eventually(lambda: station.ended("controller") == OVERTAKEN, 60.0)
     station.start("controller")
     station.wait(lambda: standby(station)["holder"] not in (None, station.standby), "it does not stand by")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from running.stations import MODEL, RunningStation, eventually, finished, foreign_node, process, station
+from running.stations import MODEL, RunningStation, eventually, finished, foreign_node, free_port, process, station
 from sequence_planner.ros.transport import QualityOfService
 
 AT_WORK = ("--emulator", "--start", "--emulator-speed", "5")
@@ -30,8 +30,11 @@ def test_a_whole_engine_is_assembled(at_work: RunningStation) -> None:
     assert [alarm["text"] for alarm in at_work.get("alarms").values() if alarm["ended"] is None] == []
 
 
-def test_two_controllers_never_command_the_same_devices(at_work: RunningStation) -> None:
-    second = finished("run", str(MODEL), "--port", "8999")
+def test_two_controllers_never_command_the_same_devices(at_work: RunningStation, tmp_path: Path) -> None:
+    second = finished("run", str(MODEL), "--port", str(free_port()))
+    assert second.returncode == 2
+    assert "another controller of this station runs already" in second.stderr
+    second = finished("run", str(MODEL), "--port", str(free_port()), "--database", f"sqlite:///{tmp_path}/other.sqlite")
     assert second.returncode == 2
     assert "somebody else publishes /" in second.stderr
     assert "Stop the other one, or choose another ROS_DOMAIN_ID" in second.stderr

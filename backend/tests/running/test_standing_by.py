@@ -46,7 +46,7 @@ def test_the_command_goes_from_one_to_the_other_and_back_and_nothing_is_lost(
         first.signal("controller", signal.SIGCONT)
         _until(lambda: first.ended("controller") == OVERTAKEN)
         assert second.production() == "waiting", "a person has not said so yet"
-        second.get_back_to_work()
+        second.get_back_to_work(at_rest=True)
         assert ear.require_one_after_the_other() == 2
         first.start("controller")
         first.wait(lambda: standby(first)["holder"] == "press-b", "it does not stand by")
@@ -58,7 +58,7 @@ def test_the_command_goes_from_one_to_the_other_and_back_and_nothing_is_lost(
         assert ear.last < cut + LASTS, "it went on commanding when its lease was over"
         both.links["press-b"].mend()
         _until(lambda: second.ended("controller") == OVERTAKEN)
-        first.get_back_to_work()
+        first.get_back_to_work(at_rest=True)
         assert ear.require_one_after_the_other() == 3
         second.start("controller")
         second.wait(lambda: standby(second)["holder"] == "press-a", "it does not stand by")
@@ -67,7 +67,7 @@ def test_the_command_goes_from_one_to_the_other_and_back_and_nothing_is_lost(
         first.kill("controller")
         first.kept.look()
         _taken_over(second)
-        second.get_back_to_work()
+        second.get_back_to_work(at_rest=True)
         assert ear.require_one_after_the_other() == 4
 
         first.kept.look()

@@ -89,8 +89,11 @@ def test_what_cannot_be_run_says_what_to_do(arguments: tuple[str, ...], said: st
 def test_specifications_that_cannot_be_met_are_shown_with_a_run_and_nothing_is_started(tmp_path: Path) -> None:
     model = tmp_path / "station"
     shutil.copytree(REPOSITORY / MODEL, model)
-    with (model / "specifications.yaml").open("a", encoding="utf-8") as file:
-        file.write("\nacknowledged_tasks:\n  forbidden: operator.acknowledged or robot.pose == home\n")
+    station = model / "station.yaml"
+    text = station.read_text(encoding="utf-8")
+    idle = "nutrunner.set_tool_idle and"
+    assert idle in text
+    station.write_text(text.replace(idle, f"{idle} nutrunner.run_tool_forward and"), encoding="utf-8")
     port = free_port()
     log = tmp_path / "station.log"
     with process(log, "run", str(model), "--emulator", "--start", "--port", str(port)) as running:
@@ -100,10 +103,63 @@ def test_specifications_that_cannot_be_met_are_shown_with_a_run_and_nothing_is_s
         assert analysis is not None
         assert (analysis["supervised"], analysis["guards"]) == (False, None)
         [finding] = analysis["findings"]
-        assert "specification acknowledged_tasks cannot be met" in finding["message"]
-        assert (finding["file"], finding["line"]) == (str(model / "specifications.yaml"), 10)
+        assert "no state described by `rest` in station.yaml can be reached" in finding["message"]
+        assert (finding["kind"], finding["file"]) == ("specification-cannot-be-met", str(station))
         assert finding["trace"]["initial"]["robot.pose"] == "home"
         assert list(shown.get("alarms")) == ["no-supervisor"]
         refused = shown.post("production/start", {})
         assert (refused.status_code, refused.json()["type"]) == (409, "/problems/no-supervisor")
-        assert "acknowledged_tasks" in refused.json()["detail"]
+        assert "`rest`" in refused.json()["detail"]
+
+
+BROKEN = {
+    "a library is missing": ("raise ImportError('librcl.so: cannot open shared object file')", "librcl.so"),
+    "it is of another Python": ("from rclpy.impl import nothing", "No module named 'rclpy.impl'"),
+    "it crashes": ("import os\nos.abort()", "it ends with code -6"),
+}
+
+
+@pytest.fixture
+def broken_rclpy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, kind: str) -> str:
+    """An rclpy first on the path that cannot be imported; what is said of it."""
+    package = tmp_path / "jazzy" / "rclpy" / "__init__.py"
+    package.parent.mkdir(parents=True)
+    package.write_text(BROKEN[kind][0])
+    monkeypatch.setenv("PYTHONPATH", str(package.parents[1]))
+    return BROKEN[kind][1]
+
+
+@pytest.mark.parametrize("kind", BROKEN)
+def test_a_broken_rclpy_that_is_asked_for_is_refused_with_one_line(broken_rclpy: str) -> None:
+    refused = finished("run", str(MODEL), "--emulator", "--transport", "rclpy")
+    assert refused.returncode == 2
+    [line] = refused.stderr.splitlines()
+    assert broken_rclpy in line
+    assert line.endswith("mend that installation of ROS 2, or choose cyclonedds")
+
+
+@pytest.mark.parametrize("kind", ["a library is missing", "it crashes"])
+def test_a_station_that_may_choose_does_without_a_broken_rclpy_and_says_so_once(
+    broken_rclpy: str, tmp_path: Path
+) -> None:
+    with station(tmp_path, "--emulator") as running:
+        assert running.get("production", "station") == "waiting"
+    lines = running.log.read_text().splitlines()
+    [line] = [line for line in lines if "rclpy" in line]
+    assert line.startswith("cyclonedds is used instead of the rclpy at ")
+    assert broken_rclpy in line
+    assert not [line for line in lines if "started again" in line]
+
+
+def test_a_part_alone_does_without_a_broken_rclpy_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    package = tmp_path / "rclpy" / "__init__.py"
+    package.parent.mkdir()
+    package.write_text("raise OSError('wrong ELF class')")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    looked = finished("topics")
+    assert (looked.returncode, "Traceback" in looked.stderr) == (0, False)
+    assert "cyclonedds is used instead of the rclpy at " in looked.stderr
+    refused = finished("topics", "--transport", "rclpy")
+    assert refused.returncode == 2
+    [line] = refused.stderr.splitlines()
+    assert "wrong ELF class" in line

@@ -71,6 +71,20 @@ def test_who_comes_first_holds_it_and_the_next_takes_it_once_it_was_not_renewed(
         assert not first.renew() and not first.is_ours
 
 
+def test_a_station_stands_by_once_it_sees_another_renew_it_and_not_for_one_that_may_be_dead(url: str) -> None:
+    now = Now()
+    models = {NAMES[0]: MODEL, NAMES[1]: MODEL, NAMES[2]: OTHER}
+    with stations(url, models, now) as opened:
+        first, second, third = opened.values()
+        assert first.try_to_take() and not first.is_elsewhere
+        assert not second.try_to_take() and not second.is_elsewhere, "it may have died long ago"
+        assert first.renew()
+        assert not second.try_to_take() and second.is_elsewhere
+        assert not third.try_to_take() and third.is_elsewhere, "it must never take it"
+        now.seconds += LASTS
+        assert second.try_to_take() and not second.is_elsewhere
+
+
 def test_what_is_being_written_under_it_is_written_before_somebody_else_takes_it(url: str) -> None:
     now = Now()
     with stations(url, dict.fromkeys(NAMES[:2], MODEL), now) as opened, closing(Database.open(url)) as database:
@@ -191,11 +205,87 @@ def test_who_is_cut_off_for_long_leaves_the_network_to_others(url: str, tmp_path
             now.seconds += LEAVES
             with pytest.raises(LeaseLostError):
                 await asyncio.wait_for(lost, 10.0)
-            await keeper.end(deployed=False)
+            await keeper.end(deployed=False, settled=False)
 
         asyncio.run(cut_off())
         lease.engine = there
     away.close()
+
+
+def test_who_takes_it_knows_whether_all_is_recorded_only_from_who_held_it(url: str) -> None:
+    now = Now()
+    with stations(url, dict.fromkeys(NAMES[:2], MODEL), now) as opened:
+        first, second = opened.values()
+        assert first.try_to_take() and not first.settled_before, "nobody knows what was before"
+        assert not second.try_to_take()
+        first.release(settled=True)
+        assert second.try_to_take() and second.settled_before
+        second.release()
+        assert first.try_to_take() and not first.settled_before, "not all was recorded"
+        assert not second.try_to_take()
+        now.seconds += LASTS
+        assert second.try_to_take() and not second.settled_before, "it fell silent"
+
+
+def test_a_process_beside_one_that_has_died_says_that_all_is_recorded_and_lets_others_come_first(url: str) -> None:
+    now = Now()
+    with (
+        stations(url, dict.fromkeys(NAMES[:2], MODEL), now) as opened,
+        stations(url, {NAMES[0]: MODEL}, now) as later,
+    ):
+        first, second = opened.values()
+        assert first.try_to_take() and first.epoch == 1
+        assert not second.try_to_take()
+        again = later[NAMES[0]]
+        again.settle(1)
+        assert not again.try_to_take(), "others come first"
+        assert second.try_to_take() and second.settled_before
+        now.seconds += LASTS
+        assert not again.try_to_take()
+        now.seconds += LASTS
+        assert again.try_to_take() and not again.settled_before
+
+
+def test_that_is_heard_also_by_who_has_taken_it_already(url: str) -> None:
+    now = Now()
+    with (
+        stations(url, dict.fromkeys(NAMES[:2], MODEL), now) as opened,
+        stations(url, {NAMES[0]: MODEL}, now) as later,
+    ):
+        first, second = opened.values()
+        assert first.try_to_take()
+        assert not second.try_to_take()
+        now.seconds += LASTS
+        assert second.try_to_take() and not second.settled_before
+        later[NAMES[0]].settle(1)
+        assert second.renew() and second.settled_before
+
+
+def test_who_alone_knows_what_is_not_recorded_does_not_wait(url: str) -> None:
+    now = Now()
+    with (
+        stations(url, dict.fromkeys(NAMES[:2], MODEL), now) as opened,
+        stations(url, {NAMES[0]: MODEL}, now) as later,
+    ):
+        first, second = opened.values()
+        assert first.try_to_take()
+        assert not second.try_to_take()
+        again = later[NAMES[0]]
+        again.unsettled = 1
+        assert again.try_to_take() and again.epoch == 2
+        assert not second.try_to_take()
+
+
+def test_the_database_was_away_so_its_holder_has_all_the_time_again(url: str) -> None:
+    now = Now()
+    with stations(url, dict.fromkeys(NAMES[:2], MODEL), now) as opened:
+        first, second = opened.values()
+        assert first.try_to_take()
+        assert not second.try_to_take()
+        now.seconds += 10 * LASTS
+        second.look_anew()
+        assert not second.try_to_take()
+        assert first.renew()
 
 
 class Rivals(RuleBasedStateMachine):

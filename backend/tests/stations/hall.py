@@ -1,4 +1,4 @@
-"""The whole station as it would stand in a hall: a world, eight nodes and the controller, each a process of its own.
+"""The whole station as it would stand in a hall: a world, its computers and the controller, each a process of its own.
 
 Everything meets over DDS on the loopback, and over the world's port there. Processes are ended by their ids.
 """
@@ -21,7 +21,7 @@ from typing import Any
 import httpx
 
 from running.stations import PATIENCE, REPOSITORY, RunningStation, environment, eventually, free_port
-from sequence_planner.emulation.truck_station.signals import NODES
+from sequence_planner.emulation.truck_station.signals import COMPUTERS
 
 MODEL = Path("models") / "truck_engine_station"
 
@@ -108,7 +108,7 @@ class Hall:
 
 @contextmanager
 def hall(folder: Path, speed: float = 1.0, seed: int = 0) -> Iterator[Hall]:
-    """A world and its eight nodes. Logs go to `folder`."""
+    """A world and its computers. Logs go to `folder`."""
     place = Hall(folder, free_port(), free_port())
     world = started(
         folder / "world.log",
@@ -120,7 +120,7 @@ def hall(folder: Path, speed: float = 1.0, seed: int = 0) -> Iterator[Hall]:
         stack.callback(ended, world)
         stack.callback(place.end)
         eventually(place.up)
-        for node in NODES:
+        for node in COMPUTERS:
             place.start(node)
         yield place
 

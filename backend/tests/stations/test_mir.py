@@ -10,7 +10,8 @@ import httpx
 import pytest
 
 from sequence_planner.emulation.truck_station.links import RestLink, WorldEndedError, WorldLink
-from sequence_planner.emulation.truck_station.mir import GOAL, STATUS, MirServer
+from sequence_planner.emulation.truck_station.mir import MirServer
+from sequence_planner.emulation.truck_station.rest import GOAL, STATUS
 from sequence_planner.emulation.truck_station.server import WorldServer
 from sequence_planner.emulation.truck_station.world import World
 
@@ -18,10 +19,14 @@ from sequence_planner.emulation.truck_station.world import World
 @asynccontextmanager
 async def served(world: World) -> AsyncIterator[tuple[asyncio.Server, int, int]]:
     """A world and its AGV at ports of their own; the first is the AGV's server."""
-    mir = await asyncio.start_server(MirServer(world).connected, "127.0.0.1", 0)
     server = await asyncio.start_server(WorldServer(world).connected, "127.0.0.1", 0)
-    async with mir, server:
-        yield mir, server.sockets[0].getsockname()[1], mir.sockets[0].getsockname()[1]
+    async with server:
+        port = server.sockets[0].getsockname()[1]
+        link = await WorldLink.to("mir", port)
+        mir = await asyncio.start_server(MirServer(link).connected, "127.0.0.1", 0)
+        async with mir:
+            yield mir, port, mir.sockets[0].getsockname()[1]
+        link.close()
 
 
 def test_the_agv_is_told_where_to_go_and_says_where_it_is() -> None:
@@ -46,9 +51,30 @@ def test_the_agv_is_told_where_to_go_and_says_where_it_is() -> None:
     ],
 )
 def test_what_makes_no_sense_is_refused_and_moves_nothing(method: str, path: str, body: bytes, status: int) -> None:
-    world = World()
-    assert MirServer(world).answer(method, path, body)[0] == status
-    assert world.agv.goal == "kitting"
+    async def ask() -> None:
+        world = World()
+        async with served(world) as (_, _, port), httpx.AsyncClient(base_url=f"http://127.0.0.1:{port}") as client:
+            answer = await client.request(method, path, content=body)
+            assert (answer.status_code, list(answer.json())) == (status, ["error"])
+        assert world.agv.goal == "kitting"
+
+    asyncio.run(ask())
+
+
+def test_an_agv_that_is_switched_off_answers_nobody() -> None:
+    async def ask() -> None:
+        world = World()
+        async with served(world) as (_, port, mir_port):
+            world_link = await WorldLink.to("mircom", port)
+            bridge = RestLink(world_link, mir_port)
+            reader, writer = await asyncio.open_connection("127.0.0.1", port)
+            writer.write(b'{"fault": {"node": "mir", "kind": "offline", "seconds": 60}}\n')
+            assert await reader.readline() == b'{"done": true}\n'
+            assert (await bridge.exchange({"goal": "station"})).fault == {"kind": "silent"}
+            bridge.close()
+            writer.close()
+
+    asyncio.run(ask())
 
 
 def test_the_bridge_reaches_the_agv_over_http_and_is_silent_without_it() -> None:

@@ -252,4 +252,6 @@ except StorageError as error:
             [sys.executable, "-c", code, f"sqlite:///{file}"], capture_output=True, text=True, check=True, timeout=60
         )
     missing = f"{file} is not there: no station has kept its database there yet\n"
-    assert done.stdout == f"{missing}{missing}{file} cannot be opened: Permission denied\n"
+    said = done.stdout.removeprefix(f"{missing}{missing}{file} cannot be opened: {folder} belongs to ")
+    assert said != done.stdout
+    assert said.endswith(": give this user the right to read and write it, and to write to its folder\n")

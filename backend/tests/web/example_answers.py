@@ -79,6 +79,7 @@ OFFER = OfferView(
     corrections=[ValueChangeView(name="bolts[bolt_pair_1]", now="empty", then="placed")],
     errand=PLAN,
     ends="robot.pose == home",
+    into_safe=False,
     operation=None,
     needs_restart=True,
     unsupervised=False,
@@ -87,10 +88,13 @@ OFFER = OfferView(
     then=PLAN,
     goals=["tighten"],
     left_out=[],
+    claims=[],
+    only_if_checked=False,
     effort=EffortView(cost=36.5, corrections=1, physical=0, returns=0, starts=1, seconds=4.5),
     obstacle=None,
 )
-ADVICE = AdviceView(revision=7, offers=[OFFER], reasons=None, complete=True, seconds=0.4)
+CLAIM = OFFER.model_copy(update={"kind": "correction", "errand": None, "claims": ["tighten"], "only_if_checked": True})
+ADVICE = AdviceView(revision=7, offers=[OFFER], if_checked=[CLAIM], reasons=None, complete=True, seconds=0.4)
 POSE = InvolvedView(
     name="robot.pose",
     kind="measured",

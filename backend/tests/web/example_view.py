@@ -20,6 +20,7 @@ from sequence_planner.control.view import (
     Production,
     ResourceView,
     StationIdentity,
+    StationStanding,
     StationView,
     StepStatus,
     TaskView,
@@ -75,6 +76,8 @@ def example_view(**changes: object) -> StationView:
         revision=1,
         mode=Mode.AUTOMATIC,
         packml=PackML.EXECUTE,
+        standing=StationStanding.WORKING,
+        silent=[],
         stepping=False,
         production=Production.STARTED,
         unconfirmed=False,
@@ -233,5 +236,6 @@ def example_view(**changes: object) -> StationView:
         way_back=None,
         analysis=None,
         standby=None,
+        deployment=None,
     )
     return view.model_copy(update=changes)

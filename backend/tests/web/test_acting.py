@@ -17,7 +17,7 @@ from sequence_planner.control.commands import (
     ReleaseControl,
     TakeControl,
 )
-from sequence_planner.control.task_commands import ReportProblem, SolveProblem
+from sequence_planner.control.task_commands import ProblemKind, ReportProblem, SolveProblem
 from sequence_planner.identity.roles import Role
 
 from .example_view import example_view
@@ -67,12 +67,15 @@ def test_a_refusal_comes_in_the_controllers_words(client: httpx.Client, controll
 def test_a_person_says_what_is_in_the_way_of_a_task_and_that_it_is_solved(
     client: httpx.Client, controller: Controller
 ) -> None:
-    told = {"revision": 3, "reason": "the bolts are used up"}
+    told = {"revision": 3, "what": "missing", "reason": "the bolts are used up"}
     assert client.post("/api/v1/tasks/7/problem", json=told).status_code == 204
+    assert client.post("/api/v1/tasks/7/problem", json={"revision": 3}).status_code == 204
+    problem(client.post("/api/v1/tasks/7/problem", json={"revision": 3, "what": "tired"}), 422, "invalid-request")
     assert client.post("/api/v1/tasks/7/problem/solved", json={"revision": 3}).status_code == 204
     actor = controller.commands[0].actor
     assert controller.commands == [
-        ReportProblem(actor=actor, task="7", revision=3, reason="the bolts are used up"),
+        ReportProblem(actor=actor, task="7", revision=3, what=ProblemKind.MISSING, reason="the bolts are used up"),
+        ReportProblem(actor=actor, task="7", revision=3),
         SolveProblem(actor=actor, task="7", revision=3),
     ]
 

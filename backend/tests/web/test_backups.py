@@ -176,6 +176,8 @@ def test_one_is_made_without_anybody_asking_and_its_commands_restore_it_and_keep
 ) -> None:
     monkeypatch.setattr(backup_desk, "LOOK_EVERY", 0.2)
     object.__setattr__(settings, "backups", Keeping(folder, every=24))
+    with contextlib.closing(Database.open(settings.database)) as database:
+        database.upgrade()
     key = tmp_path / "station.sqlite-webhook-key.key"
     key.write_bytes(b"k" * 32)
     server = Server(loop, settings)

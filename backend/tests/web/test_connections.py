@@ -8,9 +8,12 @@ import time
 import httpx
 import pytest
 
-from sequence_planner.web import connections, guard
+from sequence_planner.web import connections, crowd, guard
+from sequence_planner.web.connections import HEAD_SECONDS
+from sequence_planner.web.crowd import MOST_UNKNOWN
+from sequence_planner.web.heads import LARGEST_HEAD
 
-from .running import Server, listen, until
+from .running import Controller, Server, listen, until
 
 SOON = 0.4  # seconds
 
@@ -66,45 +69,123 @@ def test_a_body_that_does_not_come_is_not_waited_for(server: Server, client: htt
         assert answer.startswith(b"HTTP/1.1 408")
 
 
-def test_a_head_may_not_be_endless(server: Server) -> None:
-    with connected(server) as long:
-        long.sendall(b"GET /healthz HTTP/1.1\r\nX-Long: " + b"a" * (connections.LARGEST_HEAD + 1))
-        assert long.recv(4096).startswith(b"HTTP/1.1 400")
+def answered(server: Server, sent: bytes) -> bytes:
+    """All that comes until the server hangs up."""
+    with connected(server) as client:
+        client.sendall(sent)
+        received = b""
+        while more := client.recv(65536):
+            received += more
+        return received
 
 
-def test_connections_beyond_the_most_are_closed_and_the_others_go_on(
-    server: Server, client: httpx.Client, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    assert client.get("/healthz").status_code == 200
-    monkeypatch.setattr(connections, "MOST_CONNECTIONS", 5)
-    idle = [connected(server) for _ in range(8)]
+def head(server: Server, *lines: bytes) -> bytes:
+    host = f"Host: 127.0.0.1:{server.settings.port}".encode()
+    return b"\r\n".join([b"GET /healthz HTTP/1.1", host, *lines]) + b"\r\n\r\n"
+
+
+@pytest.mark.parametrize("end", [b"", b"\r\n\r\n"], ids=["endless", "whole"])
+def test_a_head_may_not_be_too_large(server: Server, end: bytes) -> None:
+    start = head(server)[:-2] + b"X-Long: "
+    answer = answered(server, start + b"a" * (LARGEST_HEAD - len(start) - len(end) + 1) + end)
+    assert answer.startswith(b"HTTP/1.1 431")
+    assert b"/problems/head-too-large" in answer
+
+
+def test_a_head_may_have_its_whole_size(server: Server) -> None:
+    start, end = head(server)[:-2] + b"Connection: close\r\nX-Long: ", b"\r\n\r\n"
+    answer = answered(server, start + b"a" * (LARGEST_HEAD - len(start) - len(end)) + end)
+    assert answer.startswith(b"HTTP/1.1 200")
+
+
+@pytest.mark.parametrize("before", [False, True], ids=["first", "behind another"])
+def test_a_line_that_ends_with_a_line_feed_alone_is_refused(server: Server, before: bool) -> None:
+    wrong = head(server, b"X-One: 1\nX-Two: 2")
+    first, _, rest = answered(server, (head(server) if before else b"") + wrong).partition(b"HTTP/1.1 400")
+    assert first.startswith(b"HTTP/1.1 200") is before
+    assert b"CR LF" in rest
+    assert b"application/problem+json" in rest
+
+
+def slow(server: Server, address: str, sent: bytes) -> socket.socket:
+    """A client that never finishes what it has begun."""
+    made = socket.socket()
+    made.settimeout(10)
+    made.bind((address, 0))
+    made.connect(("127.0.0.1", server.settings.port))
+    made.sendall(sent)
+    return made
+
+
+def is_closed(client: socket.socket) -> bool:
+    client.setblocking(False)
     try:
-        idle[-1].settimeout(10)
-        assert idle[-1].recv(1) == b""
-        assert client.get("/healthz").status_code == 200
+        return client.recv(1) == b""
+    except BlockingIOError:
+        return False
+    except ConnectionResetError:
+        return True
+
+
+def many(server: Server, count: int, *addresses: str) -> list[socket.socket]:
+    """Clients of which a third says nothing, a third half a head, and a third half a body."""
+    body = b"POST /api/v1/session HTTP/1.1\r\nHost: 127.0.0.1:%d\r\nContent-Type: application/json\r\n"
+    begun = [b"", b"GET / HTTP/1.1\r\nX-Slow:", body % server.settings.port + b"Content-Length: 90\r\n\r\n{"]
+    return [slow(server, address, begun[number % 3]) for number in range(count) for address in addresses]
+
+
+def test_who_is_signed_in_stops_the_station_whoever_else_holds_connections(
+    server: Server, controller: Controller, client: httpx.Client
+) -> None:
+    """All places for strangers are taken, from this machine and through others; and more come."""
+    idle = many(server, MOST_UNKNOWN // 3 + 5, "127.0.0.1", "127.0.0.2", "127.0.0.3")
+    try:
+        began = time.monotonic()
+        for mode in ("hold", "paused"):  # each with a connection of its own
+            with httpx.Client(base_url=server.address, cookies=client.cookies, timeout=HEAD_SECONDS / 2) as operator:
+                assert operator.put("/api/v1/mode", json={"mode": mode}).status_code == 204
+        assert len(controller.commands) == 2
+        assert time.monotonic() - began < HEAD_SECONDS / 2
+        idle += many(server, 5, "127.0.0.1", "127.0.0.2", "127.0.0.3")
+        assert httpx.get(f"{server.address}/healthz", timeout=HEAD_SECONDS / 2).status_code == 200
+        assert 0 < sum(map(is_closed, idle)) < len(idle) / 2
     finally:
         for each in idle:
             each.close()
-    until(lambda: _served(server))
+
+
+def test_a_stream_of_somebody_signed_in_stays_when_strangers_come(server: Server) -> None:
+    with listen(server) as stream:
+        idle = many(server, MOST_UNKNOWN // 3 + 50, "127.0.0.1", "127.0.0.2", "127.0.0.3")
+        for _ in range(5):
+            assert stream.recv(5)
+        for each in idle:
+            each.close()
 
 
 def test_one_address_may_not_have_them_all(server: Server, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Counted as from elsewhere, for once: all connections of a test come from this machine."""
-    monkeypatch.setattr(connections, "_from_here", lambda _: False)
-    monkeypatch.setattr(connections.PromptConnection, "of_one_address", 3)
-    kept = [connected(server) for _ in range(3)]
-    with connected(server) as refused, socket.socket() as other:
-        assert refused.recv(1) == b""
-        other.bind(("127.0.0.9", 0))
-        other.connect(("127.0.0.1", server.settings.port))
-        other.sendall(f"GET /healthz HTTP/1.1\r\nHost: 127.0.0.1:{server.settings.port}\r\n\r\n".encode())
+    monkeypatch.setitem(crowd.MOST_OF_ONE, crowd.Kind.ADDRESS, 3)
+    kept = [slow(server, "127.0.0.9", b"") for _ in range(5)]
+    with slow(server, "127.0.0.8", head(server)) as other:
         assert other.recv(4096).startswith(b"HTTP/1.1 200")
+    until(lambda: [is_closed(each) for each in kept] == [True, True, False, False, False])
     for each in kept:
         each.close()
 
 
-def _served(server: Server) -> bool:
-    try:
-        return httpx.get(f"{server.address}/healthz").status_code == 200
-    except httpx.TransportError:
-        return False
+def test_one_session_may_not_have_them_all(
+    server: Server, client: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(crowd.MOST_OF_ONE, crowd.Kind.BEARER, 3)
+    cookie = "; ".join(f"{name}={value}" for name, value in client.cookies.items()).encode()
+    asked = head(server, b"Cookie: " + cookie).replace(b"/healthz", b"/api/v1/session")
+    kept = []
+    with listen(server) as stream:
+        for _ in range(5):
+            kept.append(slow(server, "127.0.0.9", asked))
+            assert kept[-1].recv(65536).startswith(b"HTTP/1.1 200")
+        assert not is_closed(kept[-1])
+        until(lambda: is_closed(kept[0]) and is_closed(kept[1]))
+        assert stream.recv(5)
+    for each in kept:
+        each.close()

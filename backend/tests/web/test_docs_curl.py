@@ -29,6 +29,14 @@ def settings(settings: Settings) -> Settings:
     return replace(settings, demonstration=True)
 
 
+# What does not ask for `--fail` itself shows the problem and fails too.
+CURL = """curl() {
+  [[ " $* " == *" --fail "* ]] || set -- --fail-with-body "$@"
+  command curl --silent --show-error "$@"
+}
+"""
+
+
 def snippet(page: str, part: str) -> str:
     """The lines of `page` to be typed into a shell in which `part` is."""
     text = (REPOSITORY / page).read_text(encoding="utf-8")
@@ -39,7 +47,7 @@ def snippet(page: str, part: str) -> str:
 def typed(lines: str, folder: Path, **environment: str) -> str:
     """What is printed when all of `lines` are typed; every request must be granted."""
     done = subprocess.run(
-        ["bash", "-e", "-c", 'curl() { command curl --silent --show-error --fail-with-body "$@"; }\n' + lines],
+        ["bash", "-e", "-c", CURL + lines],
         cwd=folder,
         env={**os.environ, **environment},
         capture_output=True,
@@ -66,7 +74,7 @@ def test_what_the_readme_types_reads_the_tasks_acknowledges_one_and_pauses(
     printed = typed(lines.replace("<id>/", "7/"), tmp_path)
     assert '"kind":"demonstration"' in printed
     assert '"revision":1' in printed
-    assert [type(each) for each in controller.commands] == [AcknowledgeTask, SetMode]
+    assert [type(each) for each in controller.commands] == [AcknowledgeTask, SetMode, TakeControl, SetMode]
 
 
 def test_what_the_page_about_pipelines_types_sets_and_clears_an_override(

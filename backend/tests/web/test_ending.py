@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import time
 from contextlib import ExitStack
 from pathlib import Path
@@ -17,6 +18,7 @@ from sequence_planner.control.view import ControlView
 from sequence_planner.identity import keys, people, sessions, watches
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.identity.sessions import SignedIn
+from sequence_planner.web import liveness
 from sequence_planner.web.cookies import watch_cookie
 
 from .bearers import key, watch
@@ -187,17 +189,80 @@ def test_what_cannot_be_written_keeps_nobody_from_pausing(server: Server) -> Non
         assert browser.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204
 
 
-def test_nobody_is_remembered_for_long_or_after_signing_out(server: Server) -> None:
+def test_who_has_signed_out_stays_out_and_others_pause_as_long_as_their_sessions_would_last(server: Server) -> None:
     token, _ = server.session(server.person())
     late, _ = server.session(server.person())
     with server.client(token=token) as browser, server.client(token=late) as other:
         assert other.get("/api/v1/state").status_code == 200
         assert browser.get("/api/v1/state").status_code == 200
         assert browser.delete("/api/v1/session").status_code == 204
-        assert other.get("/api/v1/state").status_code == 200
+        take_away(server)  # the other has asked for nothing since
+        problem(browser.put("/api/v1/mode", json={"mode": "paused"}), 503, "storage-unavailable")
+        began = server.identity.now()
+        for minutes in (6, 60, 119):
+            server.identity.now = lambda minutes=minutes: began + 60.0 * minutes  # type: ignore[misc]
+            assert other.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204
+        server.identity.now = lambda: began + 60.0 * 180  # an hour without a request
+        problem(other.put("/api/v1/mode", json={"mode": "paused"}), 503, "storage-unavailable")
+
+
+def test_that_a_colleague_has_just_signed_in_keeps_nobody_from_holding_while_the_database_is_away(
+    server: Server,
+) -> None:
+    token, _ = server.session(server.person())
+    hashed = server.loop.run(server.identity.passwords.hash("seven green bolts"))
+    with server.identity.database.writing() as connection:
+        people.create(connection, "Ada", Role.OPERATOR, hashed, SYSTEM, time.time(), temporary=False)
+    with server.client(token=token) as browser, server.client() as colleague:
+        assert browser.get("/api/v1/state").status_code == 200
+        signing_in = {"name": "Ada", "password": "seven green bolts"}
+        assert colleague.post("/api/v1/session", json=signing_in).status_code == 200
         take_away(server)
-        problem(browser.get("/api/v1/state"), 503, "storage-unavailable")
-        assert other.get("/api/v1/state").status_code == 200
-        now = server.identity.now
-        server.identity.now = lambda: now() + 301.0
-        problem(other.get("/api/v1/state"), 503, "storage-unavailable")
+        assert browser.put("/api/v1/mode", json={"mode": "hold"}).status_code == 204
+        problem(colleague.post("/api/v1/session", json=signing_in), 503, "storage-unavailable")
+        assert browser.put("/api/v1/mode", json={"mode": "hold"}).status_code == 204
+
+
+def test_who_loses_the_right_or_is_signed_out_by_another_stays_out_while_the_database_is_away(server: Server) -> None:
+    administrator, _ = server.session(server.person(Role.ADMINISTRATOR))
+    person = server.person()
+    token, _ = server.session(person)
+    kept, _ = server.session(server.person())
+    with (
+        server.client(token=administrator) as browser,
+        server.client(token=token) as other,
+        server.client(token=kept) as third,
+    ):
+        for each in (browser, other, third):
+            assert each.get("/api/v1/state").status_code == 200
+        assert browser.delete(f"/api/v1/people/{person.id}/sessions").is_success
+        take_away(server)
+        problem(other.put("/api/v1/mode", json={"mode": "paused"}), 503, "storage-unavailable")
+        assert third.put("/api/v1/mode", json={"mode": "paused"}).status_code == 204
+
+
+def test_whoever_decides_on_restarts_is_told_whether_one_helps(
+    server: Server, client: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """While the database is away none does; where the server's own connections are stuck, it does."""
+    for name in ("EVERY", "PATIENCE", "SHUT_AFTER"):
+        monkeypatch.setattr(liveness, name, 0.5)
+
+    def answers(status: int, seconds: float = 20.0) -> None:
+        until(lambda: client.get("/healthz").status_code == status, seconds)
+
+    answers(200)
+    with contextlib.ExitStack() as stuck:
+        for _ in range(15):  # all that there are
+            stuck.enter_context(server.identity.database.reading())
+        answers(503)
+        found = problem(client.get("/healthz"), 503, "not-alive")
+        assert "Start the station again" in found["reasons"]["database"]
+    answers(200)
+    away = take_away(server)
+    end = time.monotonic() + 3.0
+    while time.monotonic() < end:
+        assert client.get("/healthz").status_code == 200
+        time.sleep(0.1)
+    assert client.get("/readyz").status_code == 503
+    away.rename(away.with_name("station.sqlite"))

@@ -122,7 +122,7 @@ def test_a_wrong_key_is_told_where_it_is_wrong(administrator: httpx.Client) -> N
 
 
 def test_a_key_that_is_not_there_is_not_revoked(administrator: httpx.Client) -> None:
-    for key in ("0123456789abcdef", "no one", "%00", "Ä"):
+    for key in ("0123456789abcdef", "no one", "Ä"):
         problem(administrator.delete(f"{KEYS}/{key}"), 404, "no-key")
 
 

@@ -12,8 +12,11 @@ from typing import Any
 
 import httpx
 import pytest
+from fastapi.routing import iter_route_contexts
 
 from sequence_planner.web.openapi import document
+
+from .running import Server
 
 COMMITTED = Path(__file__).parents[3] / "frontend" / "openapi.json"
 
@@ -30,6 +33,22 @@ def test_the_stream_is_described(described: dict[str, Any]) -> None:
     assert kinds == {"Snapshot", "Delta", "Link", "StreamError"}
     assert {"StationView", "StationChange", "StationRemoval", "Resync", "Problem"} <= schemas.keys()
     assert "required" not in schemas["StationChange"]
+
+
+def test_every_websocket_says_what_it_sends_and_takes(described: dict[str, Any], server: Server) -> None:
+    streams = {route.path_format for route in iter_route_contexts(server.app.routes) if route.methods is None}
+    assert streams == described["x-websockets"].keys()
+
+
+def test_tags_servers_and_webhooks_are_described(described: dict[str, Any]) -> None:
+    used = {tag for verbs in described["paths"].values() for each in verbs.values() for tag in each["tags"]}
+    told = {each["name"]: each["description"] for each in described["tags"]}
+    assert used == told.keys()
+    assert all(text.endswith(".") for text in told.values())
+    assert described["servers"] == [{"url": "/", "description": "The station that this document was read from."}]
+    event = described["webhooks"]["event"]["post"]
+    assert {each["name"] for each in event["parameters"]} == {"webhook-id", "webhook-timestamp", "webhook-signature"}
+    assert event["requestBody"]["content"]["application/json"]["schema"]["$ref"].endswith("/JobEvent")
 
 
 def test_every_reference_leads_somewhere(described: dict[str, Any]) -> None:
@@ -58,8 +77,8 @@ def test_every_refusal_is_described_as_a_problem(described: dict[str, Any]) -> N
 
 def test_each_operation_says_with_which_status_it_refuses(described: dict[str, Any]) -> None:
     paths = described["paths"]
-    assert paths["/healthz"]["get"]["responses"].keys() == {"200", "503", "default"}
-    assert paths["/api/v1/tasks"]["get"]["responses"].keys() == {"200", "401", "403", "503", "default"}
+    assert paths["/healthz"]["get"]["responses"].keys() == {"200", "431", "503", "default"}
+    assert paths["/api/v1/tasks"]["get"]["responses"].keys() == {"200", "401", "403", "431", "503", "default"}
     change = paths["/api/v1/people/{person}"]["patch"]["responses"]
     assert {"401", "403", "404", "409", "412", "415", "422", "428"} < change.keys()
     assert list(change["200"]["headers"]) == ["ETag"]

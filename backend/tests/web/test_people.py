@@ -154,7 +154,7 @@ def test_a_change_names_the_revision_that_was_seen(administrator: httpx.Client) 
     person = enter(administrator)
     place = f"{PEOPLE}/{person['id']}"
     problem(administrator.patch(place, json={"role": "engineer"}), 428, "revision-needed")
-    for odd in ("1", '"one"', "*", 'W/"1"', '"1", "2"', '""', '"99999999999999999999"'):
+    for odd in ("1", '"one"', 'W/"1"', '"1", "2"', '""', '"99999999999999999999"'):
         answer = administrator.patch(place, json={"role": "engineer"}, headers={"If-Match": odd})
         assert problem(answer, 422, "invalid-request")["errors"][0]["field"] == "header.if-match"
     problem(change(administrator, person, {"role": "engineer"}, revision=7), 412, "person-changed")
@@ -163,6 +163,9 @@ def test_a_change_names_the_revision_that_was_seen(administrator: httpx.Client) 
     assert (answer.status_code, answer.headers["etag"]) == (200, '"2"')
     assert answer.json() == listed(administrator)["Eva Lund"] == person | {"role": "engineer", "revision": 2}
     problem(change(administrator, person, {"disabled": True}), 412, "person-changed")
+    whichever = administrator.patch(place, json={"role": "viewer"}, headers={"If-Match": "*"})
+    assert (whichever.status_code, whichever.headers["etag"]) == (200, '"3"')
+    assert administrator.patch(place, json={"role": "engineer"}, headers={"If-Match": '"3"'}).status_code == 200
 
 
 def test_a_wrong_change_changes_nothing(administrator: httpx.Client) -> None:
@@ -252,7 +255,7 @@ def test_somebody_is_signed_out_everywhere(server: Server, administrator: httpx.
 
 
 def test_who_is_not_there_is_not_changed(administrator: httpx.Client) -> None:
-    for person in ("0123456789abcdef", "no one", "%00", "Ä", "'; drop table people; --"):
+    for person in ("0123456789abcdef", "no one", "Ä", "'; drop table people; --"):
         place = f"{PEOPLE}/{person}"
         headers = {"If-Match": '"1"'}
         problem(administrator.patch(place, json={"role": "viewer"}, headers=headers), 404, "no-person")

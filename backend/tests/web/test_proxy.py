@@ -12,6 +12,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from sequence_planner.identity.roles import Role
+from sequence_planner.web import crowd
 from sequence_planner.web.settings import Settings
 
 from .running import Controller, Loop, Server, until
@@ -139,3 +140,28 @@ def test_a_foreign_page_is_refused_through_the_proxy_too(proxied: Server, contro
         with connected_from(PROXY, proxied, FORWARDED | signed_in(proxied) | {"Origin": origin}) as browser:
             problem(browser.put("/api/v1/mode", json={"mode": "paused"}), 403, "foreign-origin")
     assert controller.commands == []
+
+
+def test_behind_the_proxy_connections_are_counted_by_who_it_says(
+    proxied: Server, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(crowd.MOST_OF_ONE, crowd.Kind.ADDRESS, 2)
+
+    def asked(client: str) -> socket.socket:
+        made = socket.create_connection(("127.0.0.1", proxied.settings.port), 10, (PROXY, 0))
+        headers = "".join(f"{name}: {value}\r\n" for name, value in {**FORWARDED, "X-Forwarded-For": client}.items())
+        made.sendall(f"GET /healthz HTTP/1.1\r\n{headers}\r\n".encode())
+        received = b""
+        while not received.endswith(b"}"):
+            received += made.recv(65536)
+        assert received.startswith(b"HTTP/1.1 200")
+        return made
+
+    kept = [asked(client) for client in ("2001:db8:1::1", CLIENT, "2001:db8:1::2", "2001:db8:1:0:5::3")]
+    assert kept[0].recv(1) == b""
+    for each in kept[1:]:
+        each.setblocking(False)
+        with pytest.raises(BlockingIOError):
+            each.recv(1)
+    for each in kept:
+        each.close()

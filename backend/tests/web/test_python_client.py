@@ -78,6 +78,21 @@ def test_the_client_has_every_operation_and_compiles(made: Path, tmp_path: Path)
 
 
 @pytest.mark.skipif(shutil.which("curl") is None, reason="there is no curl here")
+def test_the_walk_through_is_typed_as_it_is_written_with_the_key_that_it_names(server: Server, tmp_path: Path) -> None:
+    secret, _ = key(server, Scope.ORDERS_READ, Scope.ORDERS_WRITE)
+    shown = {"STATION": server.address, "STATION_KEY": secret}
+    walk = snippet("docs/mes.md", "job-orders/4711")
+    printed = typed(f"{walk}\n{FETCH}", tmp_path, **shown)
+    assert '"truck_engine"' in printed.split('"id":"4711"')[0], "the work master is one of this station"
+    assert '"outcome":"aborted"' in printed
+    assert json.loads((tmp_path / "openapi.json").read_text(encoding="utf-8"))["openapi"].startswith("3.1")
+    (tmp_path / "openapi.json").unlink()
+    with pytest.raises(AssertionError, match="401"):
+        typed(f"{ASK}\n{FETCH}", tmp_path, **shown | {"STATION_KEY": "wrong"})
+    assert not (tmp_path / "openapi.json").exists(), "a refusal is not kept as a document"
+
+
+@pytest.mark.skipif(shutil.which("curl") is None, reason="there is no curl here")
 def test_the_client_stores_and_reads_orders_and_the_station(
     made: Path, server: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

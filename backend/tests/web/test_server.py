@@ -19,7 +19,7 @@ from sequence_planner.identity import people
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.sessions import open_session
 from sequence_planner.storage.database import Database
-from sequence_planner.web.binding import bind, check_endpoint, check_free
+from sequence_planner.web.binding import bind, check_endpoint
 from sequence_planner.web.settings import Endpoint, SettingsError
 
 from .running import free_port, until
@@ -113,14 +113,13 @@ def test_a_taken_port_is_said_and_exits_with_2(tmp_path: Path) -> None:
         assert process.stderr.read() == f"port {port} is taken; use --port\n"
 
 
-def test_a_port_can_be_asked_for_before_anything_starts() -> None:
+def test_a_port_that_cannot_be_used_is_said_before_anything_starts() -> None:
     port = free_port()
-    check_free(Endpoint(port=port))
     with bind(Endpoint(port=port)), pytest.raises(SettingsError, match=f"port {port} is taken; use --port"):
-        check_free(Endpoint(port=port))
+        bind(Endpoint(port=port))
     for wrong in (0, -1, 65536):
         with pytest.raises(SettingsError, match="is not a port"):
-            check_free(Endpoint(port=wrong))
+            bind(Endpoint(port=wrong))
 
 
 def test_a_database_that_cannot_be_used_is_said_and_exits_with_2(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
+from importlib.metadata import version
 from pathlib import Path
 
 import httpx
@@ -55,9 +56,11 @@ def works(server: Server, token: str) -> bool:
 
 def test_who_knows_the_password_is_signed_in(server: Server, browser: httpx.Client, person: Person) -> None:
     assert browser.get("/api/v1/session").json()["state"] == "first-start"
+    assert browser.get("/api/v1/session").json()["version"] is None
     answer = sign_in(browser, " ADA ")
     told = answer.json()
     assert answer.status_code == 200
+    assert told["version"] == version("sequence-planner") == browser.get("/healthz").json()["version"]
     assert told["person"] == {"id": person.id, "name": "Ada", "role": "operator", "issuer": None}
     assert (told["state"], told["kind"], told["must_change_password"]) == ("signed-in", "person", False)
     assert 11 * 3600 < told["expires"] - time.time() <= 12 * 3600

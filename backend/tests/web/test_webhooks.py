@@ -14,7 +14,7 @@ from sequence_planner.identity.roles import Scope
 from sequence_planner.mes import events
 from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES
-from sequence_planner.mes.webhooks.targets import Targets
+from sequence_planner.mes.webhooks.targets import Targets, network
 from sequence_planner.storage.metadata import METADATA
 from sequence_planner.web.settings import Settings
 
@@ -42,7 +42,7 @@ def settings(tmp_path: Path, receiver: Receiver) -> Settings:
         page=tmp_path / "page",
         database=f"sqlite:///{tmp_path / 'station.sqlite'}",
         port=free_port(),
-        webhooks=Targets(frozenset({("127.0.0.1", receiver.port), ("localhost", 9)}), loopback=True),
+        webhooks=Targets(frozenset({("127.0.0.1", receiver.port), ("localhost", 9)}), True, (network("10.1.2.0/24"),)),
     )
 
 
@@ -76,7 +76,9 @@ def test_a_webhook_is_told_until_it_is_deleted(lonely_server: Server, client: ht
     assert (listed["id"], listed["waiting"], listed["given_up"]) == (webhook["id"], 0, 0)
     assert client.delete(f"{WEBHOOKS}/{webhook['id']}").status_code == 204
     problem(client.delete(f"{WEBHOOKS}/{webhook['id']}"), 404, "no-webhook")
-    assert client.get(WEBHOOKS).json() == {"webhooks": []}
+    hosts = [f"127.0.0.1:{receiver.port}", "localhost:9"]
+    where = {"hosts": hosts, "networks": ["10.1.2.0/24"], "loopback": True}
+    assert client.get(WEBHOOKS).json() == {"webhooks": [], "allowed": where}
 
 
 def test_the_secret_is_told_once_and_is_not_in_the_database(
@@ -101,7 +103,7 @@ def test_nothing_is_sent_to_where_it_must_not(client: httpx.Client, receiver: Re
         "\x00",
     ):
         problem(client.post(WEBHOOKS, json={"title": "MES", "url": url}), 422, "webhook-target-refused")
-    assert client.get(WEBHOOKS).json() == {"webhooks": []}
+    assert client.get(WEBHOOKS).json()["webhooks"] == []
 
 
 def test_what_is_wrong_with_a_webhook_is_said(client: httpx.Client, receiver: Receiver) -> None:

@@ -14,6 +14,7 @@ from pathlib import Path
 import pytest
 
 from control.bench import until
+from sequence_planner.start_needs import StartNeeds
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckState, CheckView
 from sequence_planner.workshop.checking import checked
@@ -25,12 +26,12 @@ PATIENCE = 60.0
 
 
 def last(tmp_path: Path, files: dict[str, str]) -> CheckView:
-    *_, found = checked(1, files, BOLTS, tmp_path)
+    *_, found = checked(1, files, BOLTS, StartNeeds(), tmp_path)
     return found
 
 
 def test_a_model_is_found_fit_with_what_its_supervisor_adds(tmp_path: Path) -> None:
-    found = list(checked(7, bolts(), BOLTS, tmp_path))
+    found = list(checked(7, bolts(), BOLTS, StartNeeds(), tmp_path))
     assert [each.state for each in found[:-1]] == [CheckState.CHECKING] * (len(found) - 1)
     assert found[0].doing == "reading it"
     done = found[-1]
@@ -52,13 +53,27 @@ def test_errors_stand_at_their_places_in_the_files_of_the_model(tmp_path: Path) 
 
 
 def test_what_cannot_be_met_is_shown_with_a_run_and_cannot_be_deployed(tmp_path: Path) -> None:
-    files = bolts()
-    files["specifications.yaml"] += "never_home:\n  title: Never home\n  forbidden: robot.pose == home\n"
-    done = last(tmp_path, files)
+    done = last(
+        tmp_path,
+        bolts(station=("nutrunner.set_tool_idle and", "nutrunner.set_tool_idle and nutrunner.run_tool_forward and")),
+    )
     assert not done.deployable
     assert done.analysis is not None
     assert done.analysis.supervised is False
-    assert any("Never home" in each.message or "never_home" in each.message for each in done.findings)
+    (finding,) = [each for each in done.findings if each.kind == "specification-cannot-be-met"]
+    assert "`rest`" in finding.message
+    assert finding.trace is not None
+
+
+def test_an_initial_state_that_is_forbidden_is_an_error_at_the_specification(tmp_path: Path) -> None:
+    files = bolts()
+    line = files["specifications.yaml"].count("\n") + 1
+    files["specifications.yaml"] += "never_home:\n  title: Never home\n  forbidden: robot.pose == home\n"
+    done = last(tmp_path, files)
+    (finding,) = done.findings
+    assert (finding.severity, finding.file, finding.line) == ("error", "specifications.yaml", line)
+    assert finding.message.startswith("`never_home` forbids the initial state, in which robot.pose == home:")
+    assert not done.deployable
 
 
 def test_an_example_that_fails_is_an_error(tmp_path: Path) -> None:
@@ -87,7 +102,7 @@ class Desk:
     def __init__(self) -> None:
         self.told: list[CheckView] = []
         self.process = DraftProcess()
-        self.desk = CheckDesk(BOLTS, self.process, self.told.append)
+        self.desk = CheckDesk(BOLTS, StartNeeds(), self.process, self.told.append)
 
     async def until(self, what: Callable[[CheckView], bool]) -> CheckView:
         await until(lambda: bool(self.told) and what(self.told[-1]), PATIENCE)

@@ -30,7 +30,9 @@ class Desk:
     def take_up(self, files: dict[str, str]) -> None:
         self.now += 1
         with self._database.writing() as connection:
-            drafts.take_up(connection, files, self.now)
+            draft = drafts.read(connection)
+            if not draft.number or draft.base != files:
+                assert drafts.take_up(connection, draft, files, drafts.taking_up(draft, files), self.now) is not None
 
     def change(self, by: Actor, propose: Callable[[Connection, Draft], Proposal]) -> Draft:
         self.now += 1

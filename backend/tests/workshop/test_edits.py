@@ -17,6 +17,7 @@ from sequence_planner.workshop.edits import (
     WriteText,
     applied,
 )
+from sequence_planner.workshop.files import LONGEST_FILE, MOST_CHARACTERS
 from sequence_planner.workshop.merging import MergeConflictError, merged
 
 ROBOT = """\
@@ -173,3 +174,9 @@ def test_it_does_not_matter_who_was_first(old: str | None, one: str | None, othe
             return False
 
     assert outcome(one, other) == outcome(other, one)
+
+
+def test_a_model_has_no_more_text_than_can_be_looked_at() -> None:
+    files = {f"resources/r{number}.yaml": "x" * LONGEST_FILE for number in range(MOST_CHARACTERS // LONGEST_FILE)}
+    with pytest.raises(EditError, match=f"at most {MOST_CHARACTERS} in all its files"):
+        applied(files, [WriteText(file="resources/more.yaml", was=None, text="x")])

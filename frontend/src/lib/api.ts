@@ -581,6 +581,8 @@ export interface paths {
         /**
          * Stop Errand
          * @description Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it.
+         *
+         *     200 says that it was done and the journal does not have it yet.
          */
         post: operations["stop_errand"];
         delete?: never;
@@ -824,7 +826,8 @@ export interface paths {
          * Store Job Order
          * @description Store an order; with `start` it may begin at once.
          *
-         *     The same request with the same `Idempotency-Key` stores nothing more and is answered the same, for seven days. 422
+         *     The same request with the same `Idempotency-Key` stores nothing more and is answered the same, for seven days, with
+         *     `Idempotency-Replayed: true`. 422
          *     `idempotency-key-reused` when the key was that of another request; 409 `job-order-exists` when the id was used.
          */
         post: operations["store_job_order"];
@@ -850,7 +853,8 @@ export interface paths {
          * Change Job Order
          * @description Let an order be of another content, until the station works on it; what is left out is as if it was new.
          *
-         *     428 without `If-Match`; 412 `job-order-changed` when by now it has another revision; 409 `job-order-started`.
+         *     428 without `If-Match`, which may be `*` for whatever revision there is; 412 `job-order-changed` when by now it has
+         *     another revision; 409 `job-order-started`.
          */
         put: operations["change_job_order"];
         post?: never;
@@ -1001,6 +1005,9 @@ export interface paths {
         /**
          * Set Mode
          * @description Change the mode of execution. To go on takes control; to pause and to hold is for anybody, and never refused.
+         *
+         *     200 says that the station is stopped and the journal does not have it yet; 503 `stop-not-kept` that it is stopped
+         *     and nowhere written down.
          */
         put: operations["set_mode"];
         post?: never;
@@ -1128,7 +1135,8 @@ export interface paths {
          * @description Let the checked revision that the draft is take the place of the model that runs.
          *
          *     The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
-         *     production.
+         *     production. Where it cannot be started with it the model before comes back: `deployment` in `GET /station` says what
+         *     has become of it.
          */
         post: operations["deploy"];
         delete?: never;
@@ -1470,7 +1478,7 @@ export interface paths {
         };
         /**
          * Transfer
-         * @description Whether the station could take the draft as it is now.
+         * @description Whether the station could take the draft as it is now, or with the simulation reset.
          */
         get: operations["transfer"];
         put?: never;
@@ -1689,8 +1697,9 @@ export interface paths {
          * Change Person
          * @description Change the role, or whether the person may sign in; either ends all of that person's sessions.
          *
-         *     428 without `If-Match`; 412 `person-changed` when another has changed the person meanwhile; 409
-         *     `last-administrator` when nobody would be left to administer, or `role-from-provider` where that is not for here.
+         *     428 without `If-Match`, which may be `*` for whatever revision there is; 412 `person-changed` when another has
+         *     changed the person meanwhile; 409 `last-administrator` when nobody would be left to administer, or
+         *     `role-from-provider` where that is not for here.
          */
         patch: operations["change_person"];
         trace?: never;
@@ -2411,7 +2420,7 @@ export interface paths {
         };
         /**
          * All Webhooks
-         * @description All webhooks, without their secrets, and how it goes with each.
+         * @description All webhooks, without their secrets, and how it goes with each; and where they may go.
          */
         get: operations["all_webhooks"];
         put?: never;
@@ -2433,7 +2442,11 @@ export interface paths {
             path?: never;
             cookie?: never;
         };
-        get?: never;
+        /**
+         * Read Webhook
+         * @description A webhook, without its secret, and how it goes with it.
+         */
+        get: operations["read_webhook"];
         put?: never;
         post?: never;
         /**
@@ -2555,7 +2568,9 @@ export interface paths {
         };
         /**
          * Healthz
-         * @description Alive: the server answers and its controller is heard. Else 503 `not-alive`, with `reasons` by name.
+         * @description Alive: the server answers, its controller is heard, and nothing is wrong that would be right after a restart.
+         *
+         *     Else 503 `not-alive`, with `reasons` by name.
          */
         get: operations["healthz"];
         put?: never;
@@ -2609,7 +2624,28 @@ export interface paths {
         trace?: never;
     };
 }
-export type webhooks = Record<string, never>;
+export interface webhooks {
+    event: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Receive Event
+         * @description An event, as `GET /api/v1/events` has it, sent to whoever made a webhook for its kind. It is sent at least once, and events may come out of order. Refuse what is signed otherwise, and what was sent more than five minutes ago; ignore kinds that you do not know.
+         */
+        post: operations["receive_event"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+}
 export interface components {
     schemas: {
         /**
@@ -2637,6 +2673,32 @@ export interface components {
             text: string;
             /** Variable */
             variable: string;
+        };
+        /**
+         * AbilityAnswer
+         * @description A start of an ability for the order. Without `ended` it still ran when the order was over.
+         */
+        AbilityAnswer: {
+            /** Ability */
+            ability: string;
+            /**
+             * Called Off
+             * @default false
+             */
+            called_off: boolean;
+            /** Ended */
+            ended?: number | null;
+            /** Ended At */
+            readonly ended_at: string | null;
+            /** Record */
+            record: number;
+            /** Started */
+            started: number;
+            /**
+             * Started At
+             * Format: date-time
+             */
+            readonly started_at: string;
         };
         /**
          * AbilityDefinitionView
@@ -2690,25 +2752,6 @@ export interface components {
             /** Title */
             title: string;
             trial: components["schemas"]["TrialView"] | null;
-        };
-        /**
-         * AbilityMade
-         * @description A start of an ability for the order. Without `ended` it still ran when the order was over.
-         */
-        AbilityMade: {
-            /** Ability */
-            ability: string;
-            /**
-             * Called Off
-             * @default false
-             */
-            called_off: boolean;
-            /** Ended */
-            ended?: number | null;
-            /** Record */
-            record: number;
-            /** Started */
-            started: number;
         };
         /**
          * AbilityView
@@ -2799,13 +2842,17 @@ export interface components {
         };
         /**
          * AdviceView
-         * @description Ways on from the state of `revision`, the least effort first; without any, `reasons` says why as far as known.
+         * @description Ways on from the state of `revision`: what devices or people do before what is only said, then the least effort
+         *     first. Without any, `reasons` says why as far as known.
          *
-         *     Unless `complete` the time was over before all that can be offered was looked for.
+         *     What may be said `if_checked`, and only then, is apart: none of it is what to do first, whatever it takes. Unless
+         *     `complete` the time was over before all that can be offered was looked for.
          */
         AdviceView: {
             /** Complete */
             complete: boolean;
+            /** If Checked */
+            if_checked: components["schemas"]["OfferView"][];
             /** Offers */
             offers: components["schemas"]["OfferView"][];
             reasons: components["schemas"]["DiagnosisView"] | null;
@@ -2891,6 +2938,18 @@ export interface components {
             tick: number;
             /** Time */
             time: number;
+        };
+        /**
+         * AllowedAnswer
+         * @description Where webhooks may go: hosts with their ports, and networks; with `loopback` also to this machine.
+         */
+        AllowedAnswer: {
+            /** Hosts */
+            hosts: string[];
+            /** Loopback */
+            loopback: boolean;
+            /** Networks */
+            networks: string[];
         };
         /**
          * AnalysisAnswer
@@ -3578,6 +3637,29 @@ export interface components {
             };
         };
         /**
+         * CorrectionAnswer
+         * @description Values that a person has set while the order was worked, who and why.
+         */
+        CorrectionAnswer: {
+            /** By */
+            by: string;
+            /** Record */
+            record: number;
+            /** Time */
+            time: number;
+            /**
+             * Time At
+             * Format: date-time
+             */
+            readonly time_at: string;
+            /** Values */
+            values: {
+                [key: string]: boolean | number | string;
+            };
+            /** Why */
+            why: string;
+        };
+        /**
          * CorrectionBody
          * @description The values, the revision of the state that the person saw, and why.
          */
@@ -3590,24 +3672,6 @@ export interface components {
             values: {
                 [key: string]: boolean | number | string;
             };
-        };
-        /**
-         * CorrectionMade
-         * @description Values that a person has set while the order was worked, who and why.
-         */
-        CorrectionMade: {
-            /** By */
-            by: string;
-            /** Record */
-            record: number;
-            /** Time */
-            time: number;
-            /** Values */
-            values: {
-                [key: string]: boolean | number | string;
-            };
-            /** Why */
-            why: string;
         };
         /**
          * CorrectionPreview
@@ -3671,6 +3735,11 @@ export interface components {
             attempts: number;
             /** Died */
             died: number;
+            /**
+             * Died At
+             * Format: date-time
+             */
+            readonly died_at: string;
             event: components["schemas"]["JobEvent"];
             /** Trouble */
             trouble: string;
@@ -3732,6 +3801,8 @@ export interface components {
         /**
          * DeploymentBody
          * @description The revision that the draft is, after its change `number`, takes the place of the model that runs.
+         *
+         *     A `simulation` can be reset only where the devices are emulated.
          */
         DeploymentBody: {
             /** Number */
@@ -3740,14 +3811,39 @@ export interface components {
             reason: string;
             /** Revision */
             revision: string;
+            /** @default keep */
+            simulation: components["schemas"]["Simulation"];
         };
         /**
-         * Deviation
+         * DeploymentState
+         * @description What has become of a deployment.
+         * @enum {string}
+         */
+        DeploymentState: "starting" | "runs" | "undone";
+        /**
+         * DeploymentView
+         * @description The deployment with which the controller began; `why` it was undone is null where it was not.
+         */
+        DeploymentView: {
+            /** At */
+            at: number;
+            /** By */
+            by: string;
+            /** Name */
+            name: string;
+            /** Revision */
+            revision: string;
+            state: components["schemas"]["DeploymentState"];
+            /** Why */
+            why: string | null;
+        };
+        /**
+         * DeviationAnswer
          * @description What did not go as planned while the order was worked: `kind` is that of the record.
          *
          *     Several orders that were worked at the same time tell of the same one.
          */
-        Deviation: {
+        DeviationAnswer: {
             /** Content */
             content: {
                 [key: string]: components["schemas"]["JsonValue"];
@@ -3758,6 +3854,11 @@ export interface components {
             record: number;
             /** Time */
             time: number;
+            /**
+             * Time At
+             * Format: date-time
+             */
+            readonly time_at: string;
         };
         /**
          * DiagnosisView
@@ -4164,7 +4265,8 @@ export interface components {
          * ErrandView
          * @description What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for.
          *
-         *     `ability` is the one that is tried.
+         *     It is done when it `ends`, and one `into_safe` when the station is inside its safe states besides. `ability` is the
+         *     one that is tried.
          */
         ErrandView: {
             /** Ability */
@@ -4172,7 +4274,9 @@ export interface components {
             /** By */
             by: string;
             /** Ends */
-            ends: string;
+            ends: string | null;
+            /** Into Safe */
+            into_safe: boolean;
             /** Kind */
             kind: string;
             /** Since */
@@ -4187,7 +4291,7 @@ export interface components {
          * @description What has happened. A kind is never renamed; new ones may come.
          * @enum {string}
          */
-        EventKind: "job-order-stored" | "job-order-updated" | "job-order-allowed" | "job-order-revoked" | "job-order-running" | "job-order-interrupted" | "job-order-ended" | "job-order-aborted" | "job-order-cancelled" | "job-order-cleared" | "operation-started" | "operation-completed";
+        EventKind: "job-order-stored" | "job-order-updated" | "job-order-allowed" | "job-order-revoked" | "job-order-running" | "job-order-interrupted" | "job-order-ended" | "job-order-aborted" | "job-order-cancelled" | "job-order-cleared" | "job-order-waits" | "operation-started" | "operation-completed" | "station-mode-changed" | "station-packml-changed" | "station-production-started" | "station-controller-started" | "alarm-raised" | "alarm-ended";
         /**
          * EventsAnswer
          * @description Events, the oldest first; `next` is the `after` with which to ask for what comes then.
@@ -4215,10 +4319,20 @@ export interface components {
         ExpectedOperation: {
             /** End */
             end: number;
+            /**
+             * End At
+             * Format: date-time
+             */
+            readonly end_at: string;
             /** Operation */
             operation: string;
             /** Start */
             start: number;
+            /**
+             * Start At
+             * Format: date-time
+             */
+            readonly start_at: string;
         };
         /**
          * ExpectedOrder
@@ -4504,6 +4618,8 @@ export interface components {
              * @constant
              */
             status: "alive";
+            /** Version */
+            version: string;
         };
         /**
          * HeldAnswer
@@ -4600,7 +4716,9 @@ export interface components {
         };
         /**
          * JobEvent
-         * @description An event: `number` counts from 1 without gaps, `time` is in seconds since the epoch.
+         * @description An event: `number` counts from 1 without gaps, `time` is in seconds since the epoch, `time_at` in ISO 8601.
+         *
+         *     Those of the station itself have no `job_order`.
          */
         JobEvent: {
             /** Content */
@@ -4608,12 +4726,17 @@ export interface components {
                 [key: string]: components["schemas"]["JsonValue"];
             };
             /** Job Order */
-            job_order: string;
+            job_order: string | null;
             kind: components["schemas"]["EventKind"];
             /** Number */
             number: number;
             /** Time */
             time: number;
+            /**
+             * Time At
+             * Format: date-time
+             */
+            readonly time_at: string;
         };
         /**
          * JobOutcome
@@ -5006,9 +5129,9 @@ export interface components {
              */
             description: string;
             /** Due */
-            due?: number | null;
+            due?: number | string | null;
             /** Earliest */
-            earliest?: number | null;
+            earliest?: number | string | null;
             /** Id */
             id?: string | null;
             /**
@@ -5052,6 +5175,26 @@ export interface components {
             vendor: string | null;
         };
         /**
+         * NotRecorded
+         * @description It was carried out, and the journal does not have it yet.
+         *
+         *     The station keeps it on its own machine until then: a controller that begins anew begins at rest, and none goes on
+         *     by itself.
+         */
+        NotRecorded: {
+            /**
+             * Detail
+             * @default It was carried out. The journal does not have it yet, so it is kept on this machine until it does; nothing goes on by itself meanwhile.
+             */
+            detail: string;
+            /**
+             * Recorded
+             * @default false
+             * @constant
+             */
+            recorded: false;
+        };
+        /**
          * NothingBody
          * @description Nothing more is to be said.
          */
@@ -5091,9 +5234,13 @@ export interface components {
          *     carried out, until `ends` holds; `needs_restart` says that this takes restart mode. `then` is what the station does
          *     afterwards for the operations `goals`, in automatic mode; null where that was not looked for or not found.
          *
-         *     An offer `at_rest` ends where the station rests and its devices are as commanded. One that is `unsupervised` begins
-         *     outside the safe states, where starts go by their written guards alone; it `breaks` these specifications on its
-         *     way. `obstacle` says why it cannot be taken as things are now, null where it can.
+         *     An offer `at_rest` ends where the station rests and its devices are as commanded. One `into_safe` begins outside the
+         *     safe states, and ends once the station is inside and `ends` holds, where that says anything. One that is
+         *     `unsupervised` starts something outside, where starts go by their written guards alone; it `breaks` these
+         *     specifications on its way. `obstacle` says why it cannot be taken as things are now, null where it can.
+         *
+         *     By `corrections` a person says what is true of the product. Those `only_if_checked` would have operations count as
+         *     done, or nearer to it, although nobody has done anything: `claims` has their names.
          */
         OfferView: {
             /** Assumed */
@@ -5102,6 +5249,8 @@ export interface components {
             at_rest: boolean;
             /** Breaks */
             breaks: components["schemas"]["SpecificationView"][];
+            /** Claims */
+            claims: string[];
             /** Corrections */
             corrections: components["schemas"]["ValueChangeView"][];
             effort: components["schemas"]["EffortView"];
@@ -5114,6 +5263,8 @@ export interface components {
             id: string;
             /** In Service */
             in_service: string[];
+            /** Into Safe */
+            into_safe: boolean;
             /** Kind */
             kind: string;
             /** Left Out */
@@ -5124,6 +5275,8 @@ export interface components {
             obstacle: string | null;
             /** Online */
             online: string[];
+            /** Only If Checked */
+            only_if_checked: boolean;
             /** Operation */
             operation: string | null;
             /** Physical */
@@ -5137,12 +5290,12 @@ export interface components {
             unsupervised: boolean;
         };
         /**
-         * OperationMade
+         * OperationAnswer
          * @description An operation of the order. Where its goal held already it was never `started`; without `ended` it is not done.
          *
          *     `actuals` are the values that its goal depends on, as they were when it was completed.
          */
-        OperationMade: {
+        OperationAnswer: {
             /**
              * Actuals
              * @default {}
@@ -5152,12 +5305,16 @@ export interface components {
             };
             /** Ended */
             ended?: number | null;
+            /** Ended At */
+            readonly ended_at: string | null;
             /** Operation */
             operation: string;
             /** Record */
             record?: number | null;
             /** Started */
             started?: number | null;
+            /** Started At */
+            readonly started_at: string | null;
         };
         /**
          * OperationView
@@ -5217,7 +5374,9 @@ export interface components {
         };
         /**
          * OrderAnswer
-         * @description An order. Times are in seconds since the epoch; `stored_by` is the name of a person or a key.
+         * @description An order. Times are in seconds since the epoch, and in ISO 8601 where `_at` is added.
+         *
+         *     `stored_by` is the name of a person or a key.
          *
          *     `commanded` is what the station is still to do with it, `allowed` the commands that the order allows now. Since
          *     `began` the station works on it. `waits_for` says in words why nothing is done for it now.
@@ -5227,17 +5386,30 @@ export interface components {
             allowed: components["schemas"]["OrderCommand"][];
             /** Began */
             began: number | null;
+            /** Began At */
+            readonly began_at: string | null;
             /** Changed */
             changed: number;
+            /**
+             * Changed At
+             * Format: date-time
+             */
+            readonly changed_at: string;
             commanded: components["schemas"]["OrderCommand"] | null;
             /** Description */
             description: string;
             /** Due */
             due: number | null;
+            /** Due At */
+            readonly due_at: string | null;
             /** Earliest */
             earliest: number | null;
+            /** Earliest At */
+            readonly earliest_at: string | null;
             /** Ended */
             ended: number | null;
+            /** Ended At */
+            readonly ended_at: string | null;
             /** Id */
             id: string;
             /** Priority */
@@ -5247,6 +5419,11 @@ export interface components {
             state: components["schemas"]["OrderState"];
             /** Stored */
             stored: number;
+            /**
+             * Stored At
+             * Format: date-time
+             */
+            readonly stored_at: string;
             /** Stored By */
             stored_by: string;
             /** Waits For */
@@ -5258,7 +5435,8 @@ export interface components {
          * OrderBody
          * @description What is ordered: a job of a work master.
          *
-         *     How late it is weighs by its `priority`; nothing begins before `earliest`.
+         *     How late it is weighs by its `priority`; nothing begins before `earliest`. Times are in seconds since the epoch or
+         *     in ISO 8601.
          */
         OrderBody: {
             /**
@@ -5267,9 +5445,9 @@ export interface components {
              */
             description: string;
             /** Due */
-            due?: number | null;
+            due?: number | string | null;
             /** Earliest */
-            earliest?: number | null;
+            earliest?: number | string | null;
             /**
              * Priority
              * @default 0
@@ -5288,7 +5466,9 @@ export interface components {
          * OrderOfWorkAnswer
          * @description The orders in the order in which they are to begin, as it was found at `time`; null while there is none.
          *
-         *     It is `optimal` when no other has less weighted tardiness, or with it an earlier end. `fallback` says why it is only
+         *     The first `horizon` orders were searched for the best that was found in time, the others follow by rule; `bound` is
+         *     what the weighted `tardiness` of all cannot be below. It is `optimal` when no other has less weighted tardiness, or
+         *     with it an earlier end. `fallback` says why it is only
          *     that of priority and due time; empty if it is not. Times are in seconds since the epoch.
          */
         OrderOfWorkAnswer: {
@@ -5296,6 +5476,8 @@ export interface components {
             bound: number;
             /** Fallback */
             fallback: string;
+            /** Horizon */
+            horizon: number;
             /** Job Orders */
             job_orders: components["schemas"]["ExpectedOrder"][];
             /** Optimal */
@@ -5304,6 +5486,8 @@ export interface components {
             tardiness: number;
             /** Time */
             time: number | null;
+            /** Time At */
+            readonly time_at: string | null;
         };
         /**
          * OrderState
@@ -5862,14 +6046,21 @@ export interface components {
         };
         /**
          * ProblemBody
-         * @description The task cannot be done as things are; the reason may say what is in the way.
+         * @description The task cannot be done as things are; `what` is in the way as far as one touch can say it, and the reason.
          */
         ProblemBody: {
             /** Reason */
             reason?: string | null;
             /** Revision */
             revision: number;
+            what?: components["schemas"]["ProblemKind"] | null;
         };
+        /**
+         * ProblemKind
+         * @description What is in the way, as far as one touch can say it.
+         * @enum {string}
+         */
+        ProblemKind: "missing" | "damaged" | "tool" | "other";
         /**
          * ProblemView
          * @description One thing wrong with a text; `start` and `end` count its characters.
@@ -6151,12 +6342,54 @@ export interface components {
             time: number;
         };
         /**
+         * ResponseAnswer
+         * @description What was made of an order; `number` counts responses without gaps.
+         *
+         *     Times are in seconds since the epoch, and in ISO 8601 where `_at` is added. Of very many `deviations` the first are
+         *     told, and how many were left out.
+         */
+        ResponseAnswer: {
+            /** Abilities */
+            abilities: components["schemas"]["AbilityAnswer"][];
+            /** Began */
+            began: number | null;
+            /** Began At */
+            readonly began_at: string | null;
+            /** Corrections */
+            corrections: components["schemas"]["CorrectionAnswer"][];
+            /** Description */
+            description: string;
+            /** Deviations */
+            deviations: components["schemas"]["DeviationAnswer"][];
+            /**
+             * Deviations Left Out
+             * @default 0
+             */
+            deviations_left_out: number;
+            /** Ended */
+            ended: number;
+            /**
+             * Ended At
+             * Format: date-time
+             */
+            readonly ended_at: string;
+            /** Job Order */
+            job_order: string;
+            /** Number */
+            number: number;
+            /** Operations */
+            operations: components["schemas"]["OperationAnswer"][];
+            outcome: components["schemas"]["JobOutcome"];
+            /** Work Master */
+            work_master: string;
+        };
+        /**
          * ResponsesAnswer
          * @description Responses as they were written; `next` is the `cursor` with which later ones follow, null when there are none.
          */
         ResponsesAnswer: {
             /** Job Responses */
-            job_responses: components["schemas"]["StoredResponse"][];
+            job_responses: components["schemas"]["ResponseAnswer"][];
             /** Next */
             next: number | null;
         };
@@ -6397,7 +6630,7 @@ export interface components {
          *
          *     `first-start`: nobody is signed in, and there is no administrator yet. `session` is the id that holds control where
          *     this session does; `expires` is when it ends at the latest, in seconds since the epoch. `demonstration` says that
-         *     one may be opened here.
+         *     one may be opened here. The `version` of the program is for those who are signed in.
          */
         SessionAnswer: {
             /** Demonstration */
@@ -6417,6 +6650,8 @@ export interface components {
              * @enum {string}
              */
             state: "signed-out" | "signed-in" | "first-start";
+            /** Version */
+            version: string | null;
             watch: components["schemas"]["SessionWatch"] | null;
         };
         /**
@@ -6508,6 +6743,12 @@ export interface components {
              */
             kind: "link";
         };
+        /**
+         * Simulation
+         * @description What becomes of emulated devices: they go on as they stand, or they and the station begin as the model says.
+         * @enum {string}
+         */
+        Simulation: "keep" | "reset";
         /**
          * Snapshot
          * @description The whole view.
@@ -6672,6 +6913,7 @@ export interface components {
             /** By Order */
             by_order: boolean;
             control: components["schemas"]["ControlView"] | null;
+            deployment: components["schemas"]["DeploymentView"] | null;
             errand: components["schemas"]["ErrandView"] | null;
             /** Forces */
             forces: {
@@ -6688,7 +6930,10 @@ export interface components {
             questions: components["schemas"]["QuestionView"][];
             /** Revision */
             revision: number;
+            /** Silent */
+            silent: string[];
             standby: components["schemas"]["StandbyView"] | null;
+            standing: components["schemas"]["StationStanding"];
             station: components["schemas"]["StationIdentity"];
             /** Stepping */
             stepping: boolean;
@@ -6724,6 +6969,7 @@ export interface components {
             /** By Order */
             by_order?: boolean;
             control?: components["schemas"]["ControlView"] | null;
+            deployment?: components["schemas"]["DeploymentView"] | null;
             errand?: components["schemas"]["ErrandView"] | null;
             /** Forces */
             forces?: {
@@ -6757,7 +7003,10 @@ export interface components {
             };
             /** Revision */
             revision?: number;
+            /** Silent */
+            silent?: string[];
             standby?: components["schemas"]["StandbyView"] | null;
+            standing?: components["schemas"]["StationStanding"];
             station?: components["schemas"]["StationIdentity"];
             /** Stepping */
             stepping?: boolean;
@@ -6832,6 +7081,12 @@ export interface components {
             variables?: string[];
         };
         /**
+         * StationStanding
+         * @description Whether anything starts by itself, and why not: what somebody at the station has to know first.
+         * @enum {string}
+         */
+        StationStanding: "preparing" | "waiting" | "held" | "restart" | "paused" | "stopped" | "silent" | "working";
+        /**
          * StationUseView
          * @description A topic of the station's model, and how many endpoints there are with which it is understood.
          */
@@ -6874,6 +7129,7 @@ export interface components {
             /** By Order */
             by_order: boolean;
             control: components["schemas"]["ControlView"] | null;
+            deployment: components["schemas"]["DeploymentView"] | null;
             errand: components["schemas"]["ErrandView"] | null;
             /** Forces */
             forces: {
@@ -6907,7 +7163,10 @@ export interface components {
             };
             /** Revision */
             revision: number;
+            /** Silent */
+            silent: string[];
             standby: components["schemas"]["StandbyView"] | null;
+            standing: components["schemas"]["StationStanding"];
             station: components["schemas"]["StationIdentity"];
             /** Stepping */
             stepping: boolean;
@@ -6985,38 +7244,6 @@ export interface components {
         StopBody: {
             /** Reason */
             reason?: string | null;
-        };
-        /**
-         * StoredResponse
-         * @description A response in its place; `number` counts them without gaps.
-         */
-        StoredResponse: {
-            /** Abilities */
-            abilities: components["schemas"]["AbilityMade"][];
-            /** Began */
-            began: number | null;
-            /** Corrections */
-            corrections: components["schemas"]["CorrectionMade"][];
-            /** Description */
-            description: string;
-            /** Deviations */
-            deviations: components["schemas"]["Deviation"][];
-            /**
-             * Deviations Left Out
-             * @default 0
-             */
-            deviations_left_out: number;
-            /** Ended */
-            ended: number;
-            /** Job Order */
-            job_order: string;
-            /** Number */
-            number: number;
-            /** Operations */
-            operations: components["schemas"]["OperationMade"][];
-            outcome: components["schemas"]["JobOutcome"];
-            /** Work Master */
-            work_master: string;
         };
         /**
          * StreamError
@@ -7108,13 +7335,14 @@ export interface components {
         };
         /**
          * TaskProblemView
-         * @description What keeps somebody from doing a task; `why` may be empty.
+         * @description What keeps somebody from doing a task; `what` may be null and `why` empty.
          */
         TaskProblemView: {
             /** By */
             by: string;
             /** Since */
             since: number;
+            what: components["schemas"]["ProblemKind"] | null;
             /** Why */
             why: string;
         };
@@ -7646,6 +7874,8 @@ export interface components {
         /**
          * WatchSnapshot
          * @description The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title.
+         *
+         *     `standing` says whether anything starts by itself, `silent` which devices are not heard.
          */
         WatchSnapshot: {
             /**
@@ -7654,6 +7884,9 @@ export interface components {
              */
             kind: "watch";
             mode: components["schemas"]["Mode"];
+            /** Silent */
+            silent: string[];
+            standing: components["schemas"]["StationStanding"];
             /** Station */
             station: string;
             /** Tasks */
@@ -7738,6 +7971,11 @@ export interface components {
         Webhook: {
             /** Created */
             created: number;
+            /**
+             * Created At
+             * Format: date-time
+             */
+            readonly created_at: string;
             /** Created By */
             created_by: string;
             /** Delivered */
@@ -7748,12 +7986,19 @@ export interface components {
             given_up: number;
             /** Held Until */
             held_until: number;
+            /**
+             * Held Until At
+             * Format: date-time
+             */
+            readonly held_until_at: string;
             /** Id */
             id: string;
             /** Kinds */
             kinds: components["schemas"]["EventKind"][];
             /** Last Delivered */
             last_delivered: number | null;
+            /** Last Delivered At */
+            readonly last_delivered_at: string | null;
             /** Position */
             position: number;
             /** Title */
@@ -7783,9 +8028,10 @@ export interface components {
         };
         /**
          * WebhooksAnswer
-         * @description All webhooks, the newest first.
+         * @description All webhooks, the newest first, and where whoever runs the station lets them go.
          */
         WebhooksAnswer: {
+            allowed: components["schemas"]["AllowedAnswer"];
             /** Webhooks */
             webhooks: components["schemas"]["Webhook"][];
         };
@@ -8054,6 +8300,15 @@ export interface components {
             };
         };
         /** @description A problem */
+        Problem431: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
+        /** @description A problem */
         Problem503: {
             headers: {
                 [name: string]: unknown;
@@ -8099,6 +8354,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -8135,6 +8391,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8169,6 +8426,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8202,6 +8460,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -8242,6 +8501,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8283,6 +8543,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8324,6 +8585,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8365,6 +8627,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8406,6 +8669,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8439,6 +8703,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -8480,6 +8745,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8522,6 +8788,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8564,6 +8831,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8608,6 +8876,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8652,6 +8921,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8693,6 +8963,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -8726,6 +8997,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -8768,6 +9040,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -8813,6 +9086,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -8845,6 +9119,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -8885,6 +9160,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8917,6 +9193,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -8959,6 +9236,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9001,6 +9279,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9045,6 +9324,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9087,6 +9367,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9128,6 +9409,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9171,6 +9453,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9215,6 +9498,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9241,7 +9525,16 @@ export interface operations {
             };
         };
         responses: {
-            /** @description Successful Response */
+            /** @description It was carried out, and is not in the journal yet */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NotRecorded"];
+                };
+            };
+            /** @description It was carried out, and is in the journal */
             204: {
                 headers: {
                     [name: string]: unknown;
@@ -9256,6 +9549,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9294,6 +9588,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9335,6 +9630,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9378,6 +9674,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9414,6 +9711,7 @@ export interface operations {
             404: components["responses"]["Problem404"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9456,6 +9754,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9492,6 +9791,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9525,6 +9825,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9561,6 +9862,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9598,6 +9900,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9635,6 +9938,7 @@ export interface operations {
             404: components["responses"]["Problem404"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9681,6 +9985,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -9720,6 +10025,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9752,6 +10058,10 @@ export interface operations {
                 headers: {
                     /** @description The revision, as `If-Match` has to name it. */
                     ETag: string;
+                    /** @description That this is the answer to the same request of before. */
+                    "Idempotency-Replayed"?: "true";
+                    /** @description Where the order is. */
+                    Location: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -9766,6 +10076,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9804,6 +10115,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9855,6 +10167,7 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             428: components["responses"]["Problem428"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9902,6 +10215,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9939,6 +10253,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -9968,13 +10283,14 @@ export interface operations {
                     [name: string]: unknown;
                 };
                 content: {
-                    "application/json": components["schemas"]["StoredResponse"];
+                    "application/json": components["schemas"]["ResponseAnswer"];
                 };
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10007,6 +10323,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10048,6 +10365,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10082,6 +10400,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10127,6 +10446,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10152,7 +10472,16 @@ export interface operations {
             };
         };
         responses: {
-            /** @description Successful Response */
+            /** @description It was carried out, and is not in the journal yet */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["NotRecorded"];
+                };
+            };
+            /** @description It was carried out, and is in the journal */
             204: {
                 headers: {
                     [name: string]: unknown;
@@ -10167,6 +10496,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -10201,6 +10531,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10243,6 +10574,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10276,6 +10608,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10316,6 +10649,7 @@ export interface operations {
             404: components["responses"]["Problem404"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10354,6 +10688,7 @@ export interface operations {
             404: components["responses"]["Problem404"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10395,6 +10730,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -10432,6 +10768,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10465,6 +10802,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10507,6 +10845,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10549,6 +10888,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10591,6 +10931,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10633,6 +10974,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10666,6 +11008,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10708,6 +11051,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10750,6 +11094,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10792,6 +11137,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10834,6 +11180,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -10877,6 +11224,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10919,6 +11267,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10961,6 +11310,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -10994,6 +11344,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11036,6 +11387,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11081,6 +11433,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11095,7 +11448,9 @@ export interface operations {
     };
     transfer: {
         parameters: {
-            query?: never;
+            query?: {
+                simulation?: components["schemas"]["Simulation"];
+            };
             header?: never;
             path?: never;
             cookie?: never;
@@ -11114,6 +11469,8 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11156,6 +11513,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11192,6 +11550,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11235,6 +11594,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11267,6 +11627,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11302,6 +11663,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11343,6 +11705,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -11376,6 +11739,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11419,6 +11783,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -11455,6 +11820,7 @@ export interface operations {
             404: components["responses"]["Problem404"];
             409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -11488,6 +11854,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11532,6 +11899,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11583,6 +11951,7 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             428: components["responses"]["Problem428"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11626,6 +11995,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11660,6 +12030,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11692,6 +12063,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -11728,6 +12100,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -11761,6 +12134,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11801,6 +12175,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -11834,6 +12209,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -11874,6 +12250,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -11915,6 +12292,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -11959,6 +12337,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -11992,6 +12371,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12036,6 +12416,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -12067,6 +12448,7 @@ export interface operations {
                     "application/json": components["schemas"]["SessionAnswer"];
                 };
             };
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12109,6 +12491,7 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             429: components["responses"]["Problem429"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12139,6 +12522,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12179,6 +12563,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12221,6 +12606,7 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             429: components["responses"]["Problem429"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12263,6 +12649,7 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             429: components["responses"]["Problem429"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12304,6 +12691,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12336,6 +12724,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12368,6 +12757,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12408,6 +12798,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -12449,6 +12840,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -12482,6 +12874,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12524,6 +12917,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -12567,6 +12961,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -12610,6 +13005,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -12643,6 +13039,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12684,6 +13081,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -12717,6 +13115,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12759,6 +13158,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12793,6 +13193,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12834,6 +13235,7 @@ export interface operations {
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
             429: components["responses"]["Problem429"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12866,6 +13268,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12900,6 +13303,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12943,6 +13347,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -12975,6 +13380,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -13003,6 +13409,8 @@ export interface operations {
             /** @description Successful Response */
             201: {
                 headers: {
+                    /** @description Where the webhook is. */
+                    Location: string;
                     [name: string]: unknown;
                 };
                 content: {
@@ -13017,6 +13425,44 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    read_webhook: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path: {
+                webhook: string;
+            };
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["Webhook"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            404: components["responses"]["Problem404"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -13051,6 +13497,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -13090,6 +13537,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -13134,6 +13582,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -13175,6 +13624,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -13213,6 +13663,7 @@ export interface operations {
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -13254,6 +13705,7 @@ export interface operations {
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
             /** @description A problem */
@@ -13285,6 +13737,7 @@ export interface operations {
                     "application/json": components["schemas"]["Health"];
                 };
             };
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -13318,6 +13771,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -13348,6 +13802,7 @@ export interface operations {
                     "application/json": components["schemas"]["Ready"];
                 };
             };
+            431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
@@ -13357,6 +13812,42 @@ export interface operations {
                 content: {
                     "application/problem+json": components["schemas"]["Problem"];
                 };
+            };
+        };
+    };
+    receive_event: {
+        parameters: {
+            query?: never;
+            header: {
+                /** @description `event-` and the number of the event. */
+                "webhook-id": string;
+                /** @description When it was sent, in whole seconds. */
+                "webhook-timestamp": string;
+                /** @description `v1,` and the HMAC-SHA256, in base64, of id, timestamp and body, divided by dots, under the secret of the webhook. */
+                "webhook-signature": string;
+            };
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["JobEvent"];
+            };
+        };
+        responses: {
+            /** @description It is taken. Nothing of the body is read. */
+            "2XX": {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
+            };
+            /** @description It is not taken, and sent again later. */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content?: never;
             };
         };
     };

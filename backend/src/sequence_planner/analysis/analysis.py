@@ -7,6 +7,8 @@ from dataclasses import dataclass, replace
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.checking.checks import Looked, conflicting, looked
+from sequence_planner.checking.connections import Connections
 from sequence_planner.checking.supervised import check_supervision
 from sequence_planner.checking.unmeetable import unmeetable
 from sequence_planner.checking.warning import ModelWarning, place
@@ -59,6 +61,25 @@ def analyses(automaton: Automaton) -> Iterator[Analysis]:
     if found.supervisor is not None:
         found = replace(found, supervised_states=diagrams.count(whole.reachable(supervised=True)))
     yield replace(found, pending=None)
+
+
+def without_numbers(automaton: Automaton) -> Iterator[Analysis]:
+    """What is found of `automaton` but for numbers of states, which few wait for."""
+    for found in analyses(automaton):
+        yield found
+        if found.pending == COUNTING:
+            return
+
+
+def everything(automaton: Automaton, connections: Connections | None, synthesis: bool) -> Iterator[Looked | Analysis]:
+    """What the checks find, and what synthesis finds where it is asked for, without numbers of states.
+
+    What may take longest comes last.
+    """
+    yield from looked(automaton, connections)
+    if synthesis:
+        yield from without_numbers(automaton)
+    yield from conflicting(automaton)
 
 
 def _unmet(supervision: Supervision) -> ModelWarning:

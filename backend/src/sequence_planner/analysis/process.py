@@ -1,4 +1,4 @@
-"""Synthesis in a process of its own that can be killed at any time, and whatever it has found by then.
+"""What is found of a model in a process of its own that can be killed at any time, and whatever it has found by then.
 
 An executor's process could not be: whoever leaves it waits until it is done, and one whose owner is killed lives on.
 """
@@ -6,67 +6,92 @@ An executor's process could not be: whoever leaves it waits until it is done, an
 from __future__ import annotations
 
 import asyncio
+import gc
 import multiprocessing
 import os
 import signal
-from collections.abc import AsyncIterator
-from contextlib import asynccontextmanager
+from collections.abc import AsyncIterator, Callable, Iterator
+from contextlib import AbstractAsyncContextManager, asynccontextmanager
+from dataclasses import dataclass
 from multiprocessing.connection import Connection
+from typing import Generic, TypeVar
 
 from sequence_planner.analysis.analysis import Analysis, analyses
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.lifeline import end_without_parent
+from sequence_planner.memory_limit import MemoryLimit, memory_limit
 
 _NICENESS = 5  # ticks come first
+
+Word = TypeVar("Word")
 
 
 class SynthesisEndedError(Exception):
     """The process ended without having found all; the text says what the reason may be."""
 
 
-@asynccontextmanager
-async def analysing(automaton: Automaton) -> AsyncIterator[AsyncIterator[Analysis]]:
-    """What is found of `automaton`, each time more of it, until the block is left: then the process is killed.
+@dataclass(frozen=True)
+class _Last:
+    """The last word of the process: why there is no more, or None if that was all."""
 
-    Iterating raises `SynthesisEndedError` when the process ends before it is done.
+    why: str | None = None
+
+
+def analysing(automaton: Automaton) -> AbstractAsyncContextManager[AsyncIterator[Analysis]]:
+    """What synthesis finds of `automaton`, each time more of it, see `telling`. Raises `MemoryLimitError`."""
+    return telling(memory_limit(), analyses, automaton)
+
+
+@asynccontextmanager
+async def telling(
+    gigabytes: float, work: Callable[..., Iterator[Word]], *arguments: object
+) -> AsyncIterator[AsyncIterator[Word]]:
+    """What `work`, a function of a module, tells of its arguments until the block is left: then its process is killed.
+
+    Iterating raises `SynthesisEndedError` when the process ends before it is done, or has more than so much memory.
     """
     context = multiprocessing.get_context("spawn")
     ours, theirs = context.Pipe(duplex=False)
+    limit = MemoryLimit(gigabytes)
     with ours:
         with theirs:
-            process = context.Process(target=_work, args=(theirs, automaton), daemon=True, name="synthesis")
+            process = context.Process(target=_work, args=(theirs, work, arguments), daemon=True, name="synthesis")
             process.start()
-        words = _Words(ours)
+        words: _Words[Word] = _Words(ours, limit)
         try:
-            yield words.heard()
+            with limit.held(process):
+                yield words.heard()
         finally:
             process.kill()
             process.join()
             await words.end()
 
 
-class _Words:
+class _Words(Generic[Word]):
     """What the process says, heard by a thread so that nobody else waits."""
 
-    def __init__(self, connection: Connection) -> None:
+    def __init__(self, connection: Connection, limit: MemoryLimit) -> None:
         self._connection = connection
-        self._hearing: asyncio.Future[Analysis | str] | None = None
+        self._limit = limit
+        self._hearing: asyncio.Future[Word | _Last] | None = None
 
-    async def heard(self) -> AsyncIterator[Analysis]:
+    async def heard(self) -> AsyncIterator[Word]:
         while True:
             self._hearing = asyncio.get_running_loop().run_in_executor(None, self._next)
             word = await asyncio.shield(self._hearing)
-            if isinstance(word, str):
-                raise SynthesisEndedError(word)
-            yield word
-            if word.pending is None:
+            if isinstance(word, _Last):
+                if word.why is not None:
+                    raise SynthesisEndedError(word.why)
                 return
+            yield word
 
-    def _next(self) -> Analysis | str:
+    def _next(self) -> Word | _Last:
         try:
-            word: Analysis | str = self._connection.recv()
+            word: Word | _Last = self._connection.recv()
         except (EOFError, OSError):
-            return "the process that computes the safe states has ended without an answer; is memory short?"
+            if self._limit.reached:
+                return _Last(str(self._limit))
+            return _Last("the process that computes the safe states has ended without an answer; is memory short?")
         return word
 
     async def end(self) -> None:
@@ -74,15 +99,19 @@ class _Words:
             await asyncio.wait({self._hearing})  # at once, as nobody is left who could speak
 
 
-def _work(connection: Connection, automaton: Automaton) -> None:
+def _work(connection: Connection, work: Callable[..., Iterator[object]], arguments: tuple[object, ...]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
     end_without_parent()
     os.nice(_NICENESS)
+    gc.freeze()  # the model stays; what is made for one question must go with it
     try:
-        for found in analyses(automaton):
+        for found in work(*arguments):
             connection.send(found)
+        connection.send(_Last())
     except MemoryError:
         connection.send(
-            "the sets of states have outgrown the memory set aside for them: let fewer or smaller variables bear on "
-            "the specifications and on `rest`"
+            _Last(
+                "the sets of states have outgrown the memory set aside for them: let fewer or smaller variables bear "
+                "on the specifications and on `rest`"
+            )
         )

@@ -6,7 +6,7 @@ plain data, so that it goes from process to process and into files.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import cached_property
 
 from sequence_planner.automaton.structure import State
@@ -83,10 +83,11 @@ class StateSet(Immutable):
         names = tuple(self.names[axis] for axis in kept)
         return builder.built(names, tuple(self.domains[axis] for axis in kept), root)
 
-    def nearest(self, state: State) -> dict[str, Value] | None:
+    def nearest(self, state: State, certain: Collection[str] = ()) -> dict[str, Value] | None:
         """The values of a member that differ from `state`, in as few variables as possible; None if there is no member.
 
-        An unknown variable differs from no value.
+        An unknown variable differs from no value. Of those that are `certain` one differs only where no member is
+        without that.
         """
         if self.root == NOTHING:
             return None
@@ -94,8 +95,9 @@ class StateSet(Immutable):
         best: list[int] = [0, 0]
         for axis, children in self.nodes:
             value = state[self.names[axis]]
+            price = len(self.names) + 1 if self.names[axis] in certain else 1
             priced = [
-                costs[child] + (value is not None and value != other)
+                costs[child] + price * (value is not None and value != other)
                 for child, other in zip(children, self.domains[axis], strict=True)
             ]
             costs.append(min(priced))

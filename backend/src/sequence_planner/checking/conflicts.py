@@ -16,10 +16,11 @@ from sequence_planner.automaton.cone import cone_of_influence
 from sequence_planner.automaton.structure import Ability, Automaton, State, target
 from sequence_planner.checking.abstraction import cannot_be
 from sequence_planner.checking.inquiry import bits
-from sequence_planner.checking.satisfiability import Question, can_be_asked
+from sequence_planner.checking.satisfiability import Question, UndecidedError, can_be_asked
 from sequence_planner.checking.warning import ModelWarning, described, place
 from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import Assignment, Constant, Variable, variables
+from sequence_planner.expressions.syntax import Assignment, Variable, variables
+from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.synthesis.conflicts import conflicting_finishes
 from sequence_planner.synthesis.effort import MOST_BITS, Effort, TooMuchError
 
@@ -36,7 +37,7 @@ def check_conflicts(automaton: Automaton) -> Iterator[ModelWarning]:
             writers[target(action)].append((ability, action))
     seen: set[tuple[str, str]] = set()
     for variable, written in writers.items():
-        if len(written) < 2 or _one_constant([action for _, action in written]):
+        if len(written) < 2 or _one_value([action for _, action in written]):
             continue
         reported = 0
         for one, other, witness in islice(_possible(automaton, variable, written), MOST_TRIED):
@@ -51,8 +52,9 @@ def check_conflicts(automaton: Automaton) -> Iterator[ModelWarning]:
                 break
 
 
-def _one_constant(actions: Sequence[Assignment]) -> bool:
-    return all(isinstance(action.value, Constant) and action.value == actions[0].value for action in actions)
+def _one_value(actions: Sequence[Assignment]) -> bool:
+    """Whether all write the same, whatever the state that all of them read."""
+    return all(action.value == actions[0].value for action in actions)
 
 
 def _possible(
@@ -78,15 +80,27 @@ def _possible(
             circuit.require(-chosen[ability.name], reading.truth(condition, state).yes)
         for value, literal in reading.symbol(action.value, state).literals.items():
             values[value].append(circuit.conjunction((chosen[ability.name], literal)))
-    some = [circuit.disjunction(literals) for literals in values.values()]
-    circuit.require(*(circuit.conjunction(pair) for pair in combinations(some, 2)))
+    two, before_it = [], Circuit.FALSE  # a value is written, and one of those before it as well
+    for literals in values.values():
+        written_now = circuit.disjunction(literals)
+        two.append(circuit.conjunction((written_now, before_it)))
+        before_it = circuit.disjunction((written_now, before_it))
+    circuit.require(*two)
     by_name = {ability.name: (ability, action) for ability, action in written}
-    while (model := question.model()) is not None:
+    while (model := _decided(question)) is not None:
         seen = state.valuation(model)
         values_now = {name: evaluate(by_name[name][1].value, seen) for name in chosen if chosen[name] in model}
         one, other = next((a, b) for a, b in combinations(values_now, 2) if values_now[a] != values_now[b])
         yield by_name[one][0], by_name[other][0], seen
         circuit.require(-chosen[one], -chosen[other])
+
+
+def _decided(question: Question) -> frozenset[int] | None:
+    """A solution; None if there is none, or none is found with reasonable effort."""
+    try:
+        return question.model()
+    except UndecidedError:
+        return None
 
 
 def _confirmed(

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from sequence_planner.automaton.structure import Ability, Automaton
-from sequence_planner.checking.satisfiability import Question, can_be_asked
+from sequence_planner.checking.satisfiability import Question, UndecidedError, can_be_asked
 from sequence_planner.checking.warning import ModelWarning, families, place
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.printing import print_expression
@@ -42,7 +42,10 @@ def _needs_executing(automaton: Automaton, ability: Ability) -> bool:
     state = question.with_old_flags()
     finishes = question.reading.truth(guard, state).yes
     unseen = question.circuit.conjunction((finishes, state[flag].literal(False)))
-    some, without = question.models(finishes, unseen)
+    try:
+        some, without = question.models(finishes, unseen)
+    except UndecidedError:
+        return False
     return some is not None and without is None
 
 
@@ -57,7 +60,10 @@ def _not_yet(automaton: Automaton, ability: Ability) -> Expression | None:
     after = question.after(ability.start_actions, before)
     question.circuit.require(question.reading.truth(guard, before).yes)
     question.circuit.require(-question.reading.truth(ability.executing, after).yes)
-    model = question.model()
+    try:
+        model = question.model()
+    except UndecidedError:
+        return None
     if model is None:
         return None
     seen = after.valuation(model)

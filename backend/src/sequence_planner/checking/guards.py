@@ -15,7 +15,7 @@ from itertools import combinations
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.growth import Growth
 from sequence_planner.checking.parts import Part, parts
-from sequence_planner.checking.satisfiability import Question, Shape, can_be_asked, shape
+from sequence_planner.checking.satisfiability import Question, Shape, UndecidedError, can_be_asked, shape
 from sequence_planner.checking.warning import ModelWarning, listed, place
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import FALSE, Constant, Expression, conjunction, conjuncts
@@ -100,13 +100,16 @@ def _constant(automaton: Automaton, written: Iterable[Part]) -> tuple[list[Part]
 
 
 def _can_hold_and_fail(automaton: Automaton, part: Part) -> tuple[bool, bool]:
-    """Whether some state satisfies a part, and whether some does not; both where there are too many to tell."""
+    """Whether some state satisfies a part, and whether some does not; both where it is too hard to tell."""
     if not can_be_asked(automaton, part.expression):
         return True, True
     question = Question(automaton)
     before = question.state()
     literal = question.reading.truth(part.expression, question.sensed(before) if part.old_flags else before).yes
-    holds, fails = question.models(literal, -literal)
+    try:
+        holds, fails = question.models(literal, -literal)
+    except UndecidedError:
+        return True, True
     return holds is not None, fails is not None
 
 

@@ -1,4 +1,4 @@
-"""Local specifications of operations that say nothing about the run."""
+"""Operations of which there are none, and local specifications that say nothing about the run."""
 
 from __future__ import annotations
 
@@ -9,9 +9,14 @@ from sequence_planner.checking.warning import ModelWarning, families, place
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import Constant, variables
 
+_FILE = "operations.yaml"  # has a place where it is there and holds nothing
+
 
 def check_operations(automaton: Automaton) -> Iterator[ModelWarning]:
-    """Operations whose local specification reads nothing at all."""
+    """A file of operations without any, and operations whose local specification reads nothing at all."""
+    if not automaton.operations and _FILE in automaton.places:
+        message = "there is no operation here, so the station never does anything by itself: write one, or leave it out"
+        yield ModelWarning(automaton.places[_FILE], "no-operation", message)
     for family, names in families(automaton.operations).items():
         local = automaton.operations[names[0]].local
         if local is None:

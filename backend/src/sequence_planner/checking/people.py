@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import combinations
 
 from sequence_planner.automaton.structure import Ability, Automaton
-from sequence_planner.checking.satisfiability import can_be_asked, satisfying
+from sequence_planner.checking.satisfiability import UndecidedError, can_be_asked, satisfying
 from sequence_planner.checking.warning import ModelWarning, described, place
 from sequence_planner.expressions.syntax import FALSE, conjunction, variables
 
@@ -27,7 +27,11 @@ def check_people(automaton: Automaton) -> Iterator[ModelWarning]:
             both = conjunction(one.executing, other.executing)
             if reported == MOST_REPORTED or not can_be_asked(automaton, both):
                 break
-            if (state := satisfying(automaton, both)) is None:
+            try:
+                state = satisfying(automaton, both)
+            except UndecidedError:
+                continue
+            if state is None:
                 continue
             reported += 1
             when = described(state, dict.fromkeys(variables(both)))

@@ -24,6 +24,11 @@ from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.symbolic import Reading, Symbol
 
 MOST_COMBINATIONS = 100_000  # of the values in one comparison; beyond them a question is not asked
+MOST_CONFLICTS = 50_000  # of the solver; beyond them a question is given up
+
+
+class UndecidedError(Exception):
+    """A question was given up: its answer would have taken too long."""
 
 
 class Question:
@@ -70,13 +75,20 @@ class Question:
         return after
 
     def models(self, *assumed: int) -> Iterator[frozenset[int] | None]:
-        """For each literal of `assumed`, the literals that are true in a solution with it, or None."""
+        """For each literal of `assumed`, the literals that are true in a solution with it, or None.
+
+        Raises `UndecidedError` when that is not known after `MOST_CONFLICTS`.
+        """
         with Solver("minisat22", bootstrap_with=self._clauses) as solver:
             for literal in assumed:
-                yield frozenset(solver.get_model() or ()) if solver.solve([literal]) else None
+                solver.conf_budget(MOST_CONFLICTS)
+                answer = solver.solve_limited([literal])
+                if answer is None:
+                    raise UndecidedError
+                yield frozenset(solver.get_model() or ()) if answer else None
 
     def model(self) -> frozenset[int] | None:
-        """The literals that are true in a solution, or None if there is none."""
+        """The literals that are true in a solution, or None if there is none. Raises `UndecidedError`."""
         return next(self.models(self.circuit.TRUE))
 
     def _is_flag(self, name: str) -> bool:
@@ -127,7 +139,7 @@ def _holds(literal: int, model: frozenset[int]) -> bool:
 
 
 def satisfying(automaton: Automaton, predicate: Expression) -> State | None:
-    """A state, of any values, in which `predicate` holds, or None if there is none."""
+    """A state, of any values, in which `predicate` holds, or None if there is none. Raises `UndecidedError`."""
     question = Question(automaton)
     state = question.state()
     question.circuit.require(question.reading.truth(predicate, state).yes)

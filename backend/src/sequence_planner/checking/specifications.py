@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 from sequence_planner.automaton.grounding.findings import without_arguments
 from sequence_planner.automaton.structure import Automaton, Specification
-from sequence_planner.checking.satisfiability import can_be_asked, satisfying
+from sequence_planner.checking.satisfiability import UndecidedError, can_be_asked, satisfying
 from sequence_planner.checking.warning import ModelWarning, place
 
 
@@ -26,5 +26,9 @@ def check_specifications(automaton: Automaton) -> Iterator[ModelWarning]:
 
 
 def _forbids(automaton: Automaton, specification: Specification) -> bool:
+    """Whether it does, or is too hard a question."""
     forbidden = specification.forbidden
-    return not can_be_asked(automaton, forbidden) or satisfying(automaton, forbidden) is not None
+    try:
+        return not can_be_asked(automaton, forbidden) or satisfying(automaton, forbidden) is not None
+    except UndecidedError:
+        return True

@@ -9,7 +9,7 @@ import errno
 import io
 import os
 import sys
-from typing import Any
+from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
@@ -119,8 +119,20 @@ app = typer.Typer(
 )
 
 
+def _version(wanted: bool) -> None:
+    if wanted:
+        from sequence_planner.version import VERSION  # noqa: PLC0415
+
+        typer.echo(f"sequence-planner {VERSION}")
+        raise typer.Exit
+
+
 @app.callback()
-def _nothing_before_a_command() -> None:
+def _before_a_command(
+    version: Annotated[
+        bool, typer.Option("--version", is_eager=True, callback=_version, help="Print the version and end.")
+    ] = False,
+) -> None:
     """Typer makes a group of what has this, though it knows no command."""
 
 

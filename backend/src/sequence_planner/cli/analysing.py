@@ -1,4 +1,4 @@
-"""What synthesis finds of a model that a command is given: kept from an earlier command, or found in a process."""
+"""What is found of a model that a command is given: kept from an earlier command, or found in a process."""
 
 from __future__ import annotations
 
@@ -6,59 +6,101 @@ import asyncio
 import signal
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from types import FrameType
 from typing import Annotated
 
 import typer
 
-from sequence_planner.analysis.analysis import COUNTING, Analysis
+from sequence_planner.analysis.analysis import COUNTING, Analysis, analyses, everything, without_numbers
 from sequence_planner.analysis.document import (
     AnalysisDocument,
     document_of,
     read_supervisor,
     supervisor_document,
 )
-from sequence_planner.analysis.process import SynthesisEndedError, analysing
+from sequence_planner.analysis.process import SynthesisEndedError, telling
 from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.checking.checks import CONFLICTS, Looked
+from sequence_planner.checking.connections import Connections
+from sequence_planner.checking.warning import ModelWarning
 from sequence_planner.cli.options import refuse
+from sequence_planner.memory_limit import USUAL
 from sequence_planner.synthesis.supervision import synthesise
 
 Deadline = Annotated[
-    float, typer.Option("--deadline", min=0.1, max=86_400, help="Seconds that synthesis and its checks may take.")
+    float,
+    typer.Option("--deadline", min=0.1, max=86_400, help="Seconds that it may take to find out about the model."),
 ]
 USUAL_DEADLINE = 120.0
 _QUIET = 1.0  # seconds before anything is said about what is being done
 
 
 @dataclass(frozen=True)
+class Limits:
+    """How many seconds it may take, from the moment these are made, and how many GB of memory."""
+
+    deadline: float = USUAL_DEADLINE
+    memory: float = USUAL
+    began: float = field(default_factory=time.monotonic)
+
+    @property
+    def left(self) -> float:
+        """So many seconds are left, 0 at least."""
+        return max(0.0, self.began + self.deadline - time.monotonic())
+
+
+@dataclass(frozen=True)
 class Found:
-    """What was found. `unfinished` says why that is not all."""
+    """What was found. `unfinished` says why that is not all; `suspicious` is what checks that need no synthesis found,
+    where they were asked for.
+    """
 
     document: AnalysisDocument
     supervisor: Supervisor | None
     unfinished: str | None
+    suspicious: tuple[ModelWarning, ...] = ()
 
 
-def analysed(automaton: Automaton, deadline: float = USUAL_DEADLINE, counts: bool = False) -> Found:
-    """What is found of `automaton` within `deadline` seconds, with numbers of states only if `counts` asks for them.
+def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Found:
+    """What synthesis finds of `automaton` within `limits`, with numbers of states only if `counts` asks for them.
 
     A terminal's standard error is told what goes on.
     """
+    known = _kept(automaton, counts)
+    if known is not None:
+        return known
+    return _found(automaton, limits, _Hearing((analyses if counts else without_numbers, automaton)))
+
+
+def checked(automaton: Automaton, connections: Connections | None, limits: Limits) -> Found:
+    """What synthesis and all checks find within `limits`; `connections` are those of a station to its topics."""
+    known = _kept(automaton, counts=False)
+    hearing = _Hearing((everything, automaton, connections, known is None), after=CONFLICTS)
+    found = _found(automaton, limits, hearing)
+    return found if known is None else replace(known, unfinished=found.unfinished, suspicious=found.suspicious)
+
+
+def _kept(automaton: Automaton, counts: bool) -> Found | None:
     known = kept(automaton)
-    if known is not None and not (counts and known.analysis.pending):
-        supervisor = None if known.supervisor is None else read_supervisor(automaton, known.supervisor)
-        return Found(known.analysis, supervisor, None)
-    analysis, unfinished = asyncio.run(_heard(automaton, deadline, counts))
+    if known is None or (counts and known.analysis.pending):
+        return None
+    supervisor = None if known.supervisor is None else read_supervisor(automaton, known.supervisor)
+    return Found(known.analysis, supervisor, None)
+
+
+def _found(automaton: Automaton, limits: Limits, hearing: _Hearing) -> Found:
+    unfinished = asyncio.run(hearing.hear(limits))
+    analysis = hearing.analysis
     document = document_of(automaton, analysis)
     if analysis.pending in (None, COUNTING):
         supervisor_kept = None if analysis.supervisor is None else supervisor_document(analysis.supervisor)
         keep(automaton, Kept(analysis=document, supervisor=supervisor_kept))
-    return Found(document, analysis.supervisor, unfinished)
+    return Found(document, analysis.supervisor, unfinished, tuple(sorted(hearing.suspicious)))
 
 
 def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Supervisor:
@@ -70,7 +112,7 @@ def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Sup
     if known is not None and known.supervisor is not None:
         return read_supervisor(automaton, known.supervisor)
     try:
-        with _within(deadline):
+        with within(deadline):
             return synthesise(automaton)
     except TimeoutError:
         refuse(f"the safe states could not be computed within {deadline:g} s: let fewer variables bear on them")
@@ -79,7 +121,7 @@ def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Sup
 
 
 @contextmanager
-def _within(seconds: float) -> Iterator[None]:
+def within(seconds: float) -> Iterator[None]:
     """Raise `TimeoutError` in the block after so many seconds; in the main thread only."""
 
     def ring(number: int, frame: FrameType | None) -> None:
@@ -94,22 +136,44 @@ def _within(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-async def _heard(automaton: Automaton, deadline: float, counts: bool) -> tuple[Analysis, str | None]:
-    found = Analysis("the safe states")
-    began = time.monotonic()
-    try:
-        async with asyncio.timeout(deadline), analysing(automaton) as finding:
-            async for found in finding:
-                _tell(found, time.monotonic() - began)
-                if found.pending == COUNTING and not counts:
-                    break
-    except TimeoutError:
-        return found, f"{found.pending} could not be computed within {deadline:g} s: allow more with --deadline"
-    except SynthesisEndedError as ended:
-        return found, f"{found.pending} could not be computed: {ended}"
-    return found, None
+Work = tuple[Callable[..., Iterator[Looked | Analysis]], *tuple[object, ...]]
 
 
-def _tell(found: Analysis, seconds: float) -> None:
-    if sys.stderr.isatty() and seconds > _QUIET and found.pending is not None:
-        typer.echo(f"{seconds:5.1f} s: computing {found.pending}", err=True)
+@dataclass
+class _Hearing:
+    """What a process that does `work` has told by now; `after` is what it looks for at last."""
+
+    work: Work
+    after: str | None = None
+    analysis: Analysis = field(default_factory=lambda: Analysis("the safe states"))
+    suspicious: set[ModelWarning] = field(default_factory=set)
+    _pending: str | None = None
+
+    async def hear(self, limits: Limits) -> str | None:
+        """Hear it until it is all, or `limits` are reached; returns what was not found then, and why."""
+        try:
+            async with asyncio.timeout(limits.left), telling(limits.memory, *self.work) as words:
+                async for word in words:
+                    self._take(word)
+                    self._tell(time.monotonic() - limits.began)
+        except TimeoutError:
+            return f"{self._left()} could not be computed within {limits.deadline:g} s: allow more with --deadline"
+        except SynthesisEndedError as ended:
+            return f"{self._left()} could not be computed: {ended}"
+        return None
+
+    def _take(self, word: Looked | Analysis) -> None:
+        if isinstance(word, Looked):
+            self.suspicious |= set(word.warnings)
+        else:
+            self.analysis = word
+        self._pending = word.pending
+
+    def _left(self) -> str:
+        """What has not been found."""
+        left = [self._pending or self.analysis.pending, self.analysis.pending, self.after]
+        return " and ".join(dict.fromkeys(each for each in left if each not in (None, COUNTING)))
+
+    def _tell(self, seconds: float) -> None:
+        if sys.stderr.isatty() and seconds > _QUIET and self._pending is not None:
+            typer.echo(f"{seconds:5.1f} s: computing {self._pending}", err=True)

@@ -13,10 +13,10 @@ from sequence_planner.analysis.document import FindingDocument
 from sequence_planner.attaching.attachment import Attachment, attachment
 from sequence_planner.attaching.errors import AttachError
 from sequence_planner.attaching.network import FoundTopic, find_topic
+from sequence_planner.cli.analysing import Limits
 from sequence_planner.cli.check import check_model, unusable
 from sequence_planner.cli.findings import finding_lines
 from sequence_planner.cli.joining import Domain, Seconds, look
-from sequence_planner.cli.loading import load_model
 from sequence_planner.cli.options import UNUSABLE, AsJson, StationFolder, print_json
 from sequence_planner.cli.parts import TransportOption
 from sequence_planner.model.loading import load_station
@@ -82,7 +82,7 @@ def _attached(model: Path, change: Attachment, dry_run: bool) -> _Answer:
             return file.replace(str(copy), str(model))
 
         try:
-            findings = check_model(load_model(copy), LONGEST_CHECK).findings
+            findings = check_model(copy, Limits(LONGEST_CHECK)).findings
         except ModelError as error:
             errors = [replace(each, place=each.place._replace(file=real(each.place.file))) for each in error.findings]
             return _Answer(change.topic, difference, False, [], errors)

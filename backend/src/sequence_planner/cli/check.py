@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated
 
 import typer
 
 from sequence_planner.analysis.document import FindingDocument, error_document, findings_of
-from sequence_planner.checking.checks import check_automaton
 from sequence_planner.checking.warning import ModelWarning, place
-from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, analysed
+from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, Limits, checked, within
 from sequence_planner.cli.findings import finding_lines
 from sequence_planner.cli.loading import Model, load_model
-from sequence_planner.cli.options import FINDINGS, UNUSABLE, AnyModel, AsJson, print_json
-from sequence_planner.collection import collection_put_off
+from sequence_planner.cli.options import FINDINGS, UNUSABLE, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.model.source import Finding, ModelError
+from sequence_planner.start_findings import start_findings
+from sequence_planner.start_needs import StartNeeds
 
 
 @dataclass(frozen=True)
@@ -26,7 +28,15 @@ class Checked:
     found: Found
 
 
-def check(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = False) -> None:
+def check(
+    model: AnyModel,
+    deadline: Deadline = USUAL_DEADLINE,
+    memory: Memory = USUAL_MEMORY,
+    emulator: Annotated[
+        bool, typer.Option("--emulator", help="Emulated devices must be possible, as for `run --emulator`.")
+    ] = False,
+    json: AsJson = False,
+) -> None:
     """Check a model: its documents, its pipelines, that its specifications can be met, and what is suspicious in it.
 
     The examples of the pipelines are carried out; one that fails is an error.
@@ -37,7 +47,7 @@ def check(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = F
     {initial, forbidden_by, steps: [{kind, names, finished, changes, forbidden_by, text}]}, or null.
     """
     try:
-        checked = check_model(load_model(model), deadline)
+        found = check_model(model, Limits(deadline, memory), emulator=emulator)
     except ModelError as error:
         if json:
             findings = [unusable(each) for each in error.findings]
@@ -46,25 +56,33 @@ def check(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = F
             typer.echo(str(error), err=True)
         raise typer.Exit(UNUSABLE) from error
     if json:
-        findings = [each.model_dump() for each in checked.findings]
-        print_json({"model": str(model), "findings": findings, "summary": _summary(checked)})
+        findings = [each.model_dump() for each in found.findings]
+        print_json({"model": str(model), "findings": findings, "summary": _summary(found)})
     else:
-        _say(checked)
-    if checked.findings:
+        _say(found)
+    if found.findings:
         raise typer.Exit(FINDINGS)
 
 
-def check_model(model: Model, deadline: float) -> Checked:
-    """All that can be found in a model that can be used. Raises `ModelError` for pipelines that fail as they run."""
-    if model.station is not None and (failed := model.station.failures()):
-        raise ModelError(failed)
+def check_model(path: Path, limits: Limits, *, emulator: bool = False) -> Checked:
+    """All that is found in a model within `limits`. Raises `ModelError` when it cannot be used, and where its devices
+    are to be emulated for what keeps them from it.
+    """
+    try:
+        with within(limits.left):
+            model = load_model(path)
+            station = model.station
+            wrong = [] if station is None else station.failures() or start_findings(station, StartNeeds(emulator))
+            if wrong:
+                raise ModelError(wrong)
+    except TimeoutError:
+        refuse(f"{path}: it could not be read within {limits.deadline:g} s: allow more with --deadline")
     automaton = model.automaton
-    with collection_put_off():
-        warnings = check_automaton(automaton, model.connections)
-    found = analysed(automaton, deadline)
+    found = checked(automaton, model.connections, limits)
+    warnings = [*found.suspicious, *([] if station is None else station.suspicions())]
     if found.unfinished is not None:
         where = place(automaton, *automaton.specifications, "rest")
-        warnings = [*warnings, ModelWarning(where, "not-finished", found.unfinished)]
+        warnings.append(ModelWarning(where, "not-finished", found.unfinished))
     findings = [*findings_of(automaton, warnings), *(found.document.findings or ())]
     return Checked(model, sorted(findings, key=lambda each: (each.file, each.line, each.column, each.kind)), found)
 

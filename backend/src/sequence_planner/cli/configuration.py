@@ -8,7 +8,9 @@ from typing import Annotated
 import typer
 
 from sequence_planner.cli.options import AsJson, print_json, refuse
+from sequence_planner.cli.surroundings import unfit
 from sequence_planner.configuration import FILE, ConfigurationError, Told, configured
+from sequence_planner.pipelines.stages.own.confinement import missing
 
 configuration = typer.Typer(
     name="configuration",
@@ -21,8 +23,15 @@ File = Annotated[Path | None, typer.Argument(metavar="[FILE]", envvar=FILE, help
 
 @configuration.command()
 def check(file: Annotated[Path, typer.Argument(metavar="FILE", help="The file.")]) -> None:
-    """Say what is wrong in a file, with file and line; the environment is not looked at."""
-    typer.echo(f"{file} can be used: {', '.join(_told(file, {})) or 'it tells nothing'}")
+    """Say what is wrong in a file, with file and line, and whether what it names is there and fit: the model,
+    certificates, secrets, the database. The environment is not looked at, and nothing is changed.
+    """
+    told = _told(file, {})
+    if wrong := list(unfit(told)):
+        refuse("\n".join(wrong))
+    typer.echo(f"{file} can be used: {', '.join(told) or 'it tells nothing'}")
+    if without := missing():
+        typer.echo(f"This system cannot keep Python stages from {' and '.join(without)}: see docs/deployment.md.")
 
 
 @configuration.command()

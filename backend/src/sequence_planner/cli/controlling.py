@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -15,13 +16,15 @@ from sequence_planner.cli.parts import (
     Socket,
     TransportOption,
     begin,
-    prepare,
     until_interrupted,
 )
 from sequence_planner.control.deploying import DeployedError
-from sequence_planner.control.process import Running, control
+from sequence_planner.control.preparation import Unusable
+from sequence_planner.control.process import NotStartedError, Running, control
 from sequence_planner.lifeline import DEPLOYED, OVERTAKEN, is_needed
+from sequence_planner.model.source import ModelError
 from sequence_planner.standby.keeper import LeaseLostError
+from sequence_planner.station import ReadyStation, prepare_station
 
 
 def controller(
@@ -41,8 +44,8 @@ def controller(
     if spare and not is_needed():
         return
     begin(launched, socket.parent)
-    station = prepare(model)
-    network = Network(station, transport, rosbridge)
+    station = _usable(model, launched)
+    network = None if isinstance(station, Unusable) else Network(station, transport, rosbridge)
     url = database_url(model, database)
     again = again or spare
     try:
@@ -50,9 +53,19 @@ def controller(
             lambda connect: control(Running(station, model, socket, connect, emulated, start, url, hot_standby, again)),
             network,
         )
-    except SynthesisEndedError as error:
+    except (SynthesisEndedError, NotStartedError) as error:
         refuse(str(error))
     except DeployedError:
         raise typer.Exit(DEPLOYED) from None
     except LeaseLostError:
         raise typer.Exit(OVERTAKEN) from None
+
+
+def _usable(model: Path, launched: bool) -> ReadyStation | Unusable:
+    """The station in the folder `model`, or why it cannot be used; without a page to repair it that is refused."""
+    try:
+        return prepare_station(model)
+    except ModelError as error:
+        if not launched:
+            refuse(str(error))
+        return Unusable(model.resolve().name, tuple(error.findings))

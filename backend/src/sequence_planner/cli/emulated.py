@@ -9,6 +9,7 @@ import typer
 
 from sequence_planner.cli.options import refuse
 from sequence_planner.emulation.live import REFUSED, SAID_TOPIC, TEXT_TYPE, answer_start
+from sequence_planner.logs import configure_logs
 from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import QualityOfService, Sample, Transport, TransportError
@@ -21,6 +22,7 @@ LOOK_EVERY = 0.05  # seconds between two looks for them
 
 def say(topic: str, line: str, choice: TransportChoice) -> None:
     """Send a line to the emulated devices and print what they answer, with exit code 1 when they refuse."""
+    configure_logs()
     answer = asyncio.run(_ask(topic, line, choice))
     typer.echo(answer, err=answer.startswith(REFUSED))
     if answer.startswith(REFUSED):

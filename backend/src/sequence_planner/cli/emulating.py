@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from sequence_planner.cli.emulated import say
-from sequence_planner.cli.options import StationFolder, refuse
+from sequence_planner.cli.options import UNUSABLE, StationFolder, refuse
 from sequence_planner.cli.parts import (
     Launched,
     Network,
@@ -23,7 +23,9 @@ from sequence_planner.emulation.fault_script import read_script
 from sequence_planner.emulation.live import BY_HAND_TOPIC, FAULTS_TOPIC
 from sequence_planner.emulation.possible import emulation_findings
 from sequence_planner.emulation.process import Emulation, emulate
+from sequence_planner.emulation.standing import read
 from sequence_planner.expressions.resolution import suggestion
+from sequence_planner.lifeline import NOT_EMULATED
 from sequence_planner.model.source import ModelError
 
 
@@ -38,14 +40,25 @@ def emulate_command(
         list[str] | None, typer.Option(help="Emulate this resource's devices, and no others; can be repeated.")
     ] = None,
     faults: Annotated[Path | None, typer.Option(help="A file of faults and when they begin.")] = None,
+    stand_as: Annotated[Path | None, typer.Option(hidden=True, help="How other devices stood, if it is there.")] = None,
+    keep_in: Annotated[Path | None, typer.Option(hidden=True, help="Where it is kept how these stand.")] = None,
     launched: Launched = False,
 ) -> None:
     """Run emulated devices for a station, in place of real ones."""
     begin(launched)
-    station = prepare(model)
+    impossible = NOT_EMULATED if launched else UNUSABLE
+    station = prepare(model, impossible)
     if findings := emulation_findings(station):
-        refuse("\n".join(map(str, findings)))
-    emulation = Emulation(station, speed, seed, jitter, frozenset(resource) if resource else None)
+        refuse("\n".join(map(str, findings)), impossible)
+    emulation = Emulation(
+        station,
+        speed,
+        seed,
+        jitter,
+        frozenset(resource) if resource else None,
+        standing=None if stand_as is None else read(stand_as),
+        kept_in=keep_in,
+    )
     there = Emulation(station).emulated
     for name in resource or ():
         if name not in there:

@@ -9,6 +9,7 @@ from typing import Annotated, TypeVar
 
 import typer
 
+from sequence_planner.logs import configure_logs
 from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.environment import DOMAIN_ID
 from sequence_planner.ros.messages import MessageRegistry
@@ -26,6 +27,7 @@ def look(
     what: Callable[[Transport], Awaitable[T]], registry: MessageRegistry, choice: TransportChoice, domain: int | None
 ) -> T:
     """Join the network, and return what `what` does. Raises `TransportError`."""
+    configure_logs()
 
     async def joined() -> T:
         node = f"sequence_planner_look_{os.getpid()}"

@@ -8,6 +8,8 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from sequence_planner.lifeline import leave_last_words
+from sequence_planner.memory_limit import LEAST, MOST, USUAL, VARIABLE
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.storage.error import StorageError
 from sequence_planner.storage.location import default_url
@@ -31,10 +33,18 @@ DatabaseOption = Annotated[
 ]
 
 
-def refuse(message: str) -> NoReturn:
+Memory = Annotated[
+    float,
+    typer.Option("--memory", envvar=VARIABLE, metavar="GB", min=LEAST, max=MOST, help="Memory that checks may take."),
+]
+USUAL_MEMORY = USUAL
+
+
+def refuse(message: str, code: int = UNUSABLE) -> NoReturn:
     """Say on standard error what makes the input unusable, and end."""
+    leave_last_words(message)
     typer.echo(message, err=True)
-    raise typer.Exit(UNUSABLE)
+    raise typer.Exit(code)
 
 
 def database_url(model: Path, given: str | None) -> str:

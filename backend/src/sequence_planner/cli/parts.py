@@ -15,9 +15,9 @@ from typing import Annotated
 
 import typer
 
-from sequence_planner.cli.options import refuse
+from sequence_planner.cli.options import UNUSABLE, refuse
 from sequence_planner.control.unix_socket import SocketTakenError
-from sequence_planner.lifeline import end_with_launcher
+from sequence_planner.lifeline import end_with_launcher, leave_last_words
 from sequence_planner.logs import configure_logs
 from sequence_planner.model.source import ModelError
 from sequence_planner.ros.choice import TransportChoice, open_transport
@@ -50,12 +50,12 @@ def begin(launched: bool, folder: Path | None = None) -> None:
         end_with_launcher(folder)
 
 
-def prepare(folder: Path) -> ReadyStation:
-    """The station in `folder`, or the end of this process."""
+def prepare(folder: Path, code: int = UNUSABLE) -> ReadyStation:
+    """The station in `folder`, or the end of this process with `code`."""
     try:
         return prepare_station(folder)
     except ModelError as error:
-        refuse(str(error))
+        refuse(str(error), code)
 
 
 @dataclass(frozen=True)
@@ -79,12 +79,16 @@ class Network:
         )
 
 
-def until_interrupted(life: Callable[[Callable[[str], Transport]], Awaitable[None]], network: Network) -> None:
+def until_interrupted(life: Callable[[Callable[[str], Transport]], Awaitable[None]], network: Network | None) -> None:
     """Run a coroutine that connects to the network, until SIGTERM or SIGINT; trouble ends with exit code 2."""
+
+    def join(node: str, loop: asyncio.AbstractEventLoop) -> Transport:
+        assert network is not None  # what has no network does not join it
+        return network.join(node, loop)
 
     async def live() -> None:
         loop = asyncio.get_running_loop()
-        running = asyncio.ensure_future(life(lambda node: network.join(node, loop)))
+        running = asyncio.ensure_future(life(lambda node: join(node, loop)))
         for number in (signal.SIGTERM, signal.SIGINT):
             loop.add_signal_handler(number, running.cancel)
         with contextlib.suppress(asyncio.CancelledError):
@@ -94,3 +98,6 @@ def until_interrupted(life: Callable[[Callable[[str], Transport]], Awaitable[Non
         asyncio.run(live())
     except (TransportError, SocketTakenError, StorageError) as error:
         refuse(str(error))
+    except Exception as error:
+        leave_last_words(f"{type(error).__name__}: {error}")
+        raise

@@ -5,28 +5,34 @@ from __future__ import annotations
 import os
 import re
 from pathlib import Path
+from socket import socket as ListeningSocket  # noqa: N812 - the option `socket` is a path
 from typing import Annotated
 
 import typer
 
 from sequence_planner.backup.settings import KEPT, Keeping
 from sequence_planner.cli.configured import ConfigurationOption
-from sequence_planner.cli.options import DatabaseOption, StationFolder, database_url, refuse
+from sequence_planner.cli.options import USUAL_MEMORY, DatabaseOption, Memory, StationFolder, database_url, refuse
 from sequence_planner.cli.parts import (
     Launched,
     RosbridgeOption,
     Socket,
     TransportOption,
     begin,
-    prepare,
 )
 from sequence_planner.cli.provider_options import Client, Groups, Issuer, Others, Roles, Scopes, SecretFile, Title
 from sequence_planner.configuration import ConfigurationError, has_password, url_in
 from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
+from sequence_planner.lifeline import is_needed
 from sequence_planner.logs import LogFormat
-from sequence_planner.mes.webhooks.targets import TargetRefused, Targets, host_and_port
+from sequence_planner.mes.webhooks.targets import TargetRefused, Targets, host_and_port, network
+from sequence_planner.model.source import ModelError
+from sequence_planner.ros.choice import TransportChoice, settled
+from sequence_planner.ros.transport import TransportError
 from sequence_planner.secret_variables import CLIENT_SECRET
+from sequence_planner.start_needs import StartNeeds
+from sequence_planner.station import prepare_station
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
@@ -58,7 +64,15 @@ WebhookHosts = Annotated[
     typer.Option(
         "--webhook-host",
         metavar="HOST[:PORT]",
-        help="A host that webhooks may go to, by HTTPS and not within a private network; can be repeated.",
+        help="A host that webhooks may go to, by HTTPS; can be repeated.",
+    ),
+]
+WebhookNetworks = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--webhook-network",
+        metavar="NETWORK",
+        help="A network of the plant that webhooks may go to, by HTTPS, as in 10.1.2.0/24; can be repeated.",
     ),
 ]
 WebhookLoopback = Annotated[
@@ -128,10 +142,18 @@ def run(
     oidc_others: Others = NO_OTHERS,
     log_format: Annotated[LogFormat, typer.Option(help="Write events as text for people or as JSON.")] = LogFormat.TEXT,
     webhook_host: WebhookHosts = None,
+    webhook_network: WebhookNetworks = None,
     webhook_loopback: WebhookLoopback = False,
     backup_folder: BackupFolder = None,
     backups_kept: BackupsKept = KEPT,
     backup_every: BackupEvery = None,
+    new: Annotated[
+        bool,
+        typer.Option(
+            "--new", help="A new station is meant to begin, though another one has left files beside its database."
+        ),
+    ] = False,
+    memory: Memory = USUAL_MEMORY,
 ) -> None:
     """Run a station: controller, server and page."""
     from sequence_planner.launcher import Launch, launch  # noqa: PLC0415
@@ -173,14 +195,14 @@ def run(
     )
     if _provider(provider) is not None and demonstration:
         refuse("--demonstration is for whoever sits here, and nobody signs in: leave --oidc-issuer out, or it")
-    webhooks = _targets(webhook_host, webhook_loopback)
-    prepare(model)
+    webhooks = _targets(webhook_host, webhook_network, webhook_loopback)
+    unusable = _unusable(model)
     url = None if demonstration else database_url(model, database)
     asked = Launch(
         model,
         endpoint,
         url,
-        transport,
+        _settled(transport),
         rosbridge,
         emulator,
         start,
@@ -190,11 +212,31 @@ def run(
         log_format=log_format,
         webhooks=webhooks,
         backups=Keeping(backup_folder, backups_kept, backup_every),
+        new=new,
+        memory=memory,
+        unusable=unusable,
     )
     try:
         raise typer.Exit(launch(asked))
     except (SettingsError, StorageError) as error:
         refuse(str(error))
+
+
+def _settled(transport: TransportChoice) -> TransportChoice:
+    """The transport for all parts."""
+    try:
+        return settled(transport, lambda text: typer.echo(text, err=True))
+    except TransportError as error:
+        refuse(str(error))
+
+
+def _unusable(model: Path) -> str | None:
+    """Why the model cannot be used, if it cannot; said, since it may be repaired in the browser."""
+    try:
+        prepare_station(model)
+    except ModelError as error:
+        return str(error)
+    return None
 
 
 def _is_typed(context: typer.Context, name: str) -> bool:
@@ -225,6 +267,8 @@ def server(
     name: Names = None,
     database: DatabaseOption = None,
     demonstration: Demonstration = False,
+    emulated: Annotated[bool, typer.Option("--emulated")] = False,
+    rosbridge: RosbridgeOption = None,
     oidc_issuer: Issuer = None,
     oidc_client: Client = None,
     oidc_client_secret_file: SecretFile = None,
@@ -234,16 +278,22 @@ def server(
     oidc_role: Roles = None,
     oidc_others: Others = NO_OTHERS,
     webhook_host: WebhookHosts = None,
+    webhook_network: WebhookNetworks = None,
     webhook_loopback: WebhookLoopback = False,
     backup_folder: BackupFolder = None,
     backups_kept: BackupsKept = KEPT,
     backup_every: BackupEvery = None,
     launched: Launched = False,
+    listener: Annotated[
+        int | None, typer.Option("--listener", hidden=True, help="The descriptor of a socket that listens already.")
+    ] = None,
+    spare: Annotated[bool, typer.Option("--spare", hidden=True, help="Wait until the launcher says so.")] = False,
 ) -> None:
     """Run the server alone; `run` does this."""
-    from sequence_planner.web.server import serve  # noqa: PLC0415
+    from sequence_planner.web.server import serve, serve_when_needed  # noqa: PLC0415
 
-    begin(launched, socket.parent)
+    if not spare:
+        begin(launched, socket.parent)
     provider = _provider(
         ProviderOptions(
             issuer=oidc_issuer,
@@ -257,25 +307,36 @@ def server(
         )
     )
     os.environ.pop(CLIENT_SECRET, None)  # nothing that is started from here needs it
-    serve(
-        Settings(
-            controller_socket=socket,
-            page=page,
-            database=database_url(model, database),
-            host=host,
-            port=port,
-            certificate=certificate,
-            private_key=private_key,
-            proxies=tuple(proxy or ()),
-            names=tuple(name or ()),
-            model=model,
-            transport=transport,
-            demonstration=demonstration,
-            provider=provider,
-            webhooks=_targets(webhook_host, webhook_loopback),
-            backups=Keeping(backup_folder, backups_kept, backup_every),
-        )
+    settings = Settings(
+        controller_socket=socket,
+        page=page,
+        database=database_url(model, database),
+        host=host,
+        port=port,
+        certificate=certificate,
+        private_key=private_key,
+        proxies=tuple(proxy or ()),
+        names=tuple(name or ()),
+        model=model,
+        transport=transport,
+        demonstration=demonstration,
+        start=StartNeeds(emulated, rosbridge is not None),
+        provider=provider,
+        webhooks=_targets(webhook_host, webhook_network, webhook_loopback),
+        backups=Keeping(backup_folder, backups_kept, backup_every),
     )
+    listening = None if listener is None else ListeningSocket(fileno=listener)
+    if not spare or listening is None:
+        serve(settings, listening)
+        return
+
+    def needed() -> bool:
+        if is_needed():
+            begin(launched, socket.parent)
+            return True
+        return False
+
+    serve_when_needed(settings, listening, needed)
 
 
 def _provider(options: ProviderOptions) -> ProviderSettings | None:
@@ -286,8 +347,11 @@ def _provider(options: ProviderOptions) -> ProviderSettings | None:
         refuse(str(error))
 
 
-def _targets(hosts: list[str] | None, loopback: bool) -> Targets:
+def _targets(hosts: list[str] | None, networks: list[str] | None, loopback: bool) -> Targets:
+    option = "--webhook-host"
     try:
-        return Targets(frozenset(map(host_and_port, hosts or ())), loopback)
+        found = frozenset(map(host_and_port, hosts or ()))
+        option = "--webhook-network"
+        return Targets(found, loopback, tuple(dict.fromkeys(map(network, networks or ()))))
     except TargetRefused as refused:
-        refuse(f"--webhook-host: {refused}")
+        refuse(f"{option}: {refused}")

@@ -10,10 +10,10 @@ import typer
 
 from sequence_planner.analysis.document import GuardDocument
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, Operation, VariableDeclaration
-from sequence_planner.cli.analysing import Deadline, analysed
+from sequence_planner.cli.analysing import Deadline, Limits, analysed
 from sequence_planner.cli.describing import described_automaton
 from sequence_planner.cli.loading import Model, usable_model
-from sequence_planner.cli.options import AnyModel, AsJson, print_json, refuse
+from sequence_planner.cli.options import USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.cli.pipelines import chosen, pipeline_lines
 from sequence_planner.control.pipeline_graph import pipelines_view
 from sequence_planner.expressions.printing import print_assignment, print_expression, print_value
@@ -34,6 +34,7 @@ def show(
     ] = None,
     pipelines: Annotated[bool, typer.Option("--pipelines", help="Show the pipelines of topics and flows.")] = False,
     deadline: Deadline = LONGEST,
+    memory: Memory = USUAL_MEMORY,
     json: AsJson = False,
 ) -> None:
     """Show what a model means: its variables, ground abilities with their effects, operations and specifications.
@@ -44,6 +45,7 @@ def show(
     With --pipelines instead the typed graph of each topic and flow, of which a NAME is also one: the fields on each
     edge, where a stage adds or changes some, and what becomes of them.
     """
+    limits = Limits(deadline, memory)
     usable = usable_model(model)
     wanted = list(names or ())
     if pipelines:
@@ -54,7 +56,7 @@ def show(
     for name in wanted:
         if not any(_bears(each, name) for each in known):
             refuse(f"{model}: there is nothing called `{name}`{suggestion(name, known)}")
-    guards = _guards(automaton, wanted, deadline)
+    guards = _guards(automaton, wanted, limits)
     if json:
         print_json(described_automaton(automaton, guards, lambda name: _chosen(name, wanted)))
         return
@@ -76,13 +78,13 @@ def _show_pipelines(path: Path, model: Model, wanted: list[str], json: bool) -> 
         typer.echo("\n".join(pipeline_lines(view)))
 
 
-def _guards(automaton: Automaton, wanted: list[str], deadline: float) -> Guards:
+def _guards(automaton: Automaton, wanted: list[str], limits: Limits) -> Guards:
     """The guard that the supervisor adds to each ability, if any of them are to be shown."""
     if not automaton.specifications and automaton.rest is None:
         return {}
     if not any(_chosen(name, wanted) for name in automaton.abilities):
         return {}
-    found = analysed(automaton, deadline)
+    found = analysed(automaton, limits)
     if found.document.supervised is False:
         typer.echo("there is no supervisor: `check` says why", err=True)
     elif found.document.guards is None:

@@ -10,15 +10,17 @@ import typer
 from sequence_planner.analysis.document import AnalysisDocument, GuardDocument
 from sequence_planner.automaton.plain.meaning import NUMBER_SIGN, event_of
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, analysed
+from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, Limits, analysed
 from sequence_planner.cli.findings import finding_lines
 from sequence_planner.cli.loading import usable_model
-from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json
+from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import TRUE
 
 
-def synthesize(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJson = False) -> None:
+def synthesize(
+    model: AnyModel, deadline: Deadline = USUAL_DEADLINE, memory: Memory = USUAL_MEMORY, json: AsJson = False
+) -> None:
     """Compute the supervisor of a model: how many states can be reached with and without it, and the guards it adds.
 
     Each guard is added to the one that is written; it holds for the states that can be reached. With --json: {model,
@@ -26,8 +28,9 @@ def synthesize(model: AnyModel, deadline: Deadline = USUAL_DEADLINE, json: AsJso
     is what has not been computed, and a guard that only the states themselves say. The exit code is 1 when there are
     findings.
     """
+    limits = Limits(deadline, memory)
     automaton = usable_model(model).automaton
-    found = analysed(automaton, deadline, counts=True)
+    found = analysed(automaton, limits, counts=True)
     if json:
         print_json(_document(automaton, found))
     else:

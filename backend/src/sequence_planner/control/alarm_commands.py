@@ -20,7 +20,7 @@ class AlarmCommand(CommandBase):
     @property
     def subject(self) -> str:
         """The alarm."""
-        return f"alarm {self.alarm}"[:400]
+        return f"alarm {self.alarm}"
 
 
 class AcknowledgeAlarm(AlarmCommand):

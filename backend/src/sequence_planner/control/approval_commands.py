@@ -92,7 +92,7 @@ class RequestApproval(CommandBase):
     @property
     def subject(self) -> str:
         """The variables."""
-        return ", ".join(self.act.names)[:400]
+        return ", ".join(self.act.names)
 
 
 class AnswerRequest(CommandBase):
@@ -104,7 +104,7 @@ class AnswerRequest(CommandBase):
     @property
     def subject(self) -> str:
         """The variables."""
-        return ", ".join(self.act.names)[:400]
+        return ", ".join(self.act.names)
 
 
 class ApproveRequest(AnswerRequest):

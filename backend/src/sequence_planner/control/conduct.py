@@ -62,7 +62,7 @@ class Beginning(Immutable):
     Nobody has seen since `unconfirmed_since` whether the estimates are still true; None where nothing came back. `done`
     are the operations that do not repeat and have been completed. It goes on in the same mode, with the same jobs, and
     steps as before: who had held the station finds it held. `revision` is higher than any that was shown before, so
-    that nobody decides on a state of another life.
+    that nobody decides on a state of another life. `answers` are those of `Conduct`.
     """
 
     values: Mapping[str, Value]
@@ -74,12 +74,19 @@ class Beginning(Immutable):
     stepping: bool = False
     revision: int = 0
     jobs: Jobs = Jobs()
+    answers: Mapping[str, Value] = NOTHING
+
+    def as_the_model_says(self) -> Beginning:
+        """The same with all variables as the model has them at first, which nobody need confirm."""
+        return replace(self, values=NOTHING, unconfirmed_since=None, done=frozenset(), answers=NOTHING)
 
 
 class Conduct(Immutable):
     """`steps` may be taken while it is `stepping`. `returned` are outputs that came back and nobody has decided on.
 
     `tried` counts for each ability how often it was called off because it was overdue, since it last did finish.
+    `answers` are the estimates that somebody has confirmed or corrected, as they said, until operations go on with
+    them.
     """
 
     mode: Mode = Mode.AUTOMATIC
@@ -95,6 +102,7 @@ class Conduct(Immutable):
     tried: Mapping[str, int] = NOTHING
     silent: frozenset[str] = frozenset()  # resources that are not heard
     jobs: Jobs = Jobs()
+    answers: Mapping[str, Value] = NOTHING
 
     @property
     def executes_operations(self) -> bool:

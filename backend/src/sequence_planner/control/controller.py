@@ -27,6 +27,7 @@ from sequence_planner.control.asking import Asking
 from sequence_planner.control.asks import Ask
 from sequence_planner.control.belief import KIND as BELIEFS
 from sequence_planner.control.belief import Beliefs
+from sequence_planner.control.by_hand import ByHand
 from sequence_planner.control.command_desk import CommandDesk
 from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.corrections import Corrections
@@ -50,6 +51,7 @@ from sequence_planner.control.outside import Outside
 from sequence_planner.control.pipeline_graph import pipelines_view
 from sequence_planner.control.questions import Questions
 from sequence_planner.control.release import Release
+from sequence_planner.control.standing_notes import StandingNotes
 from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.trials import Trials
 from sequence_planner.control.view import Production, StationIdentity, StationView
@@ -62,6 +64,7 @@ from sequence_planner.history.model_digest import model_digest
 from sequence_planner.history.recorder import RunRecorder
 from sequence_planner.journal.group_commit import Fence
 from sequence_planner.journal.run_writer import RunWriter
+from sequence_planner.model.source import Finding
 from sequence_planner.ros.transport import Sample, Transport
 from sequence_planner.station import ReadyStation
 from sequence_planner.storage.database import Database
@@ -97,6 +100,8 @@ class Controller:
         self.execution = Execution(automaton, supervisor, known.beginning)
         self._writer, self._figures = RunWriter(database, self._journalled, fence), Figures()
         self._recorder = RunRecorder(self.execution, self._writer.write, model_digest(automaton), known.beginning)
+        self.begun = self._writer.end
+        """The first record of this life."""
         self._wake = asyncio.Event()
         self.devices = Devices(station, transport, self._wake.set)
         feeds, network, commander = self.devices.feeds, self.devices.network, self.devices.commander
@@ -107,7 +112,9 @@ class Controller:
         self.desk = TaskDesk(automaton, station.pipelines.feeds)
         self._outside = Outside(self.execution)
         self._alarms = Alarms(self.execution, self._outside, feeds, network, commander, self._note, known)
+        self._standing = StandingNotes(self._note)
         self._beliefs = Beliefs(self.execution, known.beginning, known.beliefs, partial(self._note, BELIEFS))
+        self._by_hand = ByHand(self.execution, station.pipelines, self._note)
         self._doubting = Doubting(self.execution)
         self._viewing = Viewing(identity, self.execution, self._outside, feeds, network, self._beliefs)
         self._questions = Questions(self.execution, self._outside, self._take, self._figures.answers)
@@ -116,7 +123,7 @@ class Controller:
         offers = Offers(self.execution, self._adviser, self._corrections, self._doubting.impossible)
         around = Surroundings(feeds.heard_on, self._viewing.since, self._beliefs, lambda: self._viewing.guards)
         trials = Trials(self.execution, around, self.devices.real_devices)
-        in_control = InControl()
+        in_control = InControl(known.control)
         self._orders = CommandDesk(
             modes=ModeDesk(self.execution, self._outside),
             tasks=self.desk,
@@ -145,6 +152,7 @@ class Controller:
         )
         self._measured: dict[str, Value | None] = {}
         self._is_unjournalled = False
+        self._kept = 0, ""  # what was asked for and is beside the journal, up to that record
         self._again = False
         self._due = True  # a tick is wanted whatever the measurements say
         self._in_a_row = 0  # ticks that only followed from the one before
@@ -213,6 +221,24 @@ class Controller:
         return await self._asking.answer(ask)
 
     @property
+    def last_record(self) -> int:
+        """The number of the last record of what has happened, which may not be durable yet."""
+        return self._writer.end.number
+
+    async def until_recorded(self, number: int, patience: float) -> bool:
+        """Whether what has happened up to a record is durable, or becomes so within so many seconds."""
+        return await self._writer.until_durable(number, patience)
+
+    def note_kept(self, number: int, what: str) -> None:
+        """What was asked for is kept beside the journal until that has the record of this number."""
+        self._kept = number, what
+
+    @property
+    def is_recorded(self) -> bool | None:
+        """Whether all that has happened is durable; None where not even that this life has begun."""
+        return self._writer.waiting == 0 if self._writer.durable >= self.begun.number else None
+
+    @property
     def undecided(self) -> tuple[str, ...]:
         """The outputs on which a person must decide before production can be started."""
         return tuple(self._doubting.undecided)
@@ -224,6 +250,10 @@ class Controller:
     def note_unrecorded(self, why: str | None) -> None:
         """Commands cannot be recorded, for this reason; None when they can again."""
         self._alarms.unrecorded = why
+
+    def note_unemulated(self, why: Sequence[Finding]) -> None:
+        """There are no emulated devices though there should be, since the model does not allow for them."""
+        self._alarms.unemulated = tuple(map(str, why))
 
     def _start_production(self) -> None:
         if self.execution.production is Production.STARTED:
@@ -277,6 +307,7 @@ class Controller:
         self._attempt("sending commands", lambda: self._repeat(moment))
         self._attempt("looking for contradictions", self._doubting.look)
         self._attempt("looking after alarms", lambda: self._look_after_alarms(moment))
+        self._attempt("noting how it stands", lambda: self._note_standing(moment))
         self._attempt("asking the planner", lambda: self._questions.ask(moment.monotonic))
 
     def _repeat(self, moment: Moment) -> None:
@@ -312,9 +343,19 @@ class Controller:
 
     def _look_after_alarms(self, moment: Moment) -> None:
         self._alarms.unjournalled = self._unjournalled()
+        number, what = self._kept
+        self._alarms.kept = what if number > self._writer.durable else None
         self._alarms.undecided, self._alarms.questions = self._doubting.undecided, self._doubting.questions
         self._alarms.problems = {id_: (self.desk.open[id_].ability, each) for id_, each in self.desk.problems.items()}
+        self._alarms.moved = self._by_hand.notices(moment.monotonic)
         self._alarms.look(self._questions.trouble, moment)
+
+    def _note_standing(self, moment: Moment) -> None:
+        if self.commands and self._standing.due(moment):
+            alarms = self._alarms.current(self._questions.trouble, moment)
+            controlled = self._orders.in_control.view() is not None
+            waits = self._viewing.job_waits(self.desk, alarms, controlled, moment)
+            self._standing.look(self._viewing.packml, waits, moment)
 
     def _obstacles(self) -> tuple[str, ...]:
         """What keeps every ability from starting."""

@@ -11,6 +11,7 @@ from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.automaton.tick import reverts
+from sequence_planner.control.answers import still_to_rely_on
 from sequence_planner.control.bringing import kept_back, lacking, still_written
 from sequence_planner.control.cancelling import cancelled
 from sequence_planner.control.conduct import Beginning, Conduct, LastErrand, writing
@@ -42,7 +43,7 @@ class Course:
         # What a look ahead says can depend on what was looked at before. So whoever is only curious has one of his own.
         self._supervised = Lookahead(self._compiled, supervisor)
         self._curious = Lookahead(self._compiled, supervisor)
-        self._free: Lookahead | None = None  # without the supervisor; made when it is first needed
+        self._free: tuple[Lookahead, Lookahead] | None = None  # the same without the supervisor; made when needed
         self.conduct = Conduct()
         known: Mapping[str, Value] = {}
         if beginning is not None:
@@ -56,6 +57,7 @@ class Course:
                 done=beginning.done,
                 returned=returned,
                 jobs=beginning.jobs,
+                answers=beginning.answers,
             )
         unmeasured = dict.fromkeys(automaton.names(Kind.MEASURED), None)
         self._run = CompiledRun(self._compiled, {**automaton.initial_valuation, **known, **unmeasured})
@@ -162,9 +164,8 @@ class Course:
         after = self.startable(name)
         if after is None:
             return False
-        if self.errand is not None and self.errand.unsupervised:
-            return True
-        return self.plan.may_go_on(self._present, after, self._curious)
+        curious = self._curious if self._free is None or not self._is_free else self._free[1]
+        return self.plan.may_go_on(self._present, after, curious)
 
     def _allows(self, after: State) -> bool:
         """Whether a start may lead to `after`. From outside the safe states only one that a person confirmed may."""
@@ -175,7 +176,13 @@ class Course:
 
     @property
     def _present(self) -> Present:
-        return Present(self._run, self.published, self.pursued, self.circumstances)
+        confirmed = self.errand is not None
+        return Present(self._run, self.published, self.pursued, self.circumstances, confirmed)
+
+    @property
+    def _is_free(self) -> bool:
+        """Whether what is carried out has still to come into the safe states, outside which no supervisor speaks."""
+        return self.errand is not None and (self.errand.unsupervised or self.errand.into_safe)
 
     # How a tick is taken.
 
@@ -196,6 +203,7 @@ class Course:
         self._heed_supervisor()
         started = self._start(now)
         self._heed_supervisor()
+        self._heed_answers(started)
         self._look_at_plan(now)
         # Before production is started nothing is published, and then all outputs are: no change of one is news.
         news = self.automaton.outputs if self.production is Production.STARTED else ()
@@ -296,6 +304,8 @@ class Course:
         errand = self.errand
         if errand is None or errand.ability is not None or not holds(errand.goal, self._run.values):
             return
+        if errand.into_safe and not self.safe:
+            return
         if errand.operation is not None:
             jobs = self.conduct.jobs.reopened(errand.operation, self.automaton)
             self._change(done=self.conduct.done - {errand.operation}, jobs=jobs)
@@ -308,8 +318,20 @@ class Course:
 
     def _heed_supervisor(self) -> None:
         """From the first safe state on an errand goes by the supervisor, also when something becomes unknown later."""
-        if self.errand is not None and self.errand.unsupervised and self.safe:
-            self._change(errand=replace(self.errand, unsupervised=False))
+        if self.errand is not None and self._is_free and self.safe:
+            self._change(errand=replace(self.errand, unsupervised=False, into_safe=False))
+
+    def _heed_answers(self, started: Iterable[str]) -> None:
+        """What a person has said counts until it is another by now, or operations go on with what they rely on."""
+        answers = self.conduct.answers
+        if not answers:
+            return
+        if self.errand is None:
+            abilities = (self.automaton.abilities[name] for name in started)
+            answers = still_to_rely_on(self.automaton, answers, abilities)
+        answers = {name: value for name, value in answers.items() if self._run.values[name] == value}
+        if answers != self.conduct.answers:
+            self.conduct = replace(self.conduct, answers=answers)
 
     def _look_at_plan(self, now: Moment) -> None:
         """Notice that the plan is done with, or that the state has departed from it."""
@@ -375,21 +397,24 @@ class Course:
 
     def _face(self) -> None:
         circumstances = self.conduct.circumstances(self.automaton)
-        errand = self.errand
-        lookahead = self._supervised
-        if errand is not None and errand.unsupervised:
-            lookahead = self._free = self._free or Lookahead(self._compiled, _UNSUPERVISED)
+        lookahead, curious = self._supervised, self._curious
+        if self._is_free:
+            lookahead, curious = self._free = self._free or (self._look_out(), self._look_out())
         if circumstances != self.circumstances or not self.plan.looks(lookahead):
             self.circumstances = circumstances
             lookahead.face(circumstances)
-            self._curious.face(circumstances)
+            curious.face(circumstances)
             self.plan.look_with(lookahead)
+
+    def _look_out(self) -> Lookahead:
+        """A look ahead from outside the safe states: whatever is to be reached is reached inside."""
+        return Lookahead(self._compiled, _UNSUPERVISED, self.supervisor.safe)
 
     def forget(self) -> None:
         """Drop what was remembered only to be quick, so that who goes on from a copy of this goes on the same way."""
         self._supervised.face(self.circumstances)
         if self._free is not None:
-            self._free.face(self.circumstances)
+            self._free[0].face(self.circumstances)
 
     def _write(self, values: Mapping[str, Value | None]) -> None:
         self._run.sense(values)

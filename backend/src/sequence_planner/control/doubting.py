@@ -65,7 +65,9 @@ class Doubting:
             self._found = self.contradictions(execution.state)
             self._since = (now if self._since is None else self._since) if self._found.hypotheses else None
         asked = self._since is not None and now - self._since >= SETTLED
-        self.questions = questions(execution.automaton, self._found, execution.state) if asked else ()
+        found = questions(execution.automaton, self._found, execution.state) if asked else ()
+        # Who has looked is not asked again: then what is measured is what is wrong.
+        self.questions = tuple(each for each in found if each.variable not in execution.conduct.answers)
 
     def contradictions(self, state: State) -> Contradictions:
         """What of the beliefs in `state` does not fit what is measured there."""

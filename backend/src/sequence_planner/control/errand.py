@@ -29,7 +29,8 @@ NAME = "errand"  # of its goal, beside those of operations
 class Errand(Immutable):
     """`goal` is what its `plan` reaches. With `unsupervised` starts outside the safe states go by written guards alone,
     as a person has confirmed; from inside none leads out all the same. `operation` is the one that is reset. With
-    `restart` its plan may have restart abilities, and it is carried out in restart mode only.
+    `restart` its plan may have restart abilities, and it is carried out in restart mode only. One `into_safe` begins
+    outside the safe states, and is not done before the station is inside.
 
     With an `ability` it is a trial of that: it starts at once or not at all, and is done when that run has ended. Then
     `goal` only says by what an end is known.
@@ -46,6 +47,7 @@ class Errand(Immutable):
     why: str = ""
     taken: Moment = Moment(0.0, 0.0)
     ability: str | None = None
+    into_safe: bool = False
 
     @property
     def pursued(self) -> Goal:

@@ -11,6 +11,7 @@ from collections.abc import Callable, Mapping
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.control.answers import answered
 from sequence_planner.control.conduct import Beginning, Force, OutOfService
 from sequence_planner.control.course import Course
 from sequence_planner.control.errand import NAME as ERRAND
@@ -139,11 +140,16 @@ class Execution(Course):
         forces = self.conduct.forces
         real = {name: replace(force, real=values[name]) for name, force in forces.items() if name in values}
         self._write({name: value for name, value in values.items() if name not in real})
-        self._change(returned=self.conduct.returned - values.keys(), forces={**forces, **real} if real else forces)
+        self._change(
+            returned=self.conduct.returned - values.keys(),
+            forces={**forces, **real} if real else forces,
+            answers=answered(self.automaton, self.conduct.answers, values, self.state),
+        )
         self._tell(Corrected(values, by, why, now), before)
 
     def confirm(self, names: frozenset[str], by: str, now: Moment) -> None:
         """A person has seen that these estimates are as believed."""
+        self._change(answers=answered(self.automaton, self.conduct.answers, names, self.state))
         self._tell(Confirmed(names, by, now), self.state)
 
     def force(self, name: str, value: Value, until: Moment, by: str, why: str) -> None:

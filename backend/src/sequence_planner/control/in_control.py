@@ -1,4 +1,4 @@
-"""Which session is in control: one at a time, and none after a start of the controller.
+"""Which session is in control: one at a time, and none after a start of the controller that is no deployment's.
 
 Whoever acts on what moves devices must be it. Taking it over from somebody else is meant to be seen: the view tells who
 has it, since when, and from whom it was taken.
@@ -14,8 +14,8 @@ from sequence_planner.control.view import ControlView
 class InControl:
     """The session in control, if any."""
 
-    def __init__(self) -> None:
-        self._holder: ControlView | None = None
+    def __init__(self, holder: ControlView | None = None) -> None:
+        self._holder = holder
 
     def view(self) -> ControlView | None:
         """Who is in control; None for nobody."""

@@ -46,7 +46,8 @@ SHORTEST_INTERVAL = 0.05  # seconds between two views to the same peer
 MOST_PEERS = 8
 MOST_COMMANDS = 32  # of one peer, being carried out at the same time
 
-Handle = Callable[[Command], Awaitable[None]]
+# Carries a command out; false where the journal does not have it yet.
+Handle = Callable[[Command], Awaitable[bool | None]]
 Answer = Callable[[Ask], Awaitable[View]]
 
 
@@ -210,13 +211,13 @@ class ControllerLink:
             return refusal(message.id, CommandRefused("command-expired", "The command came too late", detail))
         try:
             with structlog.contextvars.bound_contextvars(**_named(message.request)):
-                await self._handle(message.command)
+                recorded = await self._handle(message.command)
         except CommandRefused as refused:
             return refusal(message.id, refused)
         except Exception:
             LOG.exception("a command failed", command=message.command.kind)
             return refusal(message.id, failed("The command failed"))
-        return Reply(id=message.id, ok=True)
+        return Reply(id=message.id, ok=True, recorded=recorded is not False)
 
     async def _told(self, message: AskMessage) -> LinkMessage:
         try:

@@ -74,11 +74,15 @@ class AnswerMessage(LinkMessage):
 
 
 class Reply(LinkMessage):
-    """What became of a command, or that an ask is refused; `problem` is there when `ok` is false."""
+    """What became of a command, or that an ask is refused; `problem` is there when `ok` is false.
+
+    `recorded` is false as long as the journal does not have what was carried out.
+    """
 
     kind: Literal["reply"] = "reply"
     id: int | None
     ok: bool
+    recorded: bool = True
     problem: Refusal | None = None
 
 

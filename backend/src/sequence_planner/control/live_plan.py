@@ -32,6 +32,7 @@ class Present:
     published: State
     pursued: Pursued
     circumstances: Circumstances
+    confirmed: bool = False  # a person has taken the plan as it is written
 
 
 @dataclass(frozen=True)
@@ -217,6 +218,8 @@ class LivePlan:
         after = after_start(self.order.ahead[0].ability)
         if after is not None and self.may_go_on(present, after):
             return True
+        if present.confirmed:
+            return False
         tried = {self.order.ahead[0].ability}
         for index, step in enumerate(self.order.ahead[1:], start=1):
             if step.ability in tried:
@@ -238,10 +241,22 @@ class LivePlan:
         With a `lookahead` of one's own, nothing is changed by asking.
         """
         starts, ticks = self.order.rest(taken=1)
-        goals = self._goals_after(present, after)
-        return goals is not None and (lookahead or self._lookahead).may_go_on(
-            present.run, after, present.published, goals, starts, ticks
-        )
+        goals, lookahead = self._goals_after(present, after), lookahead or self._lookahead
+        if goals is not None and present.confirmed:
+            return self._its_turn(present, after, goals, lookahead)
+        return goals is not None and lookahead.may_go_on(present.run, after, present.published, goals, starts, ticks)
+
+    def _its_turn(self, present: Present, after: CompiledRun, goals: Goals, lookahead: Lookahead) -> bool:
+        """Whether a start that a person has seen comes now: as it was written, or else as soon as it still helps.
+
+        It does not wait for what may happen by itself beside it: a person may not come, a device do nothing more.
+        """
+        if lookahead.as_written(after, present.published, goals, *self.order.rest(taken=1)):
+            return True
+        before = present.pursued.of(self.order.goals)
+        if lookahead.as_written(present.run, present.published, before, *self.order.rest()):
+            return False
+        return lookahead.length(after, present.published, goals, self.order.names[1:]) is not None
 
     def _goals_after(self, present: Present, after: CompiledRun) -> Goals | None:
         """The goals of the plan after a start; None when it violates a formula of theirs.
@@ -275,7 +290,10 @@ class LivePlan:
 
     def still_leads(self, present: Present) -> bool:
         """Whether what is left of the plan reaches its goals from here."""
-        return self._left(present) is not None
+        if self._left(present) is not None:
+            return True
+        goals = present.pursued.of(self.order.goals)
+        return self._lookahead.as_written(present.run, present.published, goals, *self.order.rest())
 
     def _following(self, present: Present) -> bool:
         return bool(present.pursued.hopeful) and not self._wanted(present)

@@ -15,6 +15,7 @@ from sequence_planner.control.offer_view import (
 from sequence_planner.control.view import DiagnosisView
 from sequence_planner.control.way_back_view import SpecificationView
 from sequence_planner.expressions.printing import print_expression, print_value
+from sequence_planner.expressions.syntax import TRUE, Expression
 from sequence_planner.planning.advice.offer import Change, Offer, OfferKind
 from sequence_planner.planning.plan import Plan
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, correction_text, member_text
@@ -35,7 +36,8 @@ def offer_view(automaton: Automaton, offer: Offer, id_: str, revision: int, obst
         assumed=_changes(offer.assumed),
         corrections=_changes(offer.corrections),
         errand=None if offer.errand is None else plan_preview(automaton, offer.errand),
-        ends=None if offer.errand is None else print_expression(offer.goal),
+        ends=None if offer.errand is None else end_text(offer.goal, offer.into_safe),
+        into_safe=offer.into_safe,
         operation=offer.operation,
         needs_restart=needs_restart(offer),
         unsupervised=offer.unsupervised,
@@ -44,6 +46,8 @@ def offer_view(automaton: Automaton, offer: Offer, id_: str, revision: int, obst
         then=None if offer.then is None else plan_preview(automaton, offer.then),
         goals=list(offer.goals),
         left_out=list(offer.left_out),
+        claims=list(offer.claims),
+        only_if_checked=offer.only_if_checked,
         effort=EffortView(
             cost=offer.effort.cost,
             corrections=offer.effort.changes,
@@ -56,6 +60,11 @@ def offer_view(automaton: Automaton, offer: Offer, id_: str, revision: int, obst
     )
 
 
+def end_text(goal: Expression, into_safe: bool) -> str | None:
+    """By what it is known that an errand has come to its end, beside that it is inside the safe states."""
+    return None if into_safe and goal == TRUE else print_expression(goal)
+
+
 def needs_restart(offer: Offer) -> bool:
     """Whether it can be taken in restart mode only: goals and resets by ordinary abilities go without."""
     ordinary = offer.kind in (OfferKind.GOAL, OfferKind.RESET)
@@ -65,6 +74,8 @@ def needs_restart(offer: Offer) -> bool:
 def offer_title(automaton: Automaton, offer: Offer) -> str:
     """What is to be done, in one line."""
     text = ", then ".join(_parts(automaton, offer)) or "go on as it is"
+    if offer.only_if_checked:
+        return f"Only if you have checked: {text}"
     return text[0].upper() + text[1:]
 
 
@@ -75,7 +86,9 @@ def _parts(automaton: Automaton, offer: Offer) -> Iterator[str]:
         yield f"bring {' and '.join(returning)} back"
     if offer.physical:
         yield f"see to it that {_each(offer.physical, 'is')}"
-    if offer.corrections:
+    if offer.only_if_checked:
+        yield _each(offer.corrections, "is")
+    elif offer.corrections:
         yield f"correct {_each(offer.corrections, 'to')}"
     if offer.operation is not None:
         yield f"reset {automaton.operations[offer.operation].title}"
@@ -86,7 +99,9 @@ def _parts(automaton: Automaton, offer: Offer) -> Iterator[str]:
         more = f" and {len(titles) - MOST_NAMED} more" if len(titles) > MOST_NAMED else ""
         yield f"start {', '.join(titles[:MOST_NAMED])}{more}"
     elif offer.errand is not None:
-        yield f"wait until {print_expression(offer.goal)}"
+        safe = ["the station is back in its safe states"] if offer.into_safe else []
+        condition = end_text(offer.goal, offer.into_safe)
+        yield f"wait until {' and '.join([*safe, *([condition] if condition else [])])}"
 
 
 def _each(changes: Iterable[Change], word: str) -> str:
@@ -103,13 +118,23 @@ def plan_preview(automaton: Automaton, plan: Plan) -> PlanPreviewView:
     )
 
 
-def diagnosis_view(diagnosis: Diagnosis, out_of_service: Collection[str]) -> DiagnosisView:
-    """Why something cannot be done, and what would help; resources that do nothing can be `out_of_service`."""
-    reason = diagnosis.reason
+def diagnosis_view(
+    diagnosis: Diagnosis, out_of_service: Collection[str], answers: Collection[str] = ()
+) -> DiagnosisView:
+    """Why something cannot be done, and what would help; resources that do nothing can be `out_of_service`.
+
+    Nothing is said otherwise of estimates for which somebody has given `answers`, and what can be done comes first.
+    """
+    reason, helpful = diagnosis.reason, []
+    for correction in diagnosis.corrections:
+        said = [change.name for change in correction.changes if change.value is not None]
+        if not any(name in answers for name in said):
+            text = correction_text(correction, out_of_service)
+            helpful.append((bool(said), f"{text}, only if you have checked that it is so" if said else text))
     return DiagnosisView(
         members=[] if reason is None else [member_text(member, out_of_service) for member in reason.members],
         minimal=reason is not None and reason.minimal,
-        corrections=[correction_text(correction, out_of_service) for correction in diagnosis.corrections],
+        corrections=[text for _, text in sorted(helpful, key=lambda each: each[0])],
     )
 
 

@@ -54,9 +54,13 @@ class OfferView(View):
     carried out, until `ends` holds; `needs_restart` says that this takes restart mode. `then` is what the station does
     afterwards for the operations `goals`, in automatic mode; null where that was not looked for or not found.
 
-    An offer `at_rest` ends where the station rests and its devices are as commanded. One that is `unsupervised` begins
-    outside the safe states, where starts go by their written guards alone; it `breaks` these specifications on its
-    way. `obstacle` says why it cannot be taken as things are now, null where it can.
+    An offer `at_rest` ends where the station rests and its devices are as commanded. One `into_safe` begins outside the
+    safe states, and ends once the station is inside and `ends` holds, where that says anything. One that is
+    `unsupervised` starts something outside, where starts go by their written guards alone; it `breaks` these
+    specifications on its way. `obstacle` says why it cannot be taken as things are now, null where it can.
+
+    By `corrections` a person says what is true of the product. Those `only_if_checked` would have operations count as
+    done, or nearer to it, although nobody has done anything: `claims` has their names.
     """
 
     id: str
@@ -69,7 +73,8 @@ class OfferView(View):
     assumed: list[ValueChangeView]
     corrections: list[ValueChangeView]
     errand: PlanPreviewView | None
-    ends: str | None  # null where nothing is carried out
+    ends: str | None  # null where nothing is carried out, or it is only a way into the safe states
+    into_safe: bool
     operation: str | None
     needs_restart: bool
     unsupervised: bool
@@ -78,18 +83,23 @@ class OfferView(View):
     then: PlanPreviewView | None
     goals: list[str]
     left_out: list[str]
+    claims: list[str]
+    only_if_checked: bool
     effort: EffortView
     obstacle: str | None
 
 
 class AdviceView(View):
-    """Ways on from the state of `revision`, the least effort first; without any, `reasons` says why as far as known.
+    """Ways on from the state of `revision`: what devices or people do before what is only said, then the least effort
+    first. Without any, `reasons` says why as far as known.
 
-    Unless `complete` the time was over before all that can be offered was looked for.
+    What may be said `if_checked`, and only then, is apart: none of it is what to do first, whatever it takes. Unless
+    `complete` the time was over before all that can be offered was looked for.
     """
 
     revision: int
     offers: list[OfferView]
+    if_checked: list[OfferView]
     reasons: DiagnosisView | None
     complete: bool
     seconds: float

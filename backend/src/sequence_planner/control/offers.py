@@ -99,7 +99,7 @@ class Offers:
             stalled=self._stalled(),
             last=self._last_known.values,
             impossible=self._impossible(),
-            fixed=frozenset(execution.conduct.forces),
+            fixed=frozenset(execution.conduct.forces) | execution.conduct.answers.keys(),
             waiting=_waiting_goals(execution),
         )
         if self._asked is None or self._asked.of != (revision, request) or self._asked.answer.done():
@@ -114,13 +114,15 @@ class Offers:
             view = self._advised[2]
             if not view.complete and all(offer.corrections for offer in view.offers):
                 deadline = LONGER  # there was too little time: asked once more, there is more of it
-            elif all(offer.id in self._kept for offer in view.offers):
+            elif all(offer.id in self._kept for offer in (*view.offers, *view.if_checked)):
                 return view
         advice = await self._adviser.answer(replace(request, deadline=deadline), deadline + WAITING)
+        kept = self._keep(advice.offers, revision)
         view = AdviceView(
             revision=revision,
-            offers=self._keep(advice.offers, revision),
-            reasons=None if advice.reasons is None else diagnosis_view(advice.reasons, self._unused),
+            offers=[offer for offer in kept if not offer.only_if_checked],
+            if_checked=[offer for offer in kept if offer.only_if_checked],
+            reasons=None if advice.reasons is None else diagnosis_view(advice.reasons, self._unused, request.fixed),
             complete=advice.complete,
             seconds=advice.seconds,
         )
@@ -193,6 +195,7 @@ class Offers:
             goal=offer.goal,
             restart=offer.restart or offer.unsupervised,
             unsupervised=offer.unsupervised,
+            into_safe=offer.into_safe,
             operation=offer.operation,
             by=command.actor.name,
             why=command.reason,

@@ -12,7 +12,7 @@ from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.control.execution import Execution
 from sequence_planner.expressions.printing import print_expression, print_value
-from sequence_planner.expressions.syntax import Comparison, Constant, Expression, Not, Variable
+from sequence_planner.expressions.syntax import Comparison, Constant, Expression, Not, Variable, variables
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.plan import Circumstances, WayBack, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.way_back import deciding, violated
@@ -56,7 +56,7 @@ class Outside:
     def __init__(self, execution: Execution) -> None:
         self._execution = execution
         self._deciding = deciding(execution.automaton, execution.supervisor.safe)
-        self._seen: tuple[tuple[Value | None, ...], Situation | None] | None = None
+        self._seen: tuple[tuple[tuple[Value | None, ...], frozenset[str]], Situation | None] | None = None
         self._asked: tuple[tuple[Value | None, ...], Circumstances] | None = None
         self._answer: tuple[tuple[Value | None, ...], WayBackAnswer | str] | None = None
 
@@ -64,7 +64,7 @@ class Outside:
     def situation(self) -> Situation | None:
         """What is wrong now; None in a state that counts as safe."""
         state = self._execution.state
-        key = self._key(state)
+        key = (self._key(state), frozenset(self._execution.conduct.answers))
         if self._seen is None or self._seen[0] != key:
             self._seen = (key, None if self._execution.safe else self._look(state))
         return self._seen[1]
@@ -109,6 +109,21 @@ class Outside:
             wrong = "Nothing is violated yet, but that could come without any start, or rest can no longer be reached."
         return f"The station is outside its safe states. {wrong}{_nearest(automaton, situation.differences)}"
 
+    def past(self, situation: Situation) -> str:
+        """What was wrong, once it is over."""
+        named = _named(self._execution.automaton, situation.violated)
+        return f"The station was outside its safe states{f': it violated {named}' if named else ''}"
+
+    def touched(self, situation: Situation) -> frozenset[str]:
+        """The variables that make the state what it is: of what is violated, and those that would have to change."""
+        automaton = self._execution.automaton
+        told = [automaton.specifications[name].forbidden for name in situation.violated]
+        answer = self.answer
+        if isinstance(answer, WayBackAnswer):
+            told += [automaton.specifications[name].forbidden for name in answer.threatened]
+        names = frozenset(name for expression in told for name in variables(expression))
+        return names | {each.name for each in situation.differences}
+
     def way(self) -> str:
         """Which way leads back, for a person to read."""
         answer = self.answer
@@ -145,7 +160,7 @@ class Outside:
 
     def _look(self, state: State) -> Situation:
         automaton, safe = self._execution.automaton, self._execution.supervisor.safe
-        nearest = safe.nearest(state) or {}
+        nearest = safe.nearest(state, self._execution.conduct.answers) or {}
         differences = [
             Difference(name, now, nearest[name])
             for name in automaton.variables

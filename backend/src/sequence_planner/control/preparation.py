@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
 
 import structlog
 
 from sequence_planner.analysis.analysis import Analysis
-from sequence_planner.analysis.document import AnalysisDocument, document_of
+from sequence_planner.analysis.document import AnalysisDocument, document_of, error_document
 from sequence_planner.analysis.process import SynthesisEndedError, analysing
 from sequence_planner.analysis.remembering import remember, remembered
 from sequence_planner.automaton.state_set import Supervisor
@@ -18,6 +19,7 @@ from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.view import (
+    DeploymentView,
     Mode,
     PackML,
     PlanStatus,
@@ -25,9 +27,11 @@ from sequence_planner.control.view import (
     Production,
     StandbyView,
     StationIdentity,
+    StationStanding,
     StationView,
     TaskView,
 )
+from sequence_planner.model.source import Finding
 from sequence_planner.synthesis.guards import Guard
 
 LOG = structlog.get_logger(__name__)
@@ -36,13 +40,35 @@ ANALYSIS_DEADLINE = 120.0  # seconds for all that synthesis finds
 PUT_OFF = 10.0  # seconds until what is not known from before is looked for: the station begins again first
 
 
-class Preparation:
-    """What has been found of the station so far; `trouble` if it cannot be run."""
+@dataclass(frozen=True)
+class Unusable:
+    """A model that means nothing: why, and the folder's name, by which it is called."""
 
-    def __init__(self) -> None:
+    name: str
+    findings: tuple[Finding, ...]
+
+
+class Preparation:
+    """What has been found of the station so far; `trouble` if it cannot be run, in particular since its model is
+    `unusable`.
+    """
+
+    def __init__(self, unusable: Unusable | None = None) -> None:
         self.supervisor: asyncio.Future[Supervisor | None] = asyncio.get_running_loop().create_future()
         self.analysis: AnalysisDocument | None = None
         self.trouble: str | None = None
+        self.unusable = unusable is not None
+        if unusable is not None:
+            self.supervisor.set_result(None)
+            self.trouble = "; ".join(map(str, unusable.findings))
+            self.analysis = AnalysisDocument(
+                pending=None,
+                supervised=False,
+                reachable_states=None,
+                supervised_states=None,
+                guards=None,
+                findings=[error_document(finding) for finding in unusable.findings],
+            )
         self.controller: Controller | None = None
         self._others: str | None = None  # who else commands the devices, while that is waited for
         self._guards: Mapping[str, Guard] = {}
@@ -94,6 +120,8 @@ class Preparation:
 
     def refusal(self) -> CommandRefused:
         """Why nothing can be commanded yet."""
+        if self.unusable:
+            return CommandRefused("model-unusable", "The model cannot be used", f"{self.trouble}.")
         if self.trouble is not None:
             return CommandRefused("no-supervisor", "The specifications cannot be met", f"{self.trouble}.")
         if self._others is not None:
@@ -108,13 +136,22 @@ def preparing_view(
     analysis: AnalysisDocument | None,
     trouble: str | None,
     standby: StandbyView | None = None,
+    deployment: DeploymentView | None = None,
+    *,
+    unusable: bool = False,
 ) -> StationView:
-    """What is shown while the safe set is being computed; with `trouble`, there is none and the station is not run."""
+    """What is shown while the safe set is being computed; with `trouble`, there is none and the station is not run.
+
+    It is `unusable` where the model means nothing at all.
+    """
     alarms = {}
     if trouble is not None:
         text = "The specifications cannot be met, so nothing is started"
-        action = "See why under Supervisor, change the model, and run it again."
-        alarms["no-supervisor"] = AlarmView(
+        action = "See why under Check, change the draft of the model, and deploy it."
+        if unusable:
+            text = f"The model cannot be used, so nothing is started: {trouble}"
+            action = "Change the draft of the model, or take an older revision back into it, and deploy it."
+        alarms["model-unusable" if unusable else "no-supervisor"] = AlarmView(
             priority=Priority.HIGH,
             state=AlarmState.UNACKNOWLEDGED,
             text=text,
@@ -130,7 +167,7 @@ def preparing_view(
         )
     plan = PlanView(
         status=PlanStatus.IDLE,
-        reason="the safe states are being computed" if trouble is None else "there is no supervisor",
+        reason=_why_no_plan(trouble, unusable=unusable),
         steps=[],
         ticks=0,
         minimal_ticks=False,
@@ -149,6 +186,8 @@ def preparing_view(
         revision=0,
         mode=Mode.AUTOMATIC,
         packml=PackML.RESETTING,
+        standing=StationStanding.PREPARING,
+        silent=[],
         stepping=False,
         production=Production.PREPARING,
         unconfirmed=False,
@@ -175,7 +214,14 @@ def preparing_view(
         way_back=None,
         analysis=analysis,
         standby=standby,
+        deployment=deployment,
     )
+
+
+def _why_no_plan(trouble: str | None, *, unusable: bool) -> str:
+    if trouble is None:
+        return "the safe states are being computed"
+    return "the model cannot be used" if unusable else "there is no supervisor"
 
 
 async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import json
 import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Generator
 from dataclasses import dataclass
@@ -13,44 +12,40 @@ from pathlib import Path
 import structlog
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
 from sequence_planner.collection import keep_everything
-from sequence_planner.control.alarming.keeping import KIND as ASIDE
-from sequence_planner.control.alarming.keeping import aside_from
 from sequence_planner.control.asks import Ask
-from sequence_planner.control.belief import KIND as BELIEFS
-from sequence_planner.control.belief import beliefs_from
-from sequence_planner.control.commands import Command, CommandRefused
+from sequence_planner.control.command_lease import held_lease, standby_view, stands_by
+from sequence_planner.control.commands import Command
 from sequence_planner.control.controller import Controller
-from sequence_planner.control.deploying import DeployedError, Deploying
-from sequence_planner.control.happenings import ProductionStarted
+from sequence_planner.control.deploying import Deploying, LastDeployment
 from sequence_planner.control.known import Known
+from sequence_planner.control.last_life import as_it_ended, how_it_ended, what_is_known
+from sequence_planner.control.lasting import Lasting
 from sequence_planner.control.link import ControllerLink
-from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_graph import network_steps
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.network_watch import NetworkWatch
-from sequence_planner.control.preparation import Preparation, analyse, preparing_view
+from sequence_planner.control.preparation import Preparation, Unusable, analyse, preparing_view
 from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.recording import Recording
 from sequence_planner.control.starting import go_on, start_when_alone
-from sequence_planner.control.view import StandbyView, StationIdentity, StationView
+from sequence_planner.control.view import StationIdentity, StationView
 from sequence_planner.control.view_part import View
-from sequence_planner.history.codec import BEGUN, kind_of
-from sequence_planner.history.restoring import beginning
-from sequence_planner.journal.run_journal import last
+from sequence_planner.emulation.possible import emulation_findings
+from sequence_planner.journal.ending import Ending
+from sequence_planner.journal.last_word import LastWord, last_word_file
 from sequence_planner.ros.exclusivity import NotAloneError, require_sole_publisher
 from sequence_planner.ros.gated import gated
 from sequence_planner.ros.transport import Transport
 from sequence_planner.standby.keeper import Keeper
-from sequence_planner.standby.lease import open_lease
-from sequence_planner.standby.model import digest_of
 from sequence_planner.station import ReadyStation
 from sequence_planner.storage.database import Database
 
 LOG = structlog.get_logger(__name__)
 
+SETTLED_WITHIN = 10.0  # seconds in which a process beside one that has died says that all of its is recorded
 SHOW_EVERY = 0.1  # seconds between two views
+RECORD_AGAIN = 5.0  # seconds
 NODE = "sequence_planner"
 
 
@@ -62,10 +57,11 @@ class Running:
     there to be commanded. These have just begun, so nothing is believed of them from before. `database` is the URL of
     where commands are recorded, `model` the folder that the station was read from. `standby` is the name of this
     station where several share the database and one commands; else it is None. A controller that is started `again`
-    waits as long as somebody else commands the devices, where another one would end with an error.
+    waits as long as somebody else commands the devices, where another one would end with an error. One whose model is
+    unusable says so, and waits for another model.
     """
 
-    station: ReadyStation
+    station: ReadyStation | Unusable
     model: Path
     socket: Path
     connect: Callable[[str], Transport]
@@ -81,54 +77,50 @@ async def control(running: Running) -> None:
 
     Raises `SynthesisEndedError` when that could not be computed, `TransportError` when the network cannot be joined or
     somebody else commands the devices, `StorageError` when the database cannot be used, `DeployedError` once another
-    model is in place, and `LeaseLostError` when another station has taken the command.
+    model is in place, `NotStartedError` when what was deployed just now has no supervisor, and `LeaseLostError` when
+    another station has taken the command.
     """
-    preparation = Preparation()
+    station = running.station
+    preparation = Preparation(station if isinstance(station, Unusable) else None)
     database = Database.open(running.database)
     async with contextlib.AsyncExitStack() as kept:
         kept.callback(database.close)
         database.upgrade()
-        command = await kept.enter_async_context(_command(running))
+        last_word = LastWord.open(last_word_file(database.place, running.standby))
+        kept.callback(last_word.close)
+        ended = await asyncio.to_thread(how_it_ended, database, last_word)
+        command = None
+        if running.standby is not None and not isinstance(
+            running.station, Unusable
+        ):  # another station may command then
+            lease = held_lease(running.database, running.standby, running.model, ended, preparation)
+            command = await kept.enter_async_context(lease)
         recording = Recording(database, preparation.note_unrecorded)
         kept.push_async_callback(recording.close)
-        await _live(running, preparation, recording, database, command)
+        lasting = Lasting(last_word)
+        kept.callback(lasting.close)
+        await _live(_Life(running, preparation, recording, database, command, last_word, lasting))
 
 
-@contextlib.asynccontextmanager
-async def _command(running: Running) -> AsyncIterator[Keeper | None]:
-    """What keeps the lease of the command, where stations share it; it is let go of at the end."""
-    if running.standby is None:
-        yield None
-        return
-    lease = open_lease(running.database, running.standby, digest_of(running.model))
-    keeper, deployed = Keeper(lease), False
-    keeper.begin()
-    try:
-        yield keeper
-    except DeployedError:
-        deployed = True
-        raise
-    finally:
-        await keeper.end(deployed=deployed)
-
-
-async def _live(
-    running: Running, preparation: Preparation, recording: Recording, database: Database, keeper: Keeper | None
-) -> None:
+async def _live(life: _Life) -> None:
     """Prepare the station and run it, while the network is asked whether somebody else commands its devices."""
     try:
         async with asyncio.TaskGroup() as living:
-            living.create_task(_Life(running, preparation, recording, database, keeper, living).run())
-            if keeper is not None:
-                living.create_task(keeper.lost())
+            living.create_task(life.run(living))
+            if life.keeper is not None:
+                living.create_task(life.keeper.lost())
     except ExceptionGroup as failed:
         raise failed.exceptions[0] from None
+
+
+class NotStartedError(Exception):
+    """What was deployed just now cannot be run."""
 
 
 class _Life:
     """Prepares the station, then runs it; it only listens until it is known to be alone.
 
-    What fails at finding that out, or at taking command then, ends all that is `living`. Where stations share a lease
+    What fails at finding that out, or at taking command then, ends all that is living. Where stations share a lease
     who holds it is the one: of the others nobody says anything, and who else does keeps production from being started.
     """
 
@@ -139,56 +131,86 @@ class _Life:
         recording: Recording,
         database: Database,
         keeper: Keeper | None,
-        living: asyncio.TaskGroup,
+        last_word: LastWord,
+        lasting: Lasting,
     ) -> None:
+        self.keeper = keeper
         self._running = running
         self._preparation = preparation
         self._recording = recording
         self._database = database
-        self._keeper = keeper
-        self._living = living
-        self._deploying = Deploying(running.model, running.socket)
+        self._last_word, self._lasting = last_word, lasting
+        self._deploying = Deploying(running.model, running.socket, running.emulated)
+        self._deployment = LastDeployment(running.socket)
         self._link = ControllerLink(running.socket, self._handle, self._answer)
 
-    async def run(self) -> None:
+    async def run(self, living: asyncio.TaskGroup) -> None:
         """All of it."""
-        running, keeper = self._running, self._keeper
-        alone = self._living.create_task(self._alone() if keeper is None else keeper.taken())
+        self._living, station = living, self._running.station
         self._living.create_task(self._deploying.end())
-        analysing = analyse(running.station.automaton, self._preparation, running.socket.parent)
+        self._living.create_task(self._record_undone())
+        if isinstance(station, Unusable):
+            async with self._link:
+                await self._wait_for_another()
+            return
+        keeper = self.keeper
+        alone = self._living.create_task(self._alone(station) if keeper is None else keeper.taken())
+        analysing = analyse(station.automaton, self._preparation, self._running.socket.parent)
         async with self._link, _beside(analysing):
             async with _beside(self._show_preparing()):
                 supervisor = await _prepared(self._preparation)
-                if supervisor is None:
-                    LOG.error("there is no supervisor", because=self._preparation.trouble)
-                    await asyncio.Event().wait()
-                    return
-                if keeper is not None:
-                    await keeper.taken()
-            transport = running.connect(NODE)
+                if supervisor is not None and keeper is not None:
+                    async with _beside(self._tell_that_it_stands_by(keeper)):
+                        await keeper.taken()
+            if supervisor is None:
+                await self._wait_for_another()
+                return
+            transport = self._running.connect(NODE)
             try:
-                await self._run_with(supervisor, transport, alone)
+                await self._run_with(station, supervisor, transport, alone)
             finally:
                 transport.close()
 
-    async def _alone(self) -> None:
+    async def _tell_that_it_stands_by(self, keeper: Keeper) -> None:
+        """Tell whoever waits for what was deployed that it could be started, though another station commands."""
+        await keeper.stands_by()
+        await self._deployment.wait_for_devices(self._running.emulated)
+        self._deployment.tell_that_it_stands_by()
+
+    async def _wait_for_another(self) -> None:
+        """Say why this model cannot be run. Raises `NotStartedError` where it has just been deployed."""
+        trouble = self._preparation.trouble or ""
+        LOG.error("the model cannot be run", because=trouble)
+        if self._deployment.starting:
+            raise NotStartedError(trouble)
+        await self._show_preparing()
+
+    async def _record_undone(self) -> None:
+        """Record that the deployment before this start was undone."""
+        if (entry := self._deployment.entry()) is None:
+            return None
+        while True:
+            if await self._recording.note(entry):
+                return self._deployment.forget()
+            await asyncio.sleep(RECORD_AGAIN)
+
+    async def _alone(self, station: ReadyStation) -> None:
         """Wait until nobody else commands the devices. Raises `TransportError`."""
         while True:
             try:
-                return await _require_sole_command(self._running)
+                return await _require_sole_command(self._running, station)
             except NotAloneError as error:
                 if not self._running.again:
                     raise
                 self._preparation.note_others(str(error))
 
-    async def _run_with(self, supervisor: Supervisor, transport: Transport, alone: asyncio.Task[None]) -> None:
+    async def _run_with(
+        self, station: ReadyStation, supervisor: Supervisor, transport: Transport, alone: asyncio.Task[None]
+    ) -> None:
         """Run the controller on the network."""
-        running, keeper = self._running, self._keeper
-        known = Known()
-        if not running.start:
-            known = await asyncio.to_thread(what_is_known, self._database, running.station.automaton)
-        identity = _identity(running, transport.name)
-        station, database = running.station, self._database
+        running, keeper = self._running, self.keeper
+        known = self._deployment.known(Known() if running.start else await self._known(station))
+        identity, database = _identity(running, transport.name), self._database
         if keeper is None:
             controller = Controller(identity, station, supervisor, transport, database, known)
         else:
@@ -196,28 +218,54 @@ class _Life:
             controller = Controller(identity, station, supervisor, speaking, database, known, keeper.fence)
         keep_everything()  # a running station must not be held up
         self._preparation.give(controller)
-        self._living.create_task(self._take_command(controller, known, alone))
+        await self._lasting.begin(controller, None if keeper is None else keeper.epoch)
+        if running.emulated:
+            controller.note_unemulated(await asyncio.to_thread(emulation_findings, station))
+        self._living.create_task(self._take_command(station, controller, known, alone))
         async with _beside(self._show(controller)), _beside(show_network(controller.devices.network, self._link)):
             await controller.run()
 
-    async def _take_command(self, controller: Controller, known: Known, alone: asyncio.Task[None]) -> None:
+    async def _known(self, station: ReadyStation) -> Known:
+        """What is known from before, at rest where it is not certain that nobody has stopped the station since."""
+        known = await asyncio.to_thread(what_is_known, self._database, station.automaton)
+        ended, keeper = await asyncio.to_thread(how_it_ended, self._database, self._last_word), self.keeper
+        if keeper is not None and ended.word is None and not (ended.is_certain and _follows(ended, keeper)):
+            by_itself = station.goes_on and known.was_at_work
+            ended = Ending(await keeper.settled(SETTLED_WITHIN if by_itself else 0.0))
+        if ended.word is not None:
+            self._recording.record_late(
+                ended.word.entry.model_copy(
+                    update={"details": {**ended.word.entry.details, "carried_out": ended.word.time}}
+                ),
+                ended.word.time,
+            )
+        return as_it_ended(known, ended, None if keeper is None else keeper.taken_from)
+
+    async def _take_command(
+        self, station: ReadyStation, controller: Controller, known: Known, alone: asyncio.Task[None]
+    ) -> None:
+        running, keeper = self._running, self.keeper
         await asyncio.wait({alone})
         if alone.exception() is not None:
             return  # all of this ends
+        await self._deployment.wait_for_devices(running.emulated)
         controller.take_command()
-        running, keeper = self._running, self._keeper
+        self._deployment.tell_that_it_runs()
         if running.start:
             async with _beside(start_when_alone(controller, self._handle)):
                 await asyncio.Event().wait()
-        elif keeper is not None and keeper.taken_from is not None and known.produced and running.station.goes_on:
+        elif keeper is not None and keeper.taken_from is not None and known.was_at_work and station.goes_on:
             async with _beside(go_on(controller, self._handle, keeper.taken_from)):
                 await asyncio.Event().wait()
 
     async def _act(self, command: Command) -> None:
         """Carry out a command that is recorded. Raises `CommandRefused`."""
-        preparation, keeper = self._preparation, self._keeper
-        if keeper is not None and not keeper.held:
-            raise _stands_by(keeper)
+        preparation, keeper = self._preparation, self.keeper
+        # Who commands may stop the station though it cannot renew its lease: nothing is said to a device meanwhile.
+        if keeper is not None and not keeper.held and (keeper.epoch is None or not command.harmless):
+            raise stands_by(keeper)
+        if isinstance(command, Deploy):
+            self._deploying.check(command)
         if preparation.controller is None or not preparation.controller.commands:
             # What has no supervisor does not run, so another model may take its place at once.
             if preparation.trouble is None or not isinstance(command, Deploy):
@@ -225,13 +273,18 @@ class _Life:
         else:
             await preparation.controller.command(command)
         if isinstance(command, Deploy):
-            await self._deploying.carry_out(command)
+            control = None if preparation.controller is None else preparation.controller.view().control
+            await self._deploying.carry_out(command, control, time.time())
 
-    async def _handle(self, command: Command) -> None:
-        """Record a command and carry it out. Raises `CommandRefused`."""
-        await self._recording.carry_out(command, self._preparation.tasks, self._act)
-        if self._preparation.controller is not None:
-            self._link.publish(self._seen(self._preparation.controller))
+    async def _handle(self, command: Command) -> bool:
+        """Record a command and carry it out; whether the journal has what it did. Raises `CommandRefused`."""
+        controller = self._preparation.controller
+        before = 0 if controller is None else controller.last_record
+        audited = await self._recording.carry_out(command, self._preparation.tasks, self._act)
+        if controller is None:
+            return True
+        self._link.publish(self._seen(controller))
+        return await self._lasting.settle(command, controller, before, audited)
 
     async def _answer(self, ask: Ask) -> View:
         """What is told only when somebody asks for it. Raises `CommandRefused`."""
@@ -240,8 +293,8 @@ class _Life:
         return await self._preparation.controller.answer(ask)
 
     def _seen(self, controller: Controller) -> StationView:
-        view = controller.view()
-        return view if self._keeper is None else view.model_copy(update={"standby": _standby_view(self._keeper)})
+        standby = None if self.keeper is None else standby_view(self.keeper)
+        return controller.view().model_copy(update={"deployment": self._deployment.view(), "standby": standby})
 
     async def _show(self, controller: Controller) -> None:
         failed = ""
@@ -256,8 +309,17 @@ class _Life:
     async def _show_preparing(self) -> None:
         identity, began, known = _identity(self._running, ""), time.time(), self._preparation
         while True:
-            standby = None if self._keeper is None else _standby_view(self._keeper)
-            view = preparing_view(identity, time.time(), began, known.analysis, known.trouble, standby)
+            standby = None if self.keeper is None else standby_view(self.keeper)
+            view = preparing_view(
+                identity,
+                time.time(),
+                began,
+                known.analysis,
+                known.trouble,
+                standby,
+                self._deployment.view(),
+                unusable=known.unusable,
+            )
             self._link.publish(view)
             await asyncio.sleep(SHOW_EVERY)
 
@@ -289,51 +351,13 @@ async def _prepared(preparation: Preparation) -> Supervisor | None:
     return supervisor
 
 
-async def _require_sole_command(running: Running) -> None:
+async def _require_sole_command(running: Running, station: ReadyStation) -> None:
     question = running.connect(f"{NODE}_check")
     try:
-        commanded = {p.topic.name: p.topic.type_name for p in running.station.pipelines.outgoing.values()}
+        commanded = {p.topic.name: p.topic.type_name for p in station.pipelines.outgoing.values()}
         await require_sole_publisher(question, commanded, "the controller")
     finally:
         question.close()
-
-
-def what_is_known(database: Database, automaton: Automaton) -> Known:
-    """What the journal knows of the station from before. Raises `StorageError`."""
-    with database.reading() as connection:
-        restored = beginning(connection, automaton, Moment.now())
-        aside, beliefs = last(connection, ASIDE), last(connection, BELIEFS)
-        begun, started = last(connection, BEGUN), last(connection, kind_of(ProductionStarted))
-    return Known(
-        restored.beginning if restored else None,
-        {} if aside is None else aside_from(json.loads(aside.content)),
-        {} if beliefs is None else beliefs_from(json.loads(beliefs.content)),
-        restored.left_out if restored else (),
-        begun is not None and started is not None and started.number > begun.number,
-    )
-
-
-def _standby_view(keeper: Keeper) -> StandbyView:
-    standing = keeper.standing
-    return StandbyView(
-        name=standing.name,
-        active=standing.active,
-        holder=standing.holder,
-        standing_by=list(standing.standing_by),
-        trouble=standing.trouble,
-    )
-
-
-def _stands_by(keeper: Keeper) -> CommandRefused:
-    """Why a station that does not hold the lease carries nothing out."""
-    holder = keeper.standing.holder
-    if keeper.standing.active:
-        why = keeper.standing.trouble or "the database is slow"
-        detail = f"This station cannot renew the lease of the command: {why}. Try again in a moment."
-        return CommandRefused("lease-not-renewed", "The lease of the command is not renewed", detail, 503)
-    where = "Another station" if holder is None or holder == keeper.standing.name else holder
-    detail = f"{where} commands the devices, and this station stands by for it. Open that one's page."
-    return CommandRefused("stands-by", "This station stands by", detail, 503)
 
 
 async def show_network(network: NetworkWatch, link: ControllerLink) -> None:
@@ -356,8 +380,23 @@ async def _in_steps(steps: Generator[None, None, NetworkView]) -> NetworkView:
         await asyncio.sleep(0)
 
 
+def _follows(ended: Ending, keeper: Keeper) -> bool:
+    """Whether nobody has had the lease between the last life of this station and this one: a journal that is held up
+    does not tell who had. Where nothing was ever recorded there was none.
+    """
+    life = ended.life
+    if life is None:
+        return True
+    return life.epoch is not None and keeper.epoch == life.epoch + 1
+
+
 def _identity(running: Running, transport: str) -> StationIdentity:
-    automaton = running.station.automaton
+    station = running.station
+    if isinstance(station, Unusable):
+        return StationIdentity(
+            name=station.name, title=station.name, description="", transport=transport, emulated=running.emulated
+        )
+    automaton = station.automaton
     return StationIdentity(
         name=automaton.name,
         title=automaton.title,

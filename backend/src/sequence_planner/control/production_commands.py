@@ -75,7 +75,8 @@ class TakeStep(CommandBase):
 
 class Deploy(CommandBase):
     """Let another model take the place of the one that runs, and begin anew with it. Its files lie in the folder
-    `staged` beside the controller's socket; `revision` and `name` are those it was saved under.
+    `staged` beside the controller's socket; `revision` and `name` are those it was saved under. With `reset` emulated
+    devices and the station begin as the new model says, else they go on as they are.
     """
 
     kind: Literal["deploy"] = "deploy"
@@ -84,6 +85,7 @@ class Deploy(CommandBase):
     revision: str = Field(pattern=r"^[0-9a-f]{40}$")
     name: str = Field(max_length=200)
     staged: str = Field(pattern=r"^deploy-[0-9a-f]{16}$")
+    reset: bool = False
 
     @property
     def subject(self) -> str:

@@ -19,11 +19,12 @@ from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.task_commands import TaskCommand
 from sequence_planner.control.view import TaskView
 from sequence_planner.journal.audit import append
-from sequence_planner.journal.entry import Entry, Outcome
+from sequence_planner.journal.entry import LONGEST_SUBJECT, Entry, Outcome
 from sequence_planner.storage.database import Database, StorageError
 
 LOG = structlog.get_logger(__name__)
 PATIENCE = 4.0  # seconds for a record; the server waits a little longer for the answer to a command
+AGAIN = 2.0  # seconds after which what could not be recorded yet is tried again
 
 
 class Recording:
@@ -34,30 +35,31 @@ class Recording:
         self._told = told
         # One thread, so that records come in the order in which commands were given; ticks go on meanwhile.
         self._thread = ThreadPoolExecutor(1, "recording")
-        self._late: set[asyncio.Task[int | None]] = set()
+        self._late: set[asyncio.Task[None]] = set()
         self._pauses = 0  # so far
 
     async def close(self) -> None:
-        """Write what is under way, then end."""
-        await asyncio.gather(*self._late)
+        """Write what is under way, as long as that is possible, then end."""
+        if self._late:
+            await asyncio.wait(self._late, timeout=PATIENCE)
+        for each in self._late:
+            each.cancel()
         self._thread.shutdown(wait=False)
 
     async def carry_out(
         self, command: Command, tasks: Callable[[], dict[str, TaskView]], act: Callable[[Command], Awaitable[None]]
-    ) -> None:
+    ) -> asyncio.Task[None] | None:
         """Record the command, let `act` carry it out, and record what became of it.
 
-        `tasks` are the open ones, for what a command about one is about. Raises what `act` raises, and `CommandRefused`
+        `tasks` are the open ones, for what a command about one is about. What only stops devices is not recorded yet
+        when this returns, but when the task ends that it gives back. Raises what `act` raises, and `CommandRefused`
         when the command cannot be recorded, or somebody has paused the station before it was.
         """
-        entry, pauses = _entry(command, tasks), self._pauses
+        entry, pauses = entry_of(command, tasks), self._pauses
         if command.harmless:
             self._pauses += 1
             await act(command)
-            late = asyncio.create_task(self._record(_end(entry, None, Outcome.DONE)))
-            self._late.add(late)
-            late.add_done_callback(self._late.discard)
-            return
+            return self.record_late(_end(entry, None, Outcome.DONE), time.time())
         number = await self._record(entry)
         if number is None:
             detail = "What cannot be recorded is not done. See the alarms for the cause; pausing is possible."
@@ -73,6 +75,35 @@ class Recording:
             await self._record(_end(entry, number, Outcome.FAILED, type(error).__name__))
             raise
         await self._record(_end(entry, number, Outcome.DONE))
+        return None
+
+    def record_late(self, entry: Entry, when: float) -> asyncio.Task[None]:
+        """Record what was done at `when`, as soon as that is possible; what it gives back ends then."""
+        late = asyncio.create_task(self._record_at_last(entry, when))
+        self._late.add(late)
+        late.add_done_callback(self._late.discard)
+        return late
+
+    async def _record_at_last(self, entry: Entry, when: float) -> None:
+        while True:
+            writing = asyncio.get_running_loop().run_in_executor(self._thread, self._append, entry)
+            done, _ = await asyncio.wait({writing}, timeout=PATIENCE)
+            if not done:
+                self._told(f"the database does not answer within {PATIENCE:g} s")
+            try:
+                await writing
+            except (SQLAlchemyError, StorageError, OSError) as error:
+                LOG.warning("what was done is not recorded yet", action=entry.action, because=_why(error))
+                self._told(_why(error))
+            else:
+                self._told(None)
+                return
+            await asyncio.sleep(AGAIN)
+            entry = entry.model_copy(update={"details": {**entry.details, "carried_out": when}})
+
+    async def note(self, entry: Entry) -> bool:
+        """Record what the station has done by itself; whether it is recorded."""
+        return await self._record(entry) is not None
 
     async def _record(self, entry: Entry) -> int | None:
         """The number of the new record; None when there is none."""
@@ -96,14 +127,15 @@ class Recording:
             return append(connection, entry, time.time()).number
 
 
-def _entry(command: Command, tasks: Callable[[], dict[str, TaskView]]) -> Entry:
+def entry_of(command: Command, tasks: Callable[[], dict[str, TaskView]] = dict) -> Entry:
+    """What the record says of a command that somebody gives."""
     details = command.model_dump(mode="json", exclude={"actor", "reason", "kind"})
     if isinstance(command, TaskCommand) and (task := tasks().get(command.task)) is not None:
         details |= {"ability": task.ability, "title": task.title}
     return Entry(
         actor=command.actor,
         action=command.kind,
-        subject=command.subject,
+        subject=command.subject[:LONGEST_SUBJECT],  # `details` have all of it
         details=details,
         reason=command.reason,
         outcome=Outcome.REQUESTED,

@@ -26,7 +26,7 @@ class CorrectEstimates(CommandBase):
     @property
     def subject(self) -> str:
         """The variables."""
-        return ", ".join(sorted(self.values))[:400]
+        return ", ".join(sorted(self.values))
 
 
 class UndoCorrection(CommandBase):
@@ -48,7 +48,7 @@ class ConfirmEstimates(CommandBase):
     @property
     def subject(self) -> str:
         """The variables."""
-        return ", ".join(sorted(self.values))[:400]
+        return ", ".join(sorted(self.values))
 
 
 class DecideOutputs(CommandBase):
@@ -62,7 +62,7 @@ class DecideOutputs(CommandBase):
     @property
     def subject(self) -> str:
         """The variables."""
-        return ", ".join(sorted(self.values))[:400]
+        return ", ".join(sorted(self.values))
 
 
 class TakeErrand(CommandBase):

@@ -29,7 +29,8 @@ class ServiceView(View):
 class ErrandView(View):
     """What a person has taken, and is being carried out: nothing but this plan is. `kind` is what it is for.
 
-    `ability` is the one that is tried.
+    It is done when it `ends`, and one `into_safe` when the station is inside its safe states besides. `ability` is the
+    one that is tried.
     """
 
     kind: str  # way-back, reset, goal, trial
@@ -37,7 +38,8 @@ class ErrandView(View):
     by: str
     why: str
     since: float
-    ends: str  # when it is done, in the model's language
+    ends: str | None  # in the model's language; null where it is a way into the safe states and nothing else
+    into_safe: bool
     ability: str | None
 
 

@@ -6,7 +6,9 @@ off its pose, for instance, when nothing was about to move it.
 
 from __future__ import annotations
 
-from sequence_planner.automaton.structure import Automaton, State, reads, target
+from math import inf
+
+from sequence_planner.automaton.structure import Automaton, Effect, State, reads, target
 from sequence_planner.automaton.tick import effect_writes
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.happenings import Ticked
@@ -39,18 +41,22 @@ class StandingStill:
         self._seen: State = {}
         execution.listeners.append(self._hear)
 
-    def late(self, monotonic: float) -> frozenset[str]:
-        """The effects that have been possible for too long, and would have changed something."""
-        return frozenset(
-            name
-            for name, since in self._since.items()
-            if monotonic - since > max(self._patience[self._effects[name].resource], 2 * self._effects[name].longest)
-        )
+    def late(self, monotonic: float, most: float = inf) -> frozenset[str]:
+        """The effects that have been possible for too long, and would have changed something.
 
-    def devices(self, monotonic: float) -> dict[str, frozenset[str]]:
+        No more patience than `most` is had with any, as long as it has had twice the time that it takes.
+        """
+
+        def patience(effect: Effect) -> float:
+            return max(min(most, self._patience[effect.resource]), 2 * effect.longest)
+
+        since = self._since.items()
+        return frozenset(name for name, moment in since if monotonic - moment > patience(self._effects[name]))
+
+    def devices(self, monotonic: float, most: float = inf) -> dict[str, frozenset[str]]:
         """The resources whose devices are late, each with the measured variables that should have changed."""
         found: dict[str, frozenset[str]] = {}
-        for name in self.late(monotonic):
+        for name in self.late(monotonic, most):
             effect, state = self._effects[name], self._execution.state
             should = {n for n, value in (effect_writes(effect, state) or {}).items() if state[n] != value}
             found[effect.resource] = found.get(effect.resource, frozenset()) | should

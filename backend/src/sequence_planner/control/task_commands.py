@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Literal
 
 from sequence_planner.control.command_base import CommandBase
@@ -25,10 +26,20 @@ class AcknowledgeTask(TaskCommand):
     kind: Literal["acknowledge-task"] = "acknowledge-task"
 
 
+class ProblemKind(StrEnum):
+    """What is in the way, as far as one touch can say it."""
+
+    MISSING = "missing"  # a part
+    DAMAGED = "damaged"
+    TOOL = "tool"
+    OTHER = "other"
+
+
 class ReportProblem(TaskCommand):
-    """A person says that the task cannot be done as things are; the reason may say what is in the way."""
+    """A person says that the task cannot be done as things are; `what` and the reason may say what is in the way."""
 
     kind: Literal["report-problem"] = "report-problem"
+    what: ProblemKind | None = None
 
 
 class SolveProblem(TaskCommand):

@@ -14,7 +14,13 @@ from dataclasses import dataclass, replace
 
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.control.command_base import CommandRefused
-from sequence_planner.control.task_commands import AcknowledgeTask, ReportProblem, SolveProblem, TaskCommand
+from sequence_planner.control.task_commands import (
+    AcknowledgeTask,
+    ProblemKind,
+    ReportProblem,
+    SolveProblem,
+    TaskCommand,
+)
 from sequence_planner.expressions.types import Value
 
 
@@ -37,6 +43,7 @@ class TaskProblem:
     by: str
     since: float
     why: str
+    what: ProblemKind | None = None
 
 
 class TaskDesk:
@@ -79,8 +86,8 @@ class TaskDesk:
         match command:
             case AcknowledgeTask(task=task, revision=revision):
                 self.acknowledge(task, revision)
-            case ReportProblem(task=task, revision=revision, actor=actor, reason=reason):
-                self.report(task, revision, TaskProblem(actor.name, now, reason or ""))
+            case ReportProblem(task=task, revision=revision, actor=actor, reason=reason, what=what):
+                self.report(task, revision, TaskProblem(actor.name, now, reason or "", what))
             case SolveProblem(task=task, revision=revision):
                 self.solve(task, revision)
 

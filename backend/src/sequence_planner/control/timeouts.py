@@ -25,6 +25,11 @@ def overdue(step: Step, ability: Ability, monotonic: float) -> str | None:
     return None
 
 
+def in_the_past(late: str) -> str:
+    """The same of a run that is over, as in `did not begin within 2 s`."""
+    return late.replace("has not begun", "did not begin").replace("has not finished", "did not finish")
+
+
 def to_call_off(automaton: Automaton, order: StartOrder, now: Moment) -> dict[str, str]:
     """The abilities that are overdue and shall then be planned anew, each with what has not come in time."""
     late: dict[str, str] = {}

@@ -13,9 +13,11 @@ from collections.abc import Mapping, Sequence
 from statistics import median
 
 from sequence_planner.automaton.compiled import CompiledRun
+from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.start_order import StartOrder, Step
+from sequence_planner.control.view import Mode
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.advice.offer import expected_seconds
@@ -57,7 +59,9 @@ class Timetable:
     def __init__(self, execution: Execution) -> None:
         self._execution = execution
         self._runs: dict[str, deque[float]] = defaultdict(lambda: deque(maxlen=REMEMBERED_RUNS))
-        self._counted: frozenset[int] = frozenset()  # the past steps whose run is among them
+        self._counted: frozenset[int] = frozenset()  # the past steps that have ended and were looked at
+        self._disturbed: frozenset[int] = frozenset()  # those that ran while the station did not go on by itself
+        self._waiting = waiting_for_people(execution.automaton)
         self._outlook = Outlook(None, 0, 0, {}, {})
         self._began = 0.0  # when the plan was seen first
         self._read: dict[str, tuple[Guard | None, frozenset[str]]] = {}  # by each ability, with the guard added then
@@ -66,15 +70,25 @@ class Timetable:
     def note(self, now: float) -> None:
         """After a tick: remember how long has taken what ended, and look through a plan that is new."""
         order = self._execution.plan.order
+        if self._execution.mode is not Mode.AUTOMATIC or self._execution.errand is not None:
+            self._disturbed |= {step.number for step in order.past if step.number not in self._counted}
         ended = {step.number: step for step in order.past if step.ended is not None}
-        for number in ended.keys() - self._counted:
-            step = ended[number]
-            if step.started is not None and step.ended is not None:
-                self._runs[step.ability].append(step.ended.epoch - step.started.epoch)
+        for number in sorted(ended.keys() - self._counted - self._disturbed):
+            self._learn(ended[number])
         self._counted = frozenset(ended)
+        self._disturbed &= {step.number for step in order.past}
         if order.plan is not self._outlook.plan:
             self._outlook = look_through(order, self._execution.simulated(), self._execution.automaton)
             self._began = now
+
+    def _learn(self, step: Step) -> None:
+        """Remember how long a run has taken, unless it waited: for a person, or for a device that did nothing."""
+        ability = self._execution.automaton.abilities[step.ability]
+        if step.ability in self._waiting or step.started is None or step.ended is None:
+            return
+        seconds = step.ended.epoch - step.started.epoch
+        if ability.timeouts.finish is None or seconds <= ability.timeouts.finish:
+            self._runs[step.ability].append(seconds)
 
     def expected(self, guards: Mapping[str, Guard] | None = None) -> dict[int, Expected]:
         """What runs and what is ahead, by the number of the step; `guards` are those that the supervisor adds."""
@@ -141,6 +155,19 @@ class Timetable:
         if duration := self._execution.automaton.abilities[step.ability].duration:
             return sum(duration) / 2
         return self._outlook.between(tick, self._outlook.ends.get(step.number, tick))
+
+
+def waiting_for_people(automaton: Automaton) -> frozenset[str]:
+    """The abilities whose runs last as long as people take: what they do themselves, and what ends by it."""
+    human = [ability for ability in automaton.abilities.values() if ability.human is not None]
+    theirs = {ability.human.acknowledgement for ability in human if ability.human is not None}
+    theirs |= {target(action) for ability in human for action in ability.finish_actions}
+    return frozenset(
+        name
+        for name, ability in automaton.abilities.items()
+        if ability.human is not None
+        or (ability.finish_guard is not None and read_variables(automaton, (ability.finish_guard,)) & theirs)
+    )
 
 
 def look_through(order: StartOrder, run: CompiledRun, automaton: Automaton) -> Outlook:

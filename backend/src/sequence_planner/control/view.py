@@ -23,6 +23,7 @@ from sequence_planner.control.restart_view import (
     ServiceView,
     UndecidedOutputView,
 )
+from sequence_planner.control.task_commands import ProblemKind
 from sequence_planner.control.view_part import Value, View
 from sequence_planner.control.way_back_view import WayBackView
 from sequence_planner.planning.plan import Contract
@@ -58,6 +59,19 @@ class Production(StrEnum):
     PREPARING = "preparing"  # the safe set is being computed, or the links are being checked
     WAITING = "waiting"  # ready; waits for a person to start production
     STARTED = "started"
+
+
+class StationStanding(StrEnum):
+    """Whether anything starts by itself, and why not: what somebody at the station has to know first."""
+
+    PREPARING = "preparing"
+    WAITING = "waiting"  # production is not started
+    HELD = "held"
+    RESTART = "restart"
+    PAUSED = "paused"
+    STOPPED = "stopped"  # certainly outside the safe states, or something keeps everything from starting
+    SILENT = "silent"  # it goes on as far as it can, but devices are not heard
+    WORKING = "working"
 
 
 class VariableKind(StrEnum):
@@ -105,6 +119,25 @@ class ControlView(View):
     name: str
     since: float
     taken_from: str | None
+
+
+class DeploymentState(StrEnum):
+    """What has become of a deployment."""
+
+    STARTING = "starting"  # it is to be seen whether the station runs the new model
+    RUNS = "runs"
+    UNDONE = "undone"  # the station could not be started with it, and the model before is back
+
+
+class DeploymentView(View):
+    """The deployment with which the controller began; `why` it was undone is null where it was not."""
+
+    revision: str
+    name: str
+    by: str
+    at: float
+    state: DeploymentState
+    why: str | None
 
 
 class ResourceView(View):
@@ -240,10 +273,11 @@ class PlanView(View):
 
 
 class TaskProblemView(View):
-    """What keeps somebody from doing a task; `why` may be empty."""
+    """What keeps somebody from doing a task; `what` may be null and `why` empty."""
 
     by: str
     since: float
+    what: ProblemKind | None
     why: str
 
 
@@ -256,7 +290,7 @@ class TaskView(View):
     title: str
     text: str
     created: float
-    next_moves: list[str]  # titles of what moves once it is acknowledged
+    next_moves: list[str]  # titles of what moves once it is acknowledged; nothing while production stands
     problem: TaskProblemView | None
 
 
@@ -297,6 +331,8 @@ class StationView(View):
     revision: int  # of the state: counts up with every change of a value or an activity
     mode: Mode
     packml: PackML
+    standing: StationStanding
+    silent: list[str]  # titles of the resources in service that are not heard
     stepping: bool  # every start waits for a person's step
     production: Production
     unconfirmed: bool  # whether estimates came back from the journal that nobody has confirmed
@@ -323,3 +359,4 @@ class StationView(View):
     way_back: WayBackView | None  # null while the state is safe
     analysis: AnalysisDocument | None  # what synthesis has found of the station, as far as it has got
     standby: StandbyView | None  # null where the station is alone
+    deployment: DeploymentView | None  # null where the controller has not begun with one

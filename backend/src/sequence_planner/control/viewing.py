@@ -8,12 +8,15 @@ from dataclasses import dataclass
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.structure import Kind
 from sequence_planner.control.alarm_view import AlarmView
+from sequence_planner.control.alarming.consequence import Consequences
 from sequence_planner.control.approval_view import ApprovalView
 from sequence_planner.control.belief import Beliefs
 from sequence_planner.control.commander import Commander
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.heard import TickOutcome
+from sequence_planner.control.job_view import JobState
+from sequence_planner.control.job_waits import Around
 from sequence_planner.control.jobs import Jobs
 from sequence_planner.control.live_plan import Replacement
 from sequence_planner.control.moment import Moment
@@ -39,6 +42,7 @@ from sequence_planner.control.view import (
     ReplacementView,
     ResourceView,
     StationIdentity,
+    StationStanding,
     StationView,
     StepStatus,
     TaskProblemView,
@@ -53,8 +57,10 @@ from sequence_planner.control.viewing_conduct import (
     last_errand_view,
     packml,
     service_views,
+    standing,
 )
 from sequence_planner.control.viewing_jobs import job_views
+from sequence_planner.control.viewing_jobs import waits_for as job_waits_for
 from sequence_planner.control.viewing_outside import way_back
 from sequence_planner.control.waiting import waits_for
 from sequence_planner.expressions.printing import print_expression
@@ -98,6 +104,7 @@ class Viewing:
         self._since: dict[str, tuple[Value | None, float]] = {}
         self._active_since: dict[str, float] = {}
         self._timetable = Timetable(execution)
+        self._consequences = Consequences(execution)
         self._replaced: tuple[Replacement | None, float] = (None, 0.0)  # and when that was seen first
         self.completed: dict[str, int] = dict.fromkeys(execution.automaton.operations, 0)
         self.analysis: AnalysisDocument | None = None
@@ -134,24 +141,30 @@ class Viewing:
     ) -> StationView:
         """The whole document, with the `jobs` as far as they are durable."""
         execution, conduct = self._execution, self._execution.conduct
+        resources = self._resources(moment)
+        unused = conduct.out_of(ServiceKind.RESOURCE)
+        silent = [each.title for name, each in resources.items() if not each.online and name not in unused]
+        stands = standing(execution, self._outside, silent) if self._network.commands else StationStanding.PREPARING
         return StationView(
             station=self._identity,
             tick=execution.ticks,
             time=moment.epoch,
             revision=execution.revision,
             mode=execution.mode,
-            packml=packml(execution) if self._network.commands else PackML.RESETTING,
+            packml=self.packml,
+            standing=stands,
+            silent=silent,
             stepping=conduct.stepping,
             production=execution.production if self._network.commands else Production.PREPARING,
             unconfirmed=self._beliefs.unconfirmed,
             undecided=doubts.undecided,
             control=control,
-            resources=self._resources(moment),
+            resources=resources,
             variables=self._variables(),
             abilities=self._abilities(),
             operations=self._operations(),
             by_order=jobs.by_order,
-            jobs=job_views(execution, jobs),
+            jobs=job_views(execution, jobs, self._around(desk, alarms, control is not None, moment)),
             plan=self._plan(),
             errand=errand_view(execution),
             last_errand=last_errand_view(conduct),
@@ -160,13 +173,41 @@ class Viewing:
             questions=doubts.questions,
             last_correction=doubts.last_correction,
             approvals=doubts.approvals,
-            tasks=self._tasks(desk),
+            tasks=self._tasks(desk, stands in (StationStanding.WORKING, StationStanding.SILENT)),
             topics=self._topics(commander, moment),
             overrides=overrides,
             alarms=alarms,
             way_back=way_back(self._execution.automaton, self._outside, self._feeding),
             analysis=self.analysis,
             standby=None,
+            deployment=None,
+        )
+
+    @property
+    def packml(self) -> PackML:
+        """The state that PackML has for it now."""
+        return packml(self._execution) if self._network.commands else PackML.RESETTING
+
+    def job_waits(
+        self, desk: TaskDesk, alarms: dict[str, AlarmView], controlled: bool, moment: Moment
+    ) -> dict[str, list[str]]:
+        """What each job waits for that was taken and is neither paused nor over."""
+        around, told = self._around(desk, alarms, controlled, moment), (JobState.WAITING, JobState.RUNNING)
+        jobs = self._execution.conduct.jobs.under_way
+        return {job.id: job_waits_for(self._execution, job, around) for job in jobs if job.state in told}
+
+    def _around(self, desk: TaskDesk, alarms: dict[str, AlarmView], controlled: bool, moment: Moment) -> Around:
+        execution, ahead = self._execution, self._execution.plan.order.ahead
+        name = ahead[0].ability if ahead and execution.conduct.jobs.under_way else None
+        waits = [] if name is None else waits_for(execution, name, self._feeding, self.guards.get(name))
+        return Around(
+            moment.monotonic,
+            self._consequences.held_up,
+            desk.open,
+            desk.problems,
+            alarms,
+            next_waits=tuple(waits),
+            controlled=controlled,
         )
 
     def _resources(self, moment: Moment) -> dict[str, ResourceView]:
@@ -296,9 +337,10 @@ class Viewing:
             waits_for=waiting,
         )
 
-    def _tasks(self, desk: TaskDesk) -> dict[str, TaskView]:
+    def _tasks(self, desk: TaskDesk, goes_on: bool) -> dict[str, TaskView]:
         abilities = self._execution.automaton.abilities
-        moves = [abilities[name].title for name in self._execution.plan.order.names if abilities[name].human is None]
+        names = self._execution.plan.order.names if goes_on else ()
+        moves = [abilities[name].title for name in names if abilities[name].human is None]
         return {
             id_: TaskView(
                 revision=task.revision,
@@ -346,7 +388,8 @@ def _why(execution: Execution) -> DiagnosisView | None:
     diagnosis = execution.plan.diagnosis
     if diagnosis is None or diagnosis.reason is None:
         return None
-    return diagnosis_view(diagnosis, execution.conduct.out_of(ServiceKind.RESOURCE))
+    conduct = execution.conduct
+    return diagnosis_view(diagnosis, conduct.out_of(ServiceKind.RESOURCE), conduct.answers)
 
 
 def _contract(plan: Plan | None) -> Contract | None:
@@ -357,7 +400,7 @@ def _contract(plan: Plan | None) -> Contract | None:
 
 
 def _problem(problem: TaskProblem | None) -> TaskProblemView | None:
-    return None if problem is None else TaskProblemView(by=problem.by, since=problem.since, why=problem.why)
+    return None if problem is None else TaskProblemView.model_validate(problem, from_attributes=True)
 
 
 def _epoch(moment: Moment | None) -> float | None:

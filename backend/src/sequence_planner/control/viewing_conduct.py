@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.conduct import Conduct
 from sequence_planner.control.execution import Execution
+from sequence_planner.control.offer_showing import end_text
+from sequence_planner.control.outside import Outside
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_view import ErrandView, ForceView, LastErrandView, ServiceView
-from sequence_planner.control.view import Mode, PackML, PlanStatus, Production
-from sequence_planner.expressions.printing import print_expression
+from sequence_planner.control.view import Mode, PackML, PlanStatus, Production, StationStanding
 
 _ENDING = {Mode.PAUSED: (PackML.HOLDING, PackML.HELD), Mode.HOLD: (PackML.STOPPING, PackML.STOPPED)}
 
@@ -28,6 +31,25 @@ def packml(execution: Execution) -> PackML:
     return during if moves else after
 
 
+_STANDING = {
+    Mode.HOLD: StationStanding.HELD,
+    Mode.RESTART: StationStanding.RESTART,
+    Mode.PAUSED: StationStanding.PAUSED,
+}
+
+
+def standing(execution: Execution, outside: Outside, silent: Collection[str]) -> StationStanding:
+    """Whether anything starts by itself, while these resources are `silent`."""
+    situation = outside.situation
+    if execution.production is not Production.STARTED:
+        return StationStanding.WAITING
+    if execution.mode is not Mode.AUTOMATIC:
+        return _STANDING[execution.mode]
+    if execution.obstacles or (situation is not None and situation.certain):
+        return StationStanding.STOPPED
+    return StationStanding.SILENT if silent else StationStanding.WORKING
+
+
 def errand_view(execution: Execution) -> ErrandView | None:
     """What is carried out now."""
     errand = execution.errand
@@ -39,7 +61,8 @@ def errand_view(execution: Execution) -> ErrandView | None:
         by=errand.by,
         why=errand.why,
         since=errand.taken.epoch,
-        ends=print_expression(errand.goal),
+        ends=end_text(errand.goal, errand.into_safe),
+        into_safe=errand.into_safe,
         ability=errand.ability,
     )
 

@@ -4,28 +4,26 @@ from __future__ import annotations
 
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
-from sequence_planner.control.hindrances import of_station
 from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
+from sequence_planner.control.job_waits import Around, of_running
 from sequence_planner.control.jobs import Job, Jobs
 from sequence_planner.control.moment import Moment
 
 
-def job_views(execution: Execution, jobs: Jobs | None = None) -> dict[str, JobView]:
+def job_views(execution: Execution, jobs: Jobs | None = None, around: Around | None = None) -> dict[str, JobView]:
     """Each job by its id, in the order in which they were taken: those of the execution, or as they were before."""
     jobs = execution.conduct.jobs if jobs is None else jobs
-    return {job.id: _view(execution, jobs, job) for job in jobs.taken}
+    return {job.id: _view(execution, jobs, job, around) for job in jobs.taken}
 
 
-def waits_for(execution: Execution, job: Job) -> list[str]:
+def waits_for(execution: Execution, job: Job, around: Around | None = None) -> list[str]:
     """What keeps a job as a whole from going on."""
     if job.state is JobState.PAUSED:
         return ["the job to be resumed"]
     if job.state is JobState.WAITING:
         return list(execution.keeps_from_beginning(job))
     if job.state is JobState.RUNNING:
-        errand = execution.errand
-        carried_out = [] if errand is None else [f"the end of what is carried out: {errand.title}"]
-        return [*(each.text for each in of_station(execution)), *carried_out]
+        return of_running(execution, job, around)
     return []
 
 
@@ -65,7 +63,7 @@ def _titled(execution: Execution, step: str) -> str:
     return f"{title} of job {job}" if job else title
 
 
-def _view(execution: Execution, jobs: Jobs, job: Job) -> JobView:
+def _view(execution: Execution, jobs: Jobs, job: Job, around: Around | None) -> JobView:
     master = execution.automaton.work_masters.get(job.work_master)
     # One that ended before the model was changed can have a work master that is not there any more.
     names = sorted(job.started.keys() | job.completed.keys()) if master is None else list(master.operations)
@@ -78,7 +76,7 @@ def _view(execution: Execution, jobs: Jobs, job: Job) -> JobView:
         taken=job.taken.epoch,
         begun=_epoch(job.begun),
         ended=_epoch(job.ended),
-        waits_for=waits_for(execution, job),
+        waits_for=waits_for(execution, job, around),
         steps={name: _step(execution, jobs, job, name, eligible) for name in names},
     )
 

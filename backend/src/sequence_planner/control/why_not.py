@@ -21,6 +21,7 @@ from sequence_planner.control.predicates import read_predicate
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view import DiagnosisView, Mode
 from sequence_planner.control.viewing_jobs import why_idle
+from sequence_planner.control.waiting import right_moment
 from sequence_planner.control.why_not_view import WhyNotView
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.printing import print_expression
@@ -77,8 +78,7 @@ class WhyNot:
             titles = [self._execution.automaton.abilities[each].title for each in order[: order.index(name)]]
             yield Hindrance(HindranceKind.PLAN, f"its turn in the plan, after {', '.join(dict.fromkeys(titles))}")
         elif not self._execution.may_go_on(name):
-            text = "the right moment: started now, the rest of the plan would not reach its goals"
-            yield Hindrance(HindranceKind.PLAN, text)
+            yield Hindrance(HindranceKind.PLAN, right_moment(self._execution))
 
     def _operation(self, name: str) -> WhyNotView:
         execution = self._execution
@@ -131,7 +131,8 @@ class WhyNot:
 
     def _reasons(self) -> DiagnosisView | None:
         diagnosis = self._execution.plan.diagnosis
-        return None if diagnosis is None else diagnosis_view(diagnosis, self._unused)
+        answers = self._execution.conduct.answers
+        return None if diagnosis is None else diagnosis_view(diagnosis, self._unused, answers)
 
     async def _goal(self, text: str) -> WhyNotView:
         execution = self._execution
@@ -155,7 +156,8 @@ class WhyNot:
             plan = plan_preview(execution.automaton, aimed.offer.errand)
             return _more(view, f"The station could reach it with {_count(len(plan.steps), 'start')}.", plan=plan)
         if aimed.proven:
-            reasons = None if aimed.why_not is None else diagnosis_view(aimed.why_not, self._unused)
+            answers = execution.conduct.answers
+            reasons = None if aimed.why_not is None else diagnosis_view(aimed.why_not, self._unused, answers)
             return _more(view, "The station cannot reach it from here: that is proven.", reasons=reasons)
         return _more(view, "No plan to it was found; that there is none is not proven.")
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from sequence_planner.automaton.structure import Automaton, Effect, Kind, target
 from sequence_planner.automaton.tick import effect_writes
 from sequence_planner.emulation.commanded import CommandReader
-from sequence_planner.emulation.spoken import Message, glided, spoken
+from sequence_planner.emulation.spoken import CannotSpeakError, Message, glided, spoken
 from sequence_planner.expressions.types import Value, contains
 from sequence_planner.pipelines.graph import Flow, StationPipelines
 
@@ -75,6 +75,38 @@ class EmulatedDevices:
         for topic in pipelines.sources:
             self._messages[topic] = spoken(pipelines, topic, self.state, {})
         self._underway: dict[str, _Underway] = {}
+
+    @property
+    def spoken(self) -> list[str]:
+        """The topics, services and actions on which the devices say something."""
+        return list(self._messages)
+
+    def take_over(self, values: Mapping[str, Value | None], messages: Mapping[str, Message]) -> None:
+        """Stand as devices of another model did, in all that is here too, before any time has passed.
+
+        A goal or a request that was under way is not known here. On a topic on which it cannot be said how things were
+        together, all is as at the beginning.
+        """
+        goals = {name for use in self._pipelines.actions.values() for name in use.status.variables}
+        outputs = set(self._automaton.names(Kind.OUTPUT)) - self._pipelines.heeded
+        taken = {
+            name: value
+            for name in (self.topics.keys() | outputs) - goals
+            if (value := values.get(name)) is not None and contains(self._automaton.variables[name].type, value)
+        }
+        while (unsaid := self._take_over(taken, messages)) is not None:
+            taken = {name: value for name, value in taken.items() if unsaid not in self.topics.get(name, ())}
+
+    def _take_over(self, taken: Mapping[str, Value], before: Mapping[str, Message]) -> str | None:
+        """Take these values; or the topic on which that cannot be said, and nothing has changed then."""
+        state, said = {**self.state, **taken}, dict(self._messages)
+        for topic in self._spoken_on(name for name in taken if name in self.topics):
+            try:
+                said[topic] = spoken(self._pipelines, topic, state, {**said[topic], **before.get(topic, {})})
+            except CannotSpeakError:
+                return topic
+        self.state, self._messages = state, said
+        return None
 
     def emulates(self, resource: str) -> bool:
         """Whether the devices of a resource are emulated here."""

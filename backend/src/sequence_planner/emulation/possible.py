@@ -13,7 +13,7 @@ from sequence_planner.station import ReadyStation
 
 def emulation_findings(station: ReadyStation) -> list[Finding]:
     """What of the station cannot be emulated, with the stages that cannot be read backwards."""
-    return sorted({*_unspoken(station), *_not_understood(station)})
+    return sorted({*_unspoken(station), *_not_understood(station), *_unbegun(station)})
 
 
 def _unspoken(station: ReadyStation) -> Iterator[Finding]:
@@ -25,6 +25,16 @@ def _unspoken(station: ReadyStation) -> Iterator[Finding]:
                     spoken(pipelines, topic, {**automaton.initial_valuation, variable: value}, {})
                 except CannotSpeakError as error:
                     yield error.finding
+
+
+def _unbegun(station: ReadyStation) -> Iterator[Finding]:
+    """What the devices would have to say at the beginning, all of it together."""
+    pipelines, automaton = station.pipelines, station.automaton
+    for topic in pipelines.sources:
+        try:
+            spoken(pipelines, topic, automaton.initial_valuation, {})
+        except CannotSpeakError as error:
+            yield error.finding
 
 
 def _not_understood(station: ReadyStation) -> Iterator[Finding]:

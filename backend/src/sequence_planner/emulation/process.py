@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import random
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import structlog
 
@@ -18,6 +20,7 @@ from sequence_planner.emulation.links import Links
 from sequence_planner.emulation.live import cause, listen
 from sequence_planner.emulation.node import NODE
 from sequence_planner.emulation.serving import serve_clients
+from sequence_planner.emulation.standing import Standing, keep
 from sequence_planner.pipelines.running import RunningPipelines
 from sequence_planner.ros.actions import ActionNames
 from sequence_planner.ros.derived import GOAL_STATUSES
@@ -38,7 +41,8 @@ class Emulation:
 
     Devices go `speed` times as fast. `seed` draws all that is random; effects and repeated reports come up to `jitter`
     seconds late. Only the devices of `resources` are emulated; None stands for all. `script` has faults, in the order
-    in which they begin.
+    in which they begin. They begin as others were `standing`; how they stand is `kept_in` a file, as soon as they are
+    up and at the end.
     """
 
     station: ReadyStation
@@ -47,6 +51,8 @@ class Emulation:
     jitter: float = 0.0
     resources: frozenset[str] | None = None
     script: tuple[Scripted, ...] = ()
+    standing: Standing | None = None
+    kept_in: Path | None = None
 
     @property
     def emulated(self) -> frozenset[str]:
@@ -92,6 +98,8 @@ class _Life:
             jitter=emulation.jitter,
             resources=emulation.resources,
         )
+        if emulation.standing is not None:
+            devices.take_over(emulation.standing.values, emulation.standing.messages)
         self._devices = FaultyDevices(devices, station.pipelines, emulation.seed)
         self._others = RunningPipelines(station.pipelines)  # what devices say that are not emulated
         self._random = random.Random(f"reports {emulation.seed}")
@@ -109,6 +117,7 @@ class _Life:
             serve_clients(self._emulation.station, self._devices.devices, main)
             self._links.keep(frozenset())
             LOG.info("emulated devices are up", resources=sorted(self._emulation.emulated))
+            self._keep()
             script, began = list(self._emulation.script), time.monotonic()
             while True:
                 now = time.monotonic()
@@ -120,9 +129,15 @@ class _Life:
                 self._report(now)
                 await asyncio.sleep(STEP)
         finally:
+            self._keep()
             self._links.close()
             self._others.close()
             main.close()
+
+    def _keep(self) -> None:
+        if self._emulation.kept_in is not None:
+            with contextlib.suppress(OSError):  # then those that come after begin as their model says
+                keep(self._devices.devices, self._emulation.kept_in)
 
     def _look_on(self, main: Transport) -> None:
         """Hear what is said and commanded where the devices are not emulated."""

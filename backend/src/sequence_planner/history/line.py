@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from sqlalchemy import Connection
 
+from sequence_planner.control.by_hand import KIND as BY_HAND
 from sequence_planner.control.happenings import Answered, Asked
 from sequence_planner.history.codec import BEGUN, KINDS, SNAPSHOT, TICKED, kind_of
 from sequence_planner.history.view import LineView, MarkView, PlaceView
@@ -23,7 +24,7 @@ MOST_MARKS: Final = 3000
 BINS: Final = 60
 ALARM: Final = "alarm"
 _ASKED, _ANSWERED = kind_of(Asked), kind_of(Answered)
-_SELDOM: Final = frozenset({*KINDS, BEGUN, ALARM} - {TICKED, _ASKED, _ANSWERED})
+_SELDOM: Final = frozenset({*KINDS, BEGUN, ALARM, BY_HAND} - {TICKED, _ASKED, _ANSWERED})
 _TOLD: Final = ("started", "ended", "called_off", "given_up", "plan", "mode")
 _TELLING: Final = tuple(f'"{part}":' for part in _TOLD)
 _PAGE: Final = 1000

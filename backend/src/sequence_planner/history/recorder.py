@@ -9,7 +9,6 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Callable, Mapping
-from importlib.metadata import version
 from typing import Final
 
 from pydantic import JsonValue
@@ -23,6 +22,7 @@ from sequence_planner.control.jobs import Job, Jobs, Waits
 from sequence_planner.control.moment import Moment
 from sequence_planner.history.codec import BEGUN, SNAPSHOT, TICKED, Codec, Document, Senses, TickBook, kind_of
 from sequence_planner.history.memory import Memory
+from sequence_planner.version import VERSION
 
 SNAPSHOT_EVERY: Final = 1000  # records
 
@@ -51,12 +51,12 @@ class RunRecorder:
         self._book = TickBook()
         self._estimates = frozenset(automaton.names(Kind.ESTIMATED))
         self._kept = (*automaton.names(Kind.ESTIMATED), *automaton.names(Kind.OUTPUT))
-        self._whose: Document = {"model": station_digest, "program": version("sequence-planner")}
+        self._whose: Document = {"model": station_digest, "program": VERSION}
         self._unconfirmed_since = None if beginning is None else beginning.unconfirmed_since
         self._unconfirmed = self._estimates if self._unconfirmed_since is not None else frozenset()
         self._service, self._done = execution.conduct.service, execution.conduct.done
         self._mode, self._stepping = execution.conduct.mode, execution.conduct.stepping
-        self._jobs = execution.conduct.jobs
+        self._jobs, self._answers = execution.conduct.jobs, execution.conduct.answers
         self._plan = _plan(execution)
         self._since_snapshot = 0
         self._now = Moment(clock(), 0.0) if beginning is None else beginning.now
@@ -98,6 +98,9 @@ class RunRecorder:
         if conduct.mode is not self._mode or conduct.stepping != self._stepping:
             self._mode, self._stepping = conduct.mode, conduct.stepping
             found["mode"], found["stepping"] = str(conduct.mode), conduct.stepping
+        if conduct.answers != self._answers:
+            self._answers = conduct.answers
+            found["answers"] = dict(conduct.answers)
         if conduct.jobs is not self._jobs:
             before, self._jobs = self._jobs, conduct.jobs
             found |= self._job_changes(before, conduct.jobs)
@@ -145,6 +148,7 @@ class RunRecorder:
             "done": sorted(conduct.done),
             "mode": str(conduct.mode),
             "stepping": conduct.stepping,
+            "answers": dict(conduct.answers),
             "by_order": conduct.jobs.by_order,
             "jobs": {job.id: self._codec.encode(Job, job) for job in conduct.jobs.taken},
             "waits": self._codec.encode(Waits, conduct.jobs.waits),

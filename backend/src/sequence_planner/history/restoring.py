@@ -26,7 +26,7 @@ from sequence_planner.storage.error import StorageError
 
 _PAGE: Final = 1000  # records read at once
 # What records say of the conduct where it changed.
-_CONDUCT: Final = ("service", "done", "mode", "stepping", "by_order", "waits")
+_CONDUCT: Final = ("service", "done", "mode", "stepping", "by_order", "waits", "answers")
 _CONFIRMED: Final = kind_of(Confirmed)
 
 
@@ -107,12 +107,20 @@ class _Known:
             bool(self._found["stepping"]),
             self.record.number,  # each change of the state is in a record of its own, so there were fewer
             self._restored_jobs(automaton, left_out, now),
+            self._answers(automaton),
         )
         return Restored(beginning, tuple(left_out))
 
     def _restored_jobs(self, automaton: Automaton, left_out: list[str], now: Moment) -> Jobs:
         by_order, waits = bool(self._found.get("by_order", False)), self._found.get("waits", [])
         return restored_jobs(automaton, by_order, self._jobs, waits, left_out, now)
+
+    def _answers(self, automaton: Automaton) -> dict[str, Value]:
+        """What was said of estimates that are there still, and as it was said."""
+        values, estimates = self._found["values"], automaton.names(Kind.ESTIMATED)
+        said = {name: value for name, value in self._found.get("answers", {}).items() if name in estimates}
+        fitting = {name: value for name, value in said.items() if contains(automaton.variables[name].type, value)}
+        return {name: value for name, value in fitting.items() if values.get(name) == value}
 
     def _values(self, automaton: Automaton, left_out: list[str]) -> dict[str, Value]:
         fitting: dict[str, Value] = {}

@@ -112,20 +112,22 @@ def find_password(connection: Connection, name: str) -> tuple[Person, str] | Non
 def change(
     connection: Connection,
     id: str,
-    revision: int,
+    revision: int | None,
     by: Actor,
     now: float,
     *,
     role: Role | None = None,
     disabled: bool | None = None,
 ) -> Person:
-    """Change a person as of `revision`. Sessions of a person whose role changes, or who is disabled, end.
+    """Change a person as of `revision` (None: whichever it is).
+
+    Sessions of a person whose role changes, or who is disabled, end.
 
     Raises `IdentityRefused`: `no-person` (404), `person-changed` (412) since that revision, `last-administrator` (409)
     when nobody would be left who can manage people, `role-from-provider` (409) where a provider says who has which.
     """
     person = known(connection, id)
-    if person.revision != revision:
+    if revision is not None and person.revision != revision:
         detail = f"{person.name} has been changed meanwhile: look at what is there now, and change that."
         raise IdentityRefused("person-changed", "Changed meanwhile", detail, 412)
     wanted = {"role": role, "disabled": disabled}
@@ -135,7 +137,7 @@ def change(
     if "role" in changes and person.issuer is not None:
         detail = f"The role of {person.name} is what {person.issuer} says at each sign-in: change it there."
         raise IdentityRefused("role-from-provider", "The provider decides", detail)
-    changed = person.model_copy(update={**changes, "revision": revision + 1})
+    changed = person.model_copy(update={**changes, "revision": person.revision + 1})
     if _administers(person) and not _administers(changed) and not administrator_exists(connection, but=id):
         detail = f"{person.name} is the last administrator: make somebody else administrator first."
         raise IdentityRefused("last-administrator", "Last administrator", detail, 409)

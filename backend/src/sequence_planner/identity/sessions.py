@@ -6,6 +6,8 @@ worth nothing; when a person's role changes or the person is disabled, all of th
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from pydantic import BaseModel, ConfigDict
 from sqlalchemy import ColumnElement, Connection, Row, Select, delete, func, insert, select, update
 
@@ -90,6 +92,12 @@ def find_live(connection: Connection, session: str, now: float) -> SignedIn | No
     """The session with this id, a person's or a demonstration's, unless it has ended or expired."""
     row = connection.execute(_sessions(now, SESSIONS.c.id == session)).first()
     return None if row is None else _signed_in(row)
+
+
+def find_all_live(connection: Connection, ids: Sequence[str], now: float) -> dict[str, SignedIn]:
+    """Of these sessions those that have neither ended nor expired, by id."""
+    rows = connection.execute(_sessions(now, SESSIONS.c.id.in_(ids)))
+    return {row.id: _signed_in(row) for row in rows}
 
 
 def require_live(connection: Connection, by: Actor, now: float) -> None:

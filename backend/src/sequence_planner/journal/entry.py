@@ -8,7 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, JsonValue
 
 from sequence_planner.actor import Actor
 
-LONGEST_REASON = 500  # characters
+LONGEST_REASON, LONGEST_SUBJECT = 500, 400  # characters
 
 
 class Outcome(StrEnum):
@@ -31,7 +31,7 @@ class Entry(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
     actor: Actor
     action: str = Field(min_length=1, max_length=100)
-    subject: str = Field(default="", max_length=400)
+    subject: str = Field(default="", max_length=LONGEST_SUBJECT)
     details: dict[str, JsonValue] = Field(default_factory=dict)
     reason: str | None = Field(default=None, max_length=LONGEST_REASON)
     outcome: Outcome = Outcome.DONE
@@ -50,3 +50,9 @@ class Record(BaseModel):
     time: float
     entry: Entry
     hash: str
+
+
+def described(entry: Entry) -> str:
+    """What somebody did, in a few words."""
+    mode = entry.details.get("mode")
+    return f"{entry.action} ({mode})" if isinstance(mode, str) else entry.action

@@ -55,6 +55,7 @@ class RunWriter:
         self.latency = Distribution(LATENCIES)
         self._given = deque[float]()  # when each record that waits was given to write, on the clock
         self._told = told
+        self._news = asyncio.Event()
         self._loop = asyncio.get_running_loop()
         self._end = end  # of what was given to write
         self._closed = False
@@ -65,6 +66,11 @@ class RunWriter:
         now = monotonic()
         self._given = deque([now] * len(self._given))  # until now nobody waited for them
         self._commits.begin()
+
+    @property
+    def end(self) -> Position:
+        """The last record that was given to write."""
+        return self._end
 
     @property
     def waiting(self) -> int:
@@ -88,6 +94,15 @@ class RunWriter:
         self._commits.put(record)
         return number
 
+    async def until_durable(self, number: int, patience: float) -> bool:
+        """Whether a record is durable by now, or within so many seconds. It is not waited for in `trouble`."""
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(patience):
+                while self.durable < number and self.trouble is None:
+                    self._news.clear()
+                    await self._news.wait()
+        return self.durable >= number
+
     async def close(self) -> None:
         """Write what waits, as long as that is possible within 5 s, if it was begun. Nothing can be written then."""
         self._closed = True
@@ -105,4 +120,5 @@ class RunWriter:
         for _ in range(durable - self.durable):
             self.latency.note(now - self._given.popleft())
         self.durable, self.trouble = durable, trouble
+        self._news.set()
         self._told()

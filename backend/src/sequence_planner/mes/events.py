@@ -1,4 +1,4 @@
-"""What has happened to orders, numbered without gaps, so that whoever reads on from a number misses nothing.
+"""What has happened to orders and to the station, numbered without gaps: whoever reads on from a number misses nothing.
 
 An event is written in the transaction of the change that it tells of.
 """
@@ -8,11 +8,15 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from enum import StrEnum
+from typing import Final
 
 from pydantic import BaseModel, ConfigDict, JsonValue
 from sqlalchemy import Connection, func, insert, select
 
 from sequence_planner.mes.tables import JOB_EVENTS
+from sequence_planner.mes.times import iso
+
+_OF_STATION: Final = ""  # in the database, in place of an order
 
 
 class EventKind(StrEnum):
@@ -28,28 +32,40 @@ class EventKind(StrEnum):
     ABORTED = "job-order-aborted"
     CANCELLED = "job-order-cancelled"
     CLEARED = "job-order-cleared"
+    WAITS = "job-order-waits"  # what keeps it from going on is something else than before, or nothing any more
     OPERATION_STARTED = "operation-started"
     OPERATION_COMPLETED = "operation-completed"
+    # Of the station, and of no order.
+    MODE_CHANGED = "station-mode-changed"
+    PACKML_CHANGED = "station-packml-changed"
+    PRODUCTION_STARTED = "station-production-started"
+    CONTROLLER_STARTED = "station-controller-started"
+    ALARM_RAISED = "alarm-raised"
+    ALARM_ENDED = "alarm-ended"
 
 
 class JobEvent(BaseModel):
-    """An event: `number` counts from 1 without gaps, `time` is in seconds since the epoch."""
+    """An event: `number` counts from 1 without gaps, `time` is in seconds since the epoch, `time_at` in ISO 8601.
+
+    Those of the station itself have no `job_order`.
+    """
 
     model_config = ConfigDict(frozen=True, extra="forbid")
     number: int
     time: float
+    time_at = iso("time")
     kind: EventKind
-    job_order: str
+    job_order: str | None
     content: dict[str, JsonValue]
 
 
 def append(
-    connection: Connection, kind: EventKind, job_order: str, now: float, content: Mapping[str, JsonValue]
+    connection: Connection, kind: EventKind, job_order: str | None, now: float, content: Mapping[str, JsonValue]
 ) -> int:
     """Write an event, within a `writing()` block; its number."""
     number = last(connection) + 1
-    row = {"number": number, "time": now, "kind": kind.value, "job_order": job_order, "content": json.dumps(content)}
-    connection.execute(insert(JOB_EVENTS), row)
+    told = {"time": now, "kind": kind.value, "job_order": job_order or _OF_STATION, "content": json.dumps(content)}
+    connection.execute(insert(JOB_EVENTS), {"number": number, **told})
     return number
 
 
@@ -57,7 +73,7 @@ def after(connection: Connection, number: int, limit: int) -> list[JobEvent]:
     """Up to `limit` events with numbers above `number`, the oldest first."""
     chosen = select(JOB_EVENTS).where(JOB_EVENTS.c.number > number).order_by(JOB_EVENTS.c.number).limit(limit)
     return [
-        JobEvent.model_validate({**row, "content": json.loads(row["content"])})
+        JobEvent.model_validate({**row, "job_order": row["job_order"] or None, "content": json.loads(row["content"])})
         for row in connection.execute(chosen).mappings()
     ]
 

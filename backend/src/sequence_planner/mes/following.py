@@ -1,7 +1,8 @@
 """Orders go on as the run's journal says: what is durable there has happened, and is told once.
 
-The journal is read on from where the ledger stands. What a page of records brings about is one transaction: the orders,
-their events and responses, and where the ledger stands then.
+The journal is read on from where the ledger stands, be there orders or not: what becomes of the station is told too.
+What a page of records brings about is one transaction: the orders, their events and responses, and where the ledger
+stands then.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from sequence_planner.mes.order import JobOrder
 from sequence_planner.mes.responses import JobOutcome, JobResponse, OperationMade
 from sequence_planner.mes.run_reading import read
 from sequence_planner.mes.states import OrderState
+from sequence_planner.mes.station_news import Told
 from sequence_planner.mes.tables import JOB_LEDGER
 from sequence_planner.storage.database import Database
 
@@ -42,45 +44,50 @@ class Following:
         self._ledger: Ledger | None = None
         self._kept = 0  # the number of the record up to which the database knows
 
-    @property
-    def has_jobs(self) -> bool:
-        """Whether it knows of jobs that are not over."""
-        return self._ledger is not None and any(not job.state.is_over for job in self._ledger.jobs.values())
-
-    def begin(self, connection: Connection) -> None:
-        """Nothing is worked on now: what was before does not matter. To be called before the first job is taken."""
-        last = next(iter(run_journal.before(connection, None, 1, (BEGUN, SNAPSHOT))), None)
-        ledger = Ledger(number=0 if last is None else last.number - 1)
-        _keep(connection, ledger)
-        self._ledger = None  # whether this is written is not certain yet: it is read then
-
     def read_on(self, masters: WorkMastersView) -> tuple[bool, bool]:
         """Take note of the next records: whether orders have changed by it, and whether there may be more records.
 
         Raises `StorageError`; then nothing has happened.
         """
+        if self._ledger is None:
+            self._ledger = self._begin()
+            self._kept = self._ledger.number
         with self._database.reading() as connection:
-            if self._ledger is None:
-                self._ledger = _load(connection)
-                self._kept = self._ledger.number
             records = run_journal.after(connection, self._ledger.number, _PAGE)
         if not records:
             return False, False
-        ledger, happened = self._ledger.copied(), list[tuple[News, JobResponse | None]]()
+        ledger, happened = self._ledger.copied(), list[tuple[News, JobResponse | None] | Told]()
         for record in records:
             for news in ledger.take(read(record), masters):
                 happened.append((news, response(news.job, masters) if news.what == "over" else None))
+            happened += ledger.stand(record)
         if happened or ledger.number - self._kept >= _KEEP_EVERY:
             with self._database.writing() as connection:
                 if _number(connection) != self._kept:  # where several stations share it another one has read on
                     self._ledger = None
                     return True, True
-                for news, made in happened:
-                    note(connection, news, made)
+                for each in happened:
+                    if isinstance(each, Told):
+                        tell(connection, each)
+                    else:
+                        note(connection, *each)
                 _keep(connection, ledger)
             self._kept = ledger.number
         self._ledger = ledger
-        return bool(happened), len(records) == _PAGE
+        return any(not isinstance(each, Told) for each in happened), len(records) == _PAGE
+
+    def _begin(self) -> Ledger:
+        """The ledger as it is kept. Where nothing was told of the station so far, that begins now."""
+        with self._database.reading() as connection:
+            ledger = _load(connection)
+            if ledger.silent is not None:
+                return ledger
+        with self._database.writing() as connection:
+            ledger = _load(connection)
+            if ledger.silent is None:
+                ledger = _beginning(connection, ledger)
+                _keep(connection, ledger)
+        return ledger
 
 
 def response(job: JobMade, masters: WorkMastersView) -> JobResponse:
@@ -119,6 +126,15 @@ def note(connection: Connection, news: News, made: JobResponse | None) -> None:
             events.append(connection, kind, order.id, news.time, {"operation": news.operation})
 
 
+def tell(connection: Connection, told: Told) -> None:
+    """Write an event of the station, or of an order that is not over."""
+    if told.job_order is not None:
+        order = orders.find(connection, told.job_order)
+        if order is None or order.is_over:
+            return
+    events.append(connection, told.kind, told.job_order, told.time, told.content)
+
+
 def _taken(connection: Connection, order: JobOrder, news: News) -> None:
     if order.state is OrderState.ALLOWED_TO_START:
         orders.become(connection, order, OrderState.RUNNING, news.time, {"began": news.time})
@@ -143,6 +159,15 @@ def _number(connection: Connection) -> int:
 def _load(connection: Connection) -> Ledger:
     content: str | None = connection.execute(select(JOB_LEDGER.c.content)).scalar_one_or_none()
     return Ledger() if content is None else Ledger.model_validate_json(content)
+
+
+def _beginning(connection: Connection, before: Ledger) -> Ledger:
+    """A ledger in which the records of now are old: if nothing is worked on, none but the last whole one matters."""
+    newest = next((each.number for each in run_journal.before(connection, None, 1)), 0)
+    if any(not job.state.is_over for job in before.jobs.values()):
+        return before.model_copy(update={"silent": newest})
+    whole = next(iter(run_journal.before(connection, None, 1, (BEGUN, SNAPSHOT))), None)
+    return Ledger(number=0 if whole is None else whole.number - 1, silent=newest)
 
 
 def _keep(connection: Connection, ledger: Ledger) -> None:

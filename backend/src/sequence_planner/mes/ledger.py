@@ -16,8 +16,10 @@ from pydantic import BaseModel, ConfigDict
 from sequence_planner.control.job_view import JobState
 from sequence_planner.control.view_part import Value
 from sequence_planner.control.work_master_view import WorkMastersView
+from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.mes.responses import AbilityMade, CorrectionMade, Deviation, OperationMade
 from sequence_planner.mes.run_reading import ReadJob, ReadRecord
+from sequence_planner.mes.station_news import StationStanding, Told
 
 MOST_DEVIATIONS: Final = 1000  # of a job that are told; an alarm that comes and goes over a weekend has more
 
@@ -61,10 +63,15 @@ class News:
 
 
 class Ledger(BaseModel):
-    """All jobs that are kept, in the order in which they were taken, and the values, as of record `number`."""
+    """All jobs that are kept, in the order in which they were taken, and the values, as of record `number`.
+
+    Of how the station stands, what records up to `silent` say is known and was not told: it is older than this ledger.
+    """
 
     model_config = ConfigDict(extra="forbid")
     number: int = 0
+    silent: int | None = None  # as of a program that told nothing of the station
+    station: StationStanding = StationStanding()
     jobs: dict[str, JobMade] = {}
     values: dict[str, Value | None] = {}
 
@@ -84,6 +91,13 @@ class Ledger(BaseModel):
         self._start(record, masters)
         self._note(record)
         return news
+
+    def stand(self, record: RunRecord) -> list[Told]:
+        """Take note of how the station stands after a record that was taken. What is to be told of it comes back."""
+        self.station, told = self.station.after(record)
+        for job in [job for job in self.station.waits if job not in self.jobs or self.jobs[job].state.is_over]:
+            self.station = self.station.without(job)
+        return told if record.number > (self.silent or 0) else []
 
     def _jobs(self, record: ReadRecord, masters: WorkMastersView) -> Iterator[News]:
         for id_, job in record.jobs.items():

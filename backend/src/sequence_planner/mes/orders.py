@@ -79,14 +79,16 @@ def store(
     return get(connection, id)
 
 
-def change(connection: Connection, id: str, revision: int, content: OrderContent, by: Actor, now: float) -> JobOrder:
-    """Let an order be of another content, before the station works on it.
+def change(
+    connection: Connection, id: str, revision: int | None, content: OrderContent, by: Actor, now: float
+) -> JobOrder:
+    """Let an order be of another content, before the station works on it; None is whatever revision it has.
 
     Raises `OrderRefused`: `no-job-order` (404), `job-order-changed` (412) when by now it has another revision,
     `job-order-started` (409).
     """
     order = get(connection, id)
-    if order.revision != revision:
+    if revision is not None and order.revision != revision:
         detail = f"Somebody or the station has changed it since: it has the revision {order.revision}. Read it again."
         raise OrderRefused("job-order-changed", "The job order has changed", detail, 412)
     if order.state not in BEFORE_START or order.handed_over is not None:

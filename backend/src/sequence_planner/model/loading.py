@@ -37,7 +37,9 @@ FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters
 
 @dataclass(frozen=True)
 class Station:
-    """A station as written. `messages` is the folder of its message definitions."""
+    """A station as written. `messages` is the folder of its message definitions; `empty` are the places of files of
+    entries that are there and have none.
+    """
 
     folder: Path
     station: StationDocument
@@ -45,6 +47,7 @@ class Station:
     operations: dict[SourceText, OperationDocument]
     specifications: dict[SourceText, SpecificationDocument]
     work_masters: dict[SourceText, WorkMasterDocument]
+    empty: tuple[Place, ...] = ()
 
     @property
     def messages(self) -> Path:
@@ -99,7 +102,7 @@ def load_station(folder: Path, before: ReadBefore | None = None) -> Station:
     if reader.findings or station is None:
         raise ModelError(reader.findings)
     present = {name: resource for name, resource in resources.items() if resource is not None}
-    return Station(folder, station, present, operations, specifications, work_masters)
+    return Station(folder, station, present, operations, specifications, work_masters, tuple(reader.empty))
 
 
 def _is_file(path: Path) -> bool:
@@ -119,6 +122,7 @@ class _FolderReader:
         self._before = before or ReadBefore()
         self._names: set[str] = set()
         self.findings: list[Finding] = []
+        self.empty: list[Place] = []
 
     def require_names(self) -> None:
         """Note files whose name is almost right: they would be left out without a word."""
@@ -151,7 +155,10 @@ class _FolderReader:
         if not (self._folder / name).exists():
             return {}
         found = self._once(name, kind, lambda document: _validated_entries(document, kind))
-        return cast("dict[SourceText, D] | None", found) or {}
+        entries = cast("dict[SourceText, D] | None", found) or {}
+        if not entries:
+            self.empty.append(Place(str(self._folder / name), 1, 1))
+        return entries
 
     def end(self) -> None:
         """All files were asked for."""

@@ -15,8 +15,9 @@ from sequence_planner.model.source import Finding, ModelError, SourceText
 
 EntryPath = tuple[str | int, ...]
 
-# Aliases of aliases can make a short file mean a gigantic one.
-MOST_ENTRIES = 100_000
+# Aliases of aliases can make a short file mean a gigantic one: of entries that stand in the file itself, and of those
+# that aliases stand for, which are there already.
+MOST_ENTRIES, MOST_REPEATED = 100_000, 10_000
 
 # An anchor or a tag before a text: no part of it.
 _PROPERTIES = re.compile(r"(?:[&!]\S*\s+)+")
@@ -90,6 +91,8 @@ def _not_yaml(name: str, error: MarkedYAMLError) -> Finding:
         problem = "a second document begins here, and a file has one"
     elif "expected ',' or" in problem:
         problem += "; in a list written in one line, put quotes around a text with brackets or commas"
+    elif "mapping values are not allowed" in problem:
+        problem = "a `name:` stands here where none may: look at the indentation, and quote a text that has `: `"
     elif "'<document start>'" in problem or "<block end>" in problem:
         problem = "this does not belong to what is above it: look at the indentation and the quotes"
     place = Place(name, mark.line + 1, mark.column + 1) if mark else Place(name, 1, 1)
@@ -102,7 +105,9 @@ class _Reader:
     def __init__(self, file: str, text: str) -> None:
         self._file = file
         self._text = text
-        self._entries = 0
+        self._entries = self._repeated = 0
+        self._repeating = 0  # how many of the lists and mappings around stand elsewhere in the text
+        self._read: set[Node] = set()
         self._around: list[Node] = []
         self.places: dict[EntryPath, Place] = {}
         self.values: dict[EntryPath, Place] = {}
@@ -117,8 +122,12 @@ class _Reader:
         if node in self._around:
             self._found(self._place(node), "this contains itself, by an alias of its own anchor")
             return None
+        is_repeated = node in self._read
+        self._read.add(node)
         self._around.append(node)
+        self._repeating += is_repeated
         content = self._mapping(node, path) if node.kind == "mapping" else self._sequence(node, path)
+        self._repeating -= is_repeated
         self._around.pop()
         return content
 
@@ -154,9 +163,16 @@ class _Reader:
         return content
 
     def _has_room(self, node: Node) -> bool:
+        if self._repeating:
+            self._repeated += 1
+            if self._repeated == MOST_REPEATED:
+                what = f"too large: its aliases stand for more than {MOST_REPEATED} entries; write out what is meant"
+                self._found(self._place(node), what)
+            return self._repeated < MOST_REPEATED
         self._entries += 1
         if self._entries == MOST_ENTRIES:
-            self._found(self._place(node), f"too large: with its aliases it has more than {MOST_ENTRIES} entries")
+            what = f"too large: it has more than {MOST_ENTRIES} entries; divide it into several files"
+            self._found(self._place(node), what)
         return self._entries < MOST_ENTRIES
 
     def _found(self, place: Place, message: str) -> None:

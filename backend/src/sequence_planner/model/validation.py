@@ -51,6 +51,18 @@ def findings_of(error: ValidationError, document: Document, at: EntryPath, kind:
     return [*findings, *merged]
 
 
+def complaint(error: ValidationError, kind: type[BaseModel]) -> str:
+    """What is wrong with something that was read as a `kind` and has no place in a file, in one line."""
+    said: dict[str, None] = {}
+    expected: dict[str, dict[str, None]] = {}
+    for details in error.errors():
+        if message := _said(details, kind):
+            said[message] = None
+        else:
+            expected.setdefault(shown(details["input"]), {})[_expectation(details)] = None
+    return "; ".join([*said, *(f"expected {' or '.join(wants)}, found {found}" for found, wants in expected.items())])
+
+
 def _step(part: str | int) -> str | int:
     return str(part) if isinstance(part, str) else part
 

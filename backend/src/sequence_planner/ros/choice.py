@@ -1,7 +1,9 @@
 """Which transport a station runs on.
 
 `auto` takes rclpy where ROS 2 is installed, since it speaks every vendor's DDS and its security, and DDS from PyPI
-anywhere else. Neither is imported before it is chosen: a machine needs only the one it uses.
+anywhere else. Neither is imported before it is chosen: a machine needs only the one it uses. That ROS 2 lies on the
+path does not mean that it works there: it may be of another Python, or have lost a library. `auto` does without it
+then, and says so.
 """
 
 from __future__ import annotations
@@ -9,12 +11,25 @@ from __future__ import annotations
 import asyncio
 import importlib.util
 import platform
-from typing import Literal
+import subprocess
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Literal
+
+import structlog
 
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import Transport, TransportError
 
+if TYPE_CHECKING:
+    from sequence_planner.ros.rclpy_transport import RclpyTransport
+
 TransportChoice = Literal["auto", "rclpy", "cyclonedds"]
+
+_log = structlog.get_logger(__name__)
+
+_OVER_RCLPY = "sequence_planner.ros.rclpy_transport"
+_PATIENCE = 60.0  # seconds for the import of rclpy
 
 
 def open_transport(
@@ -28,17 +43,11 @@ def open_transport(
 
     Raises TransportError when the transport cannot start, saying what to do, and ValueError for a bad node name.
     """
-    rclpy_here = importlib.util.find_spec("rclpy") is not None
-    if choice == "rclpy" or (choice == "auto" and rclpy_here):
-        if not rclpy_here:
-            raise TransportError(
-                "rclpy is not importable: source the setup file of a ROS 2 installation first, or choose cyclonedds"
-            )
-        # Only the transport that is chosen may be imported: the other may not be installed.
-        from sequence_planner.ros.rclpy_transport import RclpyTransport  # noqa: PLC0415
-
-        return RclpyTransport(registry, node_name, loop, domain_id)
+    transport = None if choice == "cyclonedds" else _rclpy_transport(choice)
+    if transport is not None:
+        return transport(registry, node_name, loop, domain_id)
     try:
+        # Only the transport that is chosen may be imported: the other may not be installed.
         from sequence_planner.ros.cyclone import CycloneTransport  # noqa: PLC0415
     except ImportError as error:
         raise TransportError(
@@ -46,3 +55,67 @@ def open_transport(
             f"and this is {platform.machine()} with Python {platform.python_version()}; elsewhere use ROS 2 with rclpy"
         ) from error
     return CycloneTransport(registry, node_name, loop, domain_id)
+
+
+def settled(choice: TransportChoice, say: Callable[[str], None]) -> TransportChoice:
+    """Return the transport for all processes of a station, so that they agree; `say` gets what a person should know.
+
+    What a broken installation does to whoever imports it is seen in a process that does nothing else. Raises
+    TransportError when rclpy is a must and cannot be had.
+    """
+    if choice == "cyclonedds" or not _is_here(choice):
+        return "cyclonedds"
+    command = [sys.executable, "-c", f"import {_OVER_RCLPY}"]
+    try:
+        tried = subprocess.run(
+            command, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=_PATIENCE, check=False
+        )
+    except subprocess.TimeoutExpired:
+        reason = f"it takes longer than {_PATIENCE:g} s"
+    else:
+        if tried.returncode == 0:
+            return "rclpy"
+        reason = (tried.stderr.strip().splitlines() or [f"it ends with code {tried.returncode}"])[-1]
+    if choice == "rclpy":
+        raise TransportError(_refusal(reason))
+    say(_fallback(reason))
+    return "cyclonedds"
+
+
+def _rclpy_transport(choice: Literal["auto", "rclpy"]) -> type[RclpyTransport] | None:
+    """Return the transport over rclpy; None where `auto` has to do without. Raises TransportError when it is a must."""
+    if not _is_here(choice):
+        return None
+    try:
+        from sequence_planner.ros.rclpy_transport import RclpyTransport  # noqa: PLC0415
+    except Exception as error:  # whatever a broken installation raises
+        reason = f"{type(error).__name__}: {error}".splitlines()[0]
+        if choice == "rclpy":
+            raise TransportError(_refusal(reason)) from error
+        _log.warning(_fallback(reason))
+        return None
+    return RclpyTransport
+
+
+def _is_here(choice: Literal["auto", "rclpy"]) -> bool:
+    """Return whether there is an rclpy, working or not; raises TransportError where it is a must and there is none."""
+    here = importlib.util.find_spec("rclpy") is not None
+    if choice == "rclpy" and not here:
+        raise TransportError(
+            "rclpy is not importable: source the setup file of a ROS 2 installation first, or choose cyclonedds"
+        )
+    return here
+
+
+def _fallback(reason: str) -> str:
+    return f"cyclonedds is used instead of {_broken(reason)}"
+
+
+def _refusal(reason: str) -> str:
+    return f"cannot use {_broken(reason)}: mend that installation of ROS 2, or choose cyclonedds"
+
+
+def _broken(reason: str) -> str:
+    found = importlib.util.find_spec("rclpy")
+    where = None if found is None else found.origin or next(iter(found.submodule_search_locations or ()), None)
+    return f"the rclpy at {where}, which Python {platform.python_version()} cannot import ({reason})"

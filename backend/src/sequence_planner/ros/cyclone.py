@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import asyncio
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from cyclonedds.core import DDSException
 from cyclonedds.pub import DataWriter
@@ -42,8 +42,6 @@ from sequence_planner.ros.transport import (
     unhindered,
 )
 from sequence_planner.ros.type_description import TypeDescription
-
-READER_DEPTH = 1000  # samples
 
 
 @dataclass(frozen=True)
@@ -86,7 +84,9 @@ class CycloneTransport:
         except DDSException as error:
             release(self._participant)
             raise TransportError(f"DDS cannot start on domain {domain}: {error}") from error
-        self._services = CycloneServices(self._participant, registry, self._raw, self._receiver, loop)
+        self._services = CycloneServices(
+            self._participant, registry, self._raw, self._receiver, loop, self._discovery.told_on
+        )
         self._announce()
 
     def advertise(self, topic: str, type_name: str, qos: QualityOfService) -> None:
@@ -119,7 +119,7 @@ class CycloneTransport:
         """Receive batches; see `Transport.subscribe`."""
         dds_topic = self._topic(topic, type_name)
         try:
-            reader = DataReader(self._participant, dds_topic, self._qos(type_name, _taken(qos)))
+            reader = DataReader(self._participant, dds_topic, self._qos(type_name, qos.of_a_reader))
         except DDSException as error:
             raise TransportError(f"DDS cannot subscribe to {topic}: {error}") from error
         delivery = Delivery(self._loop, topic, on_batch)
@@ -237,11 +237,3 @@ class CycloneTransport:
             )
         except DDSException as error:
             raise TransportError(f"DDS cannot announce this node: {error}") from error
-
-
-def _taken(qos: QualityOfService) -> QualityOfService:
-    """What a reader has that loses nothing while this process waits for the processor: its samples wait in `Delivery`.
-
-    The depth of a reader is nobody else's affair.
-    """
-    return replace(qos, depth=max(qos.depth, READER_DEPTH)) if qos.reliable else qos

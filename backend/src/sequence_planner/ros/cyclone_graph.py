@@ -63,8 +63,10 @@ class Discovery:
         self._nodes: dict[UUID, dict[UUID, str]] = {}  # participant -> endpoint -> node
         self._made: dict[UUID, Endpoint] = {}  # by endpoint
         self._topic = Topic(participant, discovery_info.TOPIC, raw)
-        self._reader = DataReader(participant, self._topic, discovery_qos(reader=True))
-        self._writer = DataWriter(participant, self._topic, discovery_qos(reader=False))
+        # Peers look for a hash at endpoints of every topic, and warn where there is none.
+        data = names.type_hash_user_data(registry.type_hash(discovery_info.TYPE_NAME))
+        self._reader = DataReader(participant, self._topic, discovery_qos(data, reader=True))
+        self._writer = DataWriter(participant, self._topic, discovery_qos(data, reader=False))
 
     def announce(self, readers: Iterable[UUID], writers: Iterable[UUID]) -> None:
         """Tell the network that these endpoints belong to this participant's node."""
@@ -97,6 +99,11 @@ class Discovery:
             for seen in known.values()
             if (service := names.ros_service(seen.topic_name, seen.type_name)) is not None
         ]
+
+    def told_on(self, dds_topic: str) -> list[bytes]:
+        """Return the user data of all publishers of a topic of DDS, whether or not its readers here match them."""
+        self._refresh("publisher")
+        return [user_data(seen.qos) for seen in self._known["publisher"].values() if seen.topic_name == dds_topic]
 
     def type_id(self, endpoint: Endpoint) -> TypeIdentifier | None:
         """Return the number that foreign endpoints like this one tell for their type, or None when they tell none."""

@@ -33,7 +33,7 @@ def endpoint_qos(qos: QualityOfService, user_data: bytes = b"") -> Qos:
     return Qos(*policies)
 
 
-def discovery_qos(*, reader: bool) -> Qos:
+def discovery_qos(user_data: bytes, *, reader: bool) -> Qos:
     """Return the policies of `ros_discovery_info`, on which participants tell their nodes."""
     history = Policy.History.KeepAll if reader else Policy.History.KeepLast(1)
     return Qos(
@@ -43,6 +43,7 @@ def discovery_qos(*, reader: bool) -> Qos:
         Policy.DurabilityService(0, Policy.History.KeepLast(1), -1, -1, -1),
         Policy.DataRepresentation(use_cdrv0_representation=True),
         Policy.WriterDataLifecycle(autodispose=False),
+        Policy.Userdata(user_data),
     )
 
 

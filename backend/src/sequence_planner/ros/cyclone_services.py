@@ -20,6 +20,7 @@ import structlog
 from cyclonedds.core import DDSException
 from cyclonedds.domain import DomainParticipant
 from cyclonedds.pub import DataWriter
+from cyclonedds.qos import Qos
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 
@@ -33,7 +34,7 @@ from sequence_planner.ros.cyclone_types import RawTypes
 from sequence_planner.ros.delivery import Delivery
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.quality import QualityOfService
-from sequence_planner.ros.serving import Serving, check_hashes
+from sequence_planner.ros.serving import Serving
 from sequence_planner.ros.transport import (
     Handler,
     NoAnswerError,
@@ -47,8 +48,6 @@ from sequence_planner.ros.transport import (
 
 _log = structlog.get_logger(__name__)
 
-#: As ROS 2's services have it, with room for many calls at a time.
-_QUALITY = QualityOfService(depth=1000)
 _POLL = 0.02  # seconds between two looks for a peer
 _LOOKS = 100  # for a client that has called, as a reader of the answer
 
@@ -71,7 +70,10 @@ class CycloneServices:
         raw: RawTypes,
         receiver: Receiver,
         loop: asyncio.AbstractEventLoop,
+        told_on: Callable[[str], list[bytes]],
     ) -> None:
+        """Begin without any; `told_on` gives the user data of all publishers of a topic of DDS."""
+        self._told_on = told_on
         self._participant = participant
         self._registry = registry
         self._raw = raw
@@ -113,7 +115,7 @@ class CycloneServices:
     ) -> bytes:
         """Call a service that has a client; see `Transport.call`."""
         client, until = self._clients[service, type_name], time.monotonic() + within
-        while not self._server_there(service, client.end):
+        while not client.end.server_there(self._registry, self._told_on):
             if time.monotonic() > until:
                 raise NoServerError(f"nobody serves {service} as {type_name}")
             await asyncio.sleep(_POLL)
@@ -174,45 +176,26 @@ class CycloneServices:
         outward, inward = (request, types.request), (reply, types.response)
         if not calling:
             outward, inward = inward, outward
-        data = identity + names.type_hash_user_data(self._registry.type_hash(type_name))
+
+        def quality(message: str) -> Qos:
+            """Each endpoint tells the hash of what passes through it, and not that of the service."""
+            return endpoint_qos(
+                QualityOfService.CALLS, identity + names.type_hash_user_data(self._registry.type_hash(message))
+            )
+
         try:
             topics = tuple(
                 Topic(self._participant, topic, self._raw(name, called=True)) for topic, name in (outward, inward)
             )
-            writer = DataWriter(self._participant, topics[0], endpoint_qos(_QUALITY, data))
-            reader = DataReader(self._participant, topics[1], endpoint_qos(_QUALITY, data))
+            writer = DataWriter(self._participant, topics[0], quality(outward[1]))
+            reader = DataReader(self._participant, topics[1], quality(inward[1]))
         except DDSException as error:
             raise TransportError(f"DDS refuses {service} as {type_name}: {error}") from error
         delivery = Delivery(self._loop, service, on_batch)
         self._receiver.add(service, reader, delivery)
-        return CallEnd(type_name, writer, self._raw(outward[1], called=True), reader, delivery, (topics[0], topics[1]))
-
-    def _server_there(self, service: str, end: CallEnd) -> bool:
-        """Return whether there is a server whose reply would reach us.
-
-        Raises NoServerError when a request would also reach somebody who would not understand it.
-        """
-        ours = self._registry.type_hash(end.type_name)
-        readers, writers = set(), set()
-        for handle in end.writer.get_matched_subscriptions():
-            reader = end.writer.get_matched_subscription_data(handle)
-            if reader is None:
-                continue
-            data = user_data(reader.qos)
-            server = names.server_of(data)
-            if server is None:
-                raise NoServerError(
-                    f"{service} is served by a program whose DDS cannot tell calls apart from here (no serviceid); "
-                    "it would execute garbage, so nothing was sent. Run it with RMW_IMPLEMENTATION=rmw_cyclonedds_cpp, "
-                    "or run this station with rclpy"
-                )
-            check_hashes(service, end.type_name, names.type_hash_of(data), ours)
-            readers.add(server)
-        for handle in end.reader.get_matched_publications():
-            writer = end.reader.get_matched_publication_data(handle)
-            if writer is not None:
-                writers.add(names.server_of(user_data(writer.qos)))
-        return bool(readers & writers)
+        return CallEnd(
+            service, types, writer, self._raw(outward[1], called=True), reader, delivery, (topics[0], topics[1])
+        )
 
     def _client_of(self, service: str, end: CallEnd, source: int) -> str | None:
         """Return which client of this mapping sent a request; None for others, of which the log tells once each."""

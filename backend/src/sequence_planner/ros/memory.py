@@ -12,6 +12,7 @@ import time
 from collections import deque
 
 from sequence_planner.ros.delivery import Delivery
+from sequence_planner.ros.derived import ServiceType
 from sequence_planner.ros.memory_network import Member, Members, Participant, Server, match
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.names import check_node_name, check_topic
@@ -173,12 +174,9 @@ class MemoryTransport:
         """Return who serves; raises NoServerError for somebody whose definition is another one."""
         for server in self._network.servers:
             if (server.service, server.type_name) == (service, type_name):
-                check_hashes(
-                    service,
-                    type_name,
-                    server.owner.registry.type_hash(type_name),
-                    self._me.registry.type_hash(type_name),
-                )
+                types, theirs, ours = ServiceType(type_name), server.owner.registry, self._me.registry
+                for message in (types.request, types.response):
+                    check_hashes(service, message, theirs.type_hash(message), ours.type_hash(message))
                 return server
         return None
 

@@ -17,8 +17,9 @@ _DDS_TYPE = re.compile(r"(?P<package>\w+)::(?P<kind>msg|srv|action)::dds_::(?P<n
 _REQUEST = re.compile(r"rq(/.+)Request")
 _TYPE_HASH = re.compile(rb"(?:^|;)typehash=(RIHS01_[0-9a-f]{64});")
 
-_SERVER = re.compile(rb"(?:^|;)serviceid=([0-9a-f.]+);")
-_CLIENT = re.compile(rb"(?:^|;)clientid=([0-9a-f.]+);")
+#: rmw_cyclonedds writes the first byte of an identity in two places, and fills up with a blank.
+_SERVER = re.compile(rb"(?:^|;)serviceid=([ 0-9a-f.]+);")
+_CLIENT = re.compile(rb"(?:^|;)clientid=([ 0-9a-f.]+);")
 
 #: Marks a topic of ROS 2 (services have `rq` and `rr`).
 TOPIC_PREFIX = "rt"
@@ -90,7 +91,8 @@ def client_of(user_data: bytes) -> str | None:
 
 
 def _dotted(identity: bytes) -> str:
-    return ".".join(f"{byte:x}" for byte in identity)
+    first, *others = identity
+    return ".".join([f"{first:2x}", *(f"{byte:x}" for byte in others)])
 
 
 def dds_type(type_name: str) -> str:

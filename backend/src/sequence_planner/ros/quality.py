@@ -8,10 +8,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import ClassVar, Literal
 
 Direction = Literal["publisher", "subscriber"]
+
+#: Samples that wait for a process which itself waits for the processor.
+READER_DEPTH = 1000
 
 _KEYS = ("reliability", "durability", "depth", "deadline", "liveliness")
 _MAX_DEPTH = 100_000
@@ -29,6 +32,7 @@ class QualityOfService:
     RELIABLE: ClassVar[QualityOfService]  # reliable, volatile, keep last 10: commands and states
     SENSOR_DATA: ClassVar[QualityOfService]  # best effort, keep last 5: fast streams where only the newest counts
     LATCHED: ClassVar[QualityOfService]  # reliable, transient local, keep last 1: late joiners get the last sample
+    CALLS: ClassVar[QualityOfService]  # as ROS 2's services have it, with room for many calls at a time
 
     reliable: bool = True
     transient_local: bool = False
@@ -58,6 +62,11 @@ class QualityOfService:
             liveliness=_seconds(written, "liveliness"),
         )
 
+    @property
+    def of_a_reader(self) -> QualityOfService:
+        """What a reader has that loses nothing while its process is busy; its depth is nobody else's affair."""
+        return replace(self, depth=max(self.depth, READER_DEPTH)) if self.reliable else self
+
     def __str__(self) -> str:
         """The quality as a model writes it."""
         for name, quality in _NAMED.items():
@@ -75,6 +84,7 @@ class QualityOfService:
 QualityOfService.RELIABLE = QualityOfService()
 QualityOfService.SENSOR_DATA = QualityOfService(reliable=False, depth=5)
 QualityOfService.LATCHED = QualityOfService(transient_local=True, depth=1)
+QualityOfService.CALLS = QualityOfService(depth=READER_DEPTH)
 
 _NAMED = {
     "reliable": QualityOfService.RELIABLE,

@@ -2,19 +2,25 @@
 
 rclpy lists the endpoints of a topic with node, type, hash and policies, but does not say which are its caller's. Those
 are known by the node's name; should another process have taken the same name, what exceeds our own number is foreign.
+The endpoints of a service are found as those of the topics of DDS that it is made of.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
+from collections.abc import Callable, Mapping, Set
+from uuid import UUID
 
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, ReliabilityPolicy
 from rclpy.topic_endpoint_info import TopicEndpointInfo
 
+from sequence_planner.ros import names
+from sequence_planner.ros.derived import ServiceType
 from sequence_planner.ros.rclpy_qos import seconds
 from sequence_planner.ros.service_graph import ServiceEnd
-from sequence_planner.ros.transport import Direction, Endpoint
+from sequence_planner.ros.serving import check_hashes
+from sequence_planner.ros.transport import Direction, Endpoint, NoServerError
+from sequence_planner.ros.vendors import vendor_of
 
 #: What the middleware calls a node that has not told its name yet.
 _UNNAMED = "_NODE_NAME_UNKNOWN_"
@@ -47,6 +53,36 @@ def service_ends(node: Node) -> list[ServiceEnd]:
     ]
 
 
+def check_servers(node: Node, service: str, type_name: str, hash_of: Callable[[str], str]) -> None:
+    """Raise NoServerError when a request would reach somebody who would not understand it.
+
+    Vendors of DDS write the number of a call in different places, and rclpy tells who serves by the topics alone.
+    `hash_of` gives the hash of a message.
+    """
+    requests, replies = names.dds_service(service)
+    types = ServiceType(type_name)
+    ours = node.get_subscriptions_info_by_topic(replies, no_mangle=True)
+    vendors = {_vendor(info) for info in ours if info.node_name == node.get_name()}
+    for info in node.get_subscriptions_info_by_topic(requests, no_mangle=True):
+        if vendors and _vendor(info) not in vendors:
+            raise NoServerError(
+                f"{service} is served by a program on {_vendor(info) or 'another DDS'}, which cannot tell apart calls "
+                f"that come from {' or '.join(sorted(map(str, vendors)))}; it would execute garbage, so nothing was "
+                "sent. Run both with the same RMW_IMPLEMENTATION"
+            )
+        check_hashes(service, types.request, _hash(info), hash_of(types.request))
+    for info in node.get_publishers_info_by_topic(replies, no_mangle=True):
+        check_hashes(service, types.response, _hash(info), hash_of(types.response))
+
+
+def _vendor(info: TopicEndpointInfo) -> str | None:
+    return vendor_of(UUID(bytes=bytes(info.endpoint_gid[:16])))
+
+
+def _hash(info: TopicEndpointInfo) -> str | None:
+    return str(info.topic_type_hash) if info.topic_type_hash.version > 0 else None
+
+
 def _of_topic(
     topic: str, direction: Direction, infos: list[TopicEndpointInfo], own_name: str, own: int
 ) -> list[Endpoint]:
@@ -62,12 +98,13 @@ def _of_topic(
                 type_name=info.topic_type,
                 direction=direction,
                 own=mine,
-                type_hash=str(info.topic_type_hash) if info.topic_type_hash.version > 0 else None,
+                type_hash=_hash(info),
                 node=None if info.node_name == _UNNAMED else name,
                 reliable=info.qos_profile.reliability == ReliabilityPolicy.RELIABLE,
                 transient_local=info.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL,
                 deadline=seconds(info.qos_profile.deadline),
                 liveliness=seconds(info.qos_profile.liveliness_lease_duration),
+                vendor=_vendor(info),
             )
         )
     return found

@@ -2,23 +2,30 @@
 
 rclpy takes and gives message objects here, never bytes, so they pass through the generated code of their types. Its
 executor would keep a processor busy for as long as a coroutine waits for an answer; so the callback of a service only
-hands the request over to the event loop, and the response is sent when it is there.
+hands the request over to the event loop, and the response is sent when it is there. What else has come by then is taken
+in the same go: the executor builds its wait set anew for each turn.
 """
 
 from __future__ import annotations
 
 import asyncio
+import threading
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 from rclpy.client import Client
 from rclpy.node import Node
-from rclpy.service import RequestHeader, Service
+from rclpy.service import Service
 from rclpy.task import Future
 
 from sequence_planner.ros import names
 from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.quality import QualityOfService
+from sequence_planner.ros.rclpy_draining import requests_waiting, responses_waiting
+from sequence_planner.ros.rclpy_graph import check_servers
+from sequence_planner.ros.rclpy_qos import profile
 from sequence_planner.ros.rclpy_types import (
     ServiceClass,
     deserialize_message,
@@ -50,7 +57,11 @@ class RclpyServices:
         """Call a service; see `Transport.call`."""
         client, types = self._client(service, type_name)
         until = time.monotonic() + within
-        while not client.service_is_ready():
+        while True:
+            there = client.service_is_ready()
+            check_servers(self._node, service, type_name, self._registry.type_hash)
+            if there:
+                break
             if time.monotonic() > until:
                 raise NoServerError(f"nobody serves {service} as {type_name}")
             await asyncio.sleep(_POLL)
@@ -61,6 +72,7 @@ class RclpyServices:
         def received(future: Future) -> None:
             """Hand the response over to the event loop; called on the executor's thread."""
             self._post(lambda: _settle(answer, future))
+            responses_waiting(client, types)
 
         sent = guarded(f"call {service}", lambda: client.call_async(deserialize_message(request, types.Request)))
         sent.add_done_callback(received)
@@ -80,20 +92,29 @@ class RclpyServices:
             raise TransportError(f"{service} is already served")
         types = service_class(service, type_name)
 
+        ready = threading.Event()
+
         def received(request: object, response: object) -> object:
             """Let the executor go on with the request itself, which `hand_over` then gets with its header."""
+            ready.wait()
             return request
 
-        def hand_over(request: object, header: RequestHeader) -> None:
-            data = bytes(serialize_message(request))
-            self._post(lambda: self._serving.answer(service, handler, data, lambda answer: respond(answer, header)))
+        def hand_over(request: object, header: object) -> None:
+            for each, its_header in [(request, header), *requests_waiting(server, types)]:
+                data = bytes(serialize_message(each))
+                self._post(partial(self._serving.answer, service, handler, data, partial(respond, its_header)))
 
-        def respond(answer: bytes, header: RequestHeader) -> None:
+        def respond(header: object, answer: bytes) -> None:
             send(deserialize_message(answer, types.Response), header)
 
-        server = guarded(f"serve {service}", lambda: self._node.create_service(types, service, received))
+        server = guarded(
+            f"serve {service}",
+            lambda: self._node.create_service(types, service, received, qos_profile=profile(QualityOfService.CALLS)),
+        )
         self._servers[service] = server
-        send, server.send_response = server.send_response, hand_over
+        send = server.send_response
+        vars(server)["send_response"] = hand_over
+        ready.set()
 
     def close(self) -> None:
         """Answer nothing any more, and let those who wait for an answer know."""
@@ -108,7 +129,8 @@ class RclpyServices:
         key = (service, type_name)
         if key not in self._clients:
             types = service_class(service, type_name)
-            client = guarded(f"call {service}", lambda: self._node.create_client(types, service))
+            calls = profile(QualityOfService.CALLS)
+            client = guarded(f"call {service}", lambda: self._node.create_client(types, service, qos_profile=calls))
             self._clients[key] = (client, types)
         return self._clients[key]
 

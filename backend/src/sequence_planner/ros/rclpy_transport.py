@@ -23,12 +23,14 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.signals import SignalHandlerOptions
+from rclpy.subscription import Subscription
 
 from sequence_planner.ros import enclaves, environment, names
 from sequence_planner.ros.both_sides import both_sides
 from sequence_planner.ros.delivery import Delivery
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.quality import Direction
+from sequence_planner.ros.rclpy_draining import messages_waiting
 from sequence_planner.ros.rclpy_graph import endpoints, service_ends
 from sequence_planner.ros.rclpy_qos import Tell, profile, publisher_events, subscription_events
 from sequence_planner.ros.rclpy_services import RclpyServices
@@ -124,15 +126,21 @@ class RclpyTransport:
         message = self._message_class(topic, type_name)
         delivery = Delivery(self._loop, topic, on_batch)
 
+        made: list[Subscription] = []  # empty as long as rclpy makes it
+
         def received(data: bytes) -> None:
-            delivery.push([Sample(topic, data, time.monotonic())])
+            batch = [data, *(each for subscription in made for each in messages_waiting(subscription, message))]
+            now = time.monotonic()
+            delivery.push(Sample(topic, each, now) for each in batch)
 
         events = subscription_events(qos, self._teller(topic, "subscriber", qos))
-        guarded(
+        made += guarded(
             f"subscribe to {topic}",
-            lambda: self._node.create_subscription(
-                message, topic, received, profile(qos), event_callbacks=events, raw=True
-            ),
+            lambda: [
+                self._node.create_subscription(
+                    message, topic, received, profile(qos.of_a_reader), event_callbacks=events, raw=True
+                )
+            ],
         )
         self._subscriptions.append((topic, delivery))
 

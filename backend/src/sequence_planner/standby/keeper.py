@@ -45,6 +45,8 @@ class Keeper:
         self._loop = asyncio.get_running_loop()
         self._taken: asyncio.Future[None] = self._loop.create_future()
         self._lost: asyncio.Future[None] = self._loop.create_future()
+        self._settled: asyncio.Future[None] = self._loop.create_future()
+        self._stands_by: asyncio.Future[None] = self._loop.create_future()
         self._ending = threading.Event()
         self._is_lost = False
         self._thread = threading.Thread(target=self._work, name="lease", daemon=True)
@@ -60,6 +62,16 @@ class Keeper:
         """Who commanded before this station did; None if that was nobody else."""
         return self._lease.taken_from
 
+    @property
+    def epoch(self) -> int | None:
+        """That of the lease, while it is this station's."""
+        return self._lease.epoch
+
+    @property
+    def settled_before(self) -> bool:
+        """See `Lease.settled_before`."""
+        return self._lease.settled_before
+
     def fence(self, connection: Connection) -> bool:
         """See `Lease.fence`; used from the thread that writes the journal."""
         return self._lease.fence(connection)
@@ -72,17 +84,26 @@ class Keeper:
         """Wait until the lease was taken."""
         await asyncio.shield(self._taken)
 
+    async def stands_by(self) -> None:
+        """Wait until it is seen that another station holds it, or that this one must not take it."""
+        await asyncio.shield(self._stands_by)
+
+    async def settled(self, within: float) -> bool:
+        """Whether all that was accepted before it was taken is known to be recorded, by now or in so many seconds."""
+        await asyncio.wait({self._settled}, timeout=within)
+        return self._settled.done()
+
     async def lost(self) -> None:
         """Wait until it was lost. Raises `LeaseLostError` then."""
         await asyncio.shield(self._lost)
         raise LeaseLostError
 
-    async def end(self, *, deployed: bool) -> None:
-        """Let go of the lease: nothing is said to a device any more. See `Lease.release` for `deployed`."""
+    async def end(self, *, deployed: bool, settled: bool) -> None:
+        """Let go of the lease: nothing is said to a device any more. See `Lease.release`."""
         self._ending.set()
         await asyncio.to_thread(self._thread.join, ENDING)
         with contextlib.suppress(StorageError):  # then it runs out
-            await asyncio.to_thread(self._lease.release, deployed=deployed)
+            await asyncio.to_thread(self._lease.release, deployed=deployed, settled=settled)
         self._lease.close()
 
     def _work(self) -> None:
@@ -90,6 +111,7 @@ class Keeper:
             try:
                 self._step()
             except StorageError as error:
+                self._lease.look_anew()
                 self._tell(str(error))
                 if self._lease.is_gone:
                     # It says nothing, but it is seen on the network, and whoever commands now waits until it is not.
@@ -105,9 +127,14 @@ class Keeper:
                 self._lose()
         elif self._lease.try_to_take():
             LOG.info("this station commands from now on", name=self._lease.name)
-            self._call(self._taken)
         else:
             self._lease.stand_by()
+            if self._lease.is_elsewhere:
+                self._call(self._stands_by)
+        if self._lease.settled_before:
+            self._call(self._settled)  # before it is told that the lease was taken
+        if self._lease.is_ours:
+            self._call(self._taken)
         self._tell(None)
 
     def _lose(self) -> None:

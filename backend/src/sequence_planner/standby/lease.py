@@ -8,6 +8,11 @@ that goes on while its process stands still (Gray and Cheriton, *Leases*, SOSP 1
 
 What its holder writes into the journal passes a `fence` in the same transaction: who takes the lease reads all that was
 written under the one before, and nothing is written under that afterwards.
+
+A holder that falls silent may have died, or be cut off and go on accepting that people stop the station, which the
+journal never hears of. So who takes the lease does not know whether the last recorded word was the last, unless an
+epoch is `settled`: by its holder that lets go of it with everything recorded, or by a later process on the same machine
+that knows its holder to be dead, and what that had accepted.
 """
 
 from __future__ import annotations
@@ -75,9 +80,16 @@ class Lease:
     """The last that was seen of it; None if nobody has ever held it."""
     taken_from: str | None = None
     """Who else had held it before it was taken here."""
+    settled_before: bool = False
+    """Whether all that was accepted before it was taken here is known to be in the journal."""
+    unsettled: int | None = None
+    """The epoch in which an earlier process of this very station held it, which has ended, and of which this one alone
+    knows what is not recorded: it does not wait for it."""
+    _left_at: float | None = None  # when an earlier epoch of this station was settled here: others come first then
     _epoch: int | None = None  # in which it is ours
     _until: float = 0.0  # on the clock
     _still_since: float = 0.0  # nothing about it has changed since
+    _renewed_elsewhere: bool = False  # by its holder that was seen last
     _standbys: dict[str, tuple[int, float]] = field(default_factory=dict)  # by name: its count, and since when
 
     @property
@@ -89,6 +101,11 @@ class Lease:
     def is_ours(self) -> bool:
         """Whether it was taken, and nobody else is known to have taken it since."""
         return self._epoch is not None
+
+    @property
+    def epoch(self) -> int | None:
+        """The number of its holder, while that is this station."""
+        return self._epoch
 
     @property
     def is_gone(self) -> bool:
@@ -105,27 +122,50 @@ class Lease:
             return f"another model was deployed at {seen.holder}: deploy it here too"
         return f"{seen.holder} runs another model: deploy the same one here"
 
+    @property
+    def is_elsewhere(self) -> bool:
+        """Whether this station stands by: another one was seen to renew it, or this one must not take it."""
+        return not self.is_ours and (self._renewed_elsewhere or self.hindrance is not None)
+
     def try_to_take(self) -> bool:
         """Look at it, and take it if its holder has let go of it, or has not renewed it for too long."""
         with self._writing() as connection:
             row = connection.execute(select(LEASE).where(_THE_ROW)).first()
         now = self.clock()
         seen = None if row is None else _seen(row)
+        self._renewed_elsewhere = _is_renewed(self.seen, seen, self.name) or (
+            self._renewed_elsewhere and seen == self.seen
+        )
         if seen != self.seen or not self._still_since:
             self.seen, self._still_since = seen, now
         if self.hindrance is not None:
             return False
-        if seen is not None and not seen.free and now - self._still_since < LASTS:
+        if seen is not None and not self._may_take(seen, now):
             return False
         return self._take(seen)
+
+    def _may_take(self, seen: Seen, now: float) -> bool:
+        """Whether it may be taken by now from who holds it, or did."""
+        if seen.holder == self.name and seen.epoch == self.unsettled:
+            return True
+        if self._left_at is not None and now - self._left_at < LASTS:
+            return False
+        return seen.free or now - self._still_since >= LASTS
+
+    def look_anew(self) -> None:
+        """The database did not answer. Nobody could renew it meanwhile, so from now on its holder has all the time."""
+        self._still_since = 0.0
 
     def renew(self) -> bool:
         """Hold it for longer; false if somebody else has taken it."""
         began = self.clock()
         with self._writing() as connection:
             ours = _THE_ROW & (LEASE.c.epoch == self._epoch) & ~LEASE.c.free
-            renewed = connection.execute(update(LEASE).where(ours).values(renewals=LEASE.c.renewals + 1)).rowcount == 1
-        if renewed:
+            counted = update(LEASE).where(ours).values(renewals=LEASE.c.renewals + 1).returning(LEASE.c.settled)
+            settled = connection.execute(counted).scalar()
+        renewed = settled is not None
+        if settled is not None:
+            self._note_settled(settled)
             self._hold(began)
         else:
             self._epoch, self._until = None, 0.0
@@ -139,13 +179,30 @@ class Lease:
         found = connection.execute(seen.with_for_update(read=True, key_share=True)).first()
         return found is not None and found.epoch == self._epoch and not found.free
 
-    def release(self, *, deployed: bool = False) -> None:
-        """Let go of it, so that others need not wait; when another model was `deployed` here only those who run it."""
+    def release(self, *, deployed: bool = False, settled: bool = False) -> None:
+        """Let go of it, so that others need not wait; when another model was `deployed` here only those who run it.
+
+        `settled` says that all that was accepted is recorded.
+        """
         epoch, self._epoch, self._until = self._epoch, None, 0.0
         if epoch is not None:
-            values = {"free": True, **({"model": DEPLOYED} if deployed else {})}
+            values = {
+                "free": True,
+                **({"model": DEPLOYED} if deployed else {}),
+                **({"settled": epoch} if settled else {}),
+            }
             with self._writing() as connection:
                 connection.execute(update(LEASE).where(_THE_ROW & (LEASE.c.epoch == epoch)).values(values))
+
+    def settle(self, epoch: int) -> None:
+        """Say of an earlier process of this station that it has ended, and that all it accepted is recorded."""
+        with self._writing() as connection:
+            later = _THE_ROW & (LEASE.c.epoch >= epoch) & (LEASE.c.settled < epoch)
+            connection.execute(update(LEASE).where(later).values(settled=epoch))
+            held = _THE_ROW & (LEASE.c.epoch == epoch) & ~LEASE.c.free
+            was_held = connection.execute(update(LEASE).where(held).values(free=True)).rowcount == 1
+        if was_held:
+            self._left_at = self.clock()
 
     def stand_by(self) -> None:
         """Say that this station is there and waits."""
@@ -180,8 +237,8 @@ class Lease:
         mine = {"holder": self.name, "model": self.model, "renewals": 0, "free": False}
         with self._writing() as connection:
             if seen is None:
-                first = insert_or_not(LEASE).values(id=1, epoch=1, **mine).on_conflict_do_nothing()
-                taken = connection.execute(first.returning(LEASE.c.id)).first() is not None
+                first = insert_or_not(LEASE).values(id=1, epoch=1, settled=-1, **mine).on_conflict_do_nothing()
+                settled = connection.execute(first.returning(LEASE.c.settled)).scalar()
             else:
                 as_seen = (
                     (LEASE.c.epoch == seen.epoch) & (LEASE.c.renewals == seen.renewals) & (LEASE.c.free == seen.free)
@@ -189,13 +246,18 @@ class Lease:
                 values = {**mine, "epoch": seen.epoch + 1}
                 # Whoever has passed the fence writes first: taking waits for that, and renewing does not.
                 connection.execute(select(LEASE.c.id).where(_THE_ROW).with_for_update())
-                taken = connection.execute(update(LEASE).where(_THE_ROW & as_seen).values(values)).rowcount == 1
-        if taken:
+                taking = update(LEASE).where(_THE_ROW & as_seen).values(values).returning(LEASE.c.settled)
+                settled = connection.execute(taking).scalar()
+        if settled is not None:
             self.taken_from = None if seen is None or seen.holder == self.name else seen.holder
             self._epoch = 1 if seen is None else seen.epoch + 1
             self.seen = Seen(self.name, self.model, self._epoch, 0, free=False)
+            self._note_settled(settled)
             self._hold(began)
-        return taken
+        return settled is not None
+
+    def _note_settled(self, settled: int) -> None:
+        self.settled_before = self._epoch is not None and settled >= self._epoch - 1
 
     def _hold(self, began: float) -> None:
         self._until = began + LASTS - MARGIN
@@ -222,6 +284,11 @@ def open_lease(url: str, name: str, model: str) -> Lease:
         name,
         model,
     )
+
+
+def _is_renewed(before: Seen | None, now: Seen | None, name: str) -> bool:
+    """Whether somebody else than `name` holds it now, and has taken or renewed it since it was seen before."""
+    return before is not None and now is not None and not now.free and now.holder != name and now != before
 
 
 def _seen(row: Row[tuple[object, ...]]) -> Seen:

@@ -16,6 +16,8 @@ LEASE = Table(
     Column("epoch", NUMBER, nullable=False),  # how often it was taken
     Column("renewals", NUMBER, nullable=False),  # since it was taken
     Column("free", Boolean, nullable=False),  # the holder has let go of it
+    # Up to which epoch it is certain that nothing was accepted that is not in the journal.
+    Column("settled", NUMBER, nullable=False, server_default="-1"),
 )
 
 STANDBYS = Table(

@@ -12,6 +12,7 @@ from sqlalchemy.exc import DataError, DBAPIError, IntegrityError, ProgrammingErr
 from sequence_planner.storage import postgresql, sqlite, upgrading
 from sequence_planner.storage.address import PostgresqlServer, SqliteFile, address
 from sequence_planner.storage.error import StorageError
+from sequence_planner.storage.lost import require_meant
 from sequence_planner.storage.trouble import PATIENCE, storage_error
 
 __all__ = ["Database", "StorageError"]
@@ -33,15 +34,16 @@ class Database:
         self._writer = threading.Lock()  # writers of one process take turns here, which is quicker than trying again
 
     @classmethod
-    def open(cls, url: str, *, create: bool = True) -> Database:
+    def open(cls, url: str, *, create: bool = True, new: bool = False) -> Database:
         """The database that a URL names: `sqlite:////folder/file` or `postgresql://user:password@host/database`.
 
         A file of SQLite that is not there yet is made, as is its folder, for this user alone; without `create` it must
-        be there. Raises `StorageError` for a URL that names nothing usable, and if nothing can be reached there.
+        be there. Raises `StorageError` for a URL that names nothing usable, if nothing can be reached there, and for an
+        empty database where a station was, unless a `new` one is meant.
         """
         place = address(url)
         database = cls(
-            place, sqlite.engine(place, create) if isinstance(place, SqliteFile) else postgresql.engine(place)
+            place, sqlite.engine(place, create, new) if isinstance(place, SqliteFile) else postgresql.engine(place)
         )
         try:
             with database._told(everything=True), database.reading() as connection:
@@ -52,12 +54,15 @@ class Database:
             raise
         return database
 
-    def upgrade(self) -> None:
+    def upgrade(self, *, new: bool = False) -> None:
         """Bring the tables to what this version of the program uses; several processes may do so at once.
 
-        Raises `StorageError` for a database of a newer version, or of another program.
+        Raises `StorageError` for a database of a newer version, or of another program, and for one without tables where
+        a station was, unless a `new` one is meant.
         """
         with self._told(everything=True), self.writing() as connection:
+            if not new and upgrading.is_empty(connection):
+                require_meant(self.place)
             upgrading.upgrade(connection, str(self.place))
 
     def check(self) -> None:

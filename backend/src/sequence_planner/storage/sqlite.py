@@ -15,14 +15,21 @@ from sqlalchemy.exc import OperationalError
 
 from sequence_planner.storage.address import SqliteFile
 from sequence_planner.storage.error import StorageError
-from sequence_planner.storage.trouble import PATIENCE
+from sequence_planner.storage.lost import require_meant
+from sequence_planner.storage.trouble import PATIENCE, file_trouble
 
 READING: Final = {"sequence_planner_reading": True}  # execution options of a connection
+_HEADER: Final = 100  # bytes
 _LAST: Final = "sequence_planner_last_read"  # what a connection was last used for, in its `info`
 
 
-def engine(file: SqliteFile, create: bool) -> Engine:
-    """Connections to a file, which is made if it is not there. Raises `StorageError`."""
+def engine(file: SqliteFile, create: bool, new: bool) -> Engine:
+    """Connections to a file, which is made if it is not there; where a station was, only a `new` one is meant by that.
+
+    Raises `StorageError`.
+    """
+    if not new and _is_empty(file):
+        require_meant(file)
     if create:
         _make_folder(file)
     _make(file, create)
@@ -38,12 +45,24 @@ def engine(file: SqliteFile, create: bool) -> Engine:
     return made
 
 
+def _is_empty(file: SqliteFile) -> bool:
+    """Whether it is not there, or too short for what a database begins with: SQLite takes a byte for nothing."""
+    try:
+        return file.path.stat().st_size < _HEADER and not file.path.is_dir()
+    except FileNotFoundError:
+        return True
+    except OSError:
+        return False  # which is said when it is opened
+
+
 def _make_folder(file: SqliteFile) -> None:
     """Its folder, for this user alone; one that is there already stays as it is. Raises `StorageError`."""
     try:
         file.path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
     except OSError as error:
-        raise StorageError(f"the folder {file.path.parent} cannot be made: {error.strerror}") from error
+        raise StorageError(
+            f"the folder {file.path.parent} cannot be made: {file_trouble(error, file.path.parent)}"
+        ) from error
 
 
 def _make(file: SqliteFile, create: bool) -> None:
@@ -66,7 +85,7 @@ def _make(file: SqliteFile, create: bool) -> None:
     except FileNotFoundError as error:
         raise StorageError(f"{file} is not there: no station has kept its database there yet") from error
     except OSError as error:
-        raise StorageError(f"{file} cannot be opened: {error.strerror}") from error
+        raise StorageError(f"{file} cannot be opened: {file_trouble(error, file.path)}") from error
 
 
 def _connect(file: SqliteFile) -> sqlite3.Connection:
@@ -76,12 +95,23 @@ def _connect(file: SqliteFile) -> sqlite3.Connection:
     )
     try:
         _write_ahead(connection, file)
+        _require_whole_pages(connection, file)
         for setting in ("synchronous = FULL", "foreign_keys = ON", "trusted_schema = OFF"):
             connection.execute(f"PRAGMA {setting}").close()
     except (sqlite3.Error, StorageError):
         connection.close()
         raise
     return connection
+
+
+def _require_whole_pages(connection: sqlite3.Connection, file: SqliteFile) -> None:
+    """Raises `StorageError` where a part of the last page is missing, which SQLite takes for zeros. Where more is
+    missing it says so itself.
+    """
+    log = file.path.with_name(f"{file.path.name}-wal")
+    (page,) = connection.execute("PRAGMA page_size").fetchone()
+    if file.path.stat().st_size % page and not (log.exists() and log.stat().st_size):
+        raise StorageError(f"{file} is damaged, as its end is missing: move it away and put a copy in its place")
 
 
 def _write_ahead(connection: sqlite3.Connection, file: SqliteFile) -> None:

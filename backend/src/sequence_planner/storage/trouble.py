@@ -2,7 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import errno
+import os
+import pwd
 import sqlite3
+import stat
+from pathlib import Path
 
 from sqlalchemy.exc import DBAPIError, SQLAlchemyError
 
@@ -30,14 +36,66 @@ _POSTGRESQL = {
 }
 
 
+def file_trouble(error: OSError, path: Path) -> str:
+    """Why the file or folder at `path` cannot be used, and what to do."""
+    if error.errno == errno.EROFS or (error.errno in (errno.EACCES, errno.EPERM) and _only_reads(path)):
+        return "its disk can only be read: have it mounted so that it can be written to, or name a place elsewhere"
+    if error.errno in (errno.ENOSPC, errno.EDQUOT):
+        return "there is no room on its disk: make room, then try again"
+    if error.errno in (errno.EACCES, errno.EPERM):
+        return f"{_rights(path)}: give this user the right to read and write it, and to write to its folder"
+    return str(error.strerror)
+
+
+def _only_reads(path: Path) -> bool:
+    found = _nearest(path)
+    return found is not None and bool(os.statvfs(found).f_flag & os.ST_RDONLY)
+
+
+def _nearest(path: Path) -> Path | None:
+    """What there is of a path, as far as this user may know."""
+    for each in (path, *path.parents):
+        with contextlib.suppress(OSError):
+            each.stat()
+            return each
+    return None
+
+
+def _rights(path: Path) -> str:
+    found = _nearest(path)
+    if found is None:
+        return f"it is not open to the user {_name(os.geteuid())}"
+    status = found.stat()
+    what = "it" if found == path else f"{found}"
+    return (
+        f"{what} belongs to {_name(status.st_uid)} ({stat.filemode(status.st_mode)}), and this is {_name(os.geteuid())}"
+    )
+
+
+def _name(user: int) -> str:
+    try:
+        return pwd.getpwuid(user).pw_name
+    except KeyError:
+        return f"the user {user}"
+
+
 def storage_error(place: SqliteFile | PostgresqlServer, error: SQLAlchemyError) -> StorageError:
     """The same trouble for people."""
     cause = error.orig if isinstance(error, DBAPIError) else None
     if isinstance(cause, sqlite3.Error):
-        return StorageError(f"{place} {_of_sqlite(cause)}")
+        of_disk = isinstance(place, SqliteFile) and _of_disk(cause, place.path)
+        return StorageError(f"{place} {of_disk or _of_sqlite(cause)}")
     if cause is not None and isinstance(place, PostgresqlServer):
         return StorageError(f"{place} {_of_postgresql(cause)}")
     return StorageError(f"{place} cannot be used: {error}")
+
+
+def _of_disk(cause: sqlite3.Error, path: Path) -> str | None:
+    """What SQLite does not know: that nobody can write there."""
+    name = getattr(cause, "sqlite_errorname", "")
+    if name.startswith(("SQLITE_READONLY", "SQLITE_CANTOPEN", "SQLITE_IOERR", "SQLITE_PERM")) and _only_reads(path):
+        return f"cannot be written to: {file_trouble(OSError(errno.EROFS, ''), path)}"
+    return None
 
 
 def _of_sqlite(cause: sqlite3.Error) -> str:

@@ -6,7 +6,7 @@ from typing import Final
 
 from sqlalchemy import Connection, inspect, text
 
-NEWEST: Final = "0008"
+NEWEST: Final = "0009"
 """The revision of the newest of `migrations`."""
 
 
@@ -24,6 +24,11 @@ def check(connection: Connection, place: str) -> None:
         from sequence_planner.storage import migrating  # noqa: PLC0415
 
         migrating.check(connection, place)
+
+
+def is_empty(connection: Connection) -> bool:
+    """Whether there are no tables at all."""
+    return not inspect(connection).get_table_names()
 
 
 def _is_newest(connection: Connection) -> bool:

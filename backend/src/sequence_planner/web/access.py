@@ -21,6 +21,7 @@ from sequence_planner.identity.sessions import SignedIn
 from sequence_planner.identity.watches import Watch, WatchState
 from sequence_planner.web.bearer_memory import Bearer
 from sequence_planner.web.cookies import Credentials, credentials
+from sequence_planner.web.crowd import Kind, belongs_to
 from sequence_planner.web.demonstration import is_beside, may_be_demonstration
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.problems import ProblemFound
@@ -38,6 +39,14 @@ class Admitted:
     watch: Watch | None = None
     key: Key | None = None
 
+    @property
+    def id(self) -> str:
+        """Of the session, the watch or the key."""
+        if self.signed_in is not None:
+            return self.signed_in.session
+        found = self.watch or self.key
+        return self.actor.id if found is None else found.id
+
 
 @dataclass(frozen=True)
 class Access:
@@ -45,7 +54,7 @@ class Access:
 
     `scope` is that of the keys which may; `watch` lets active watches in, `waiting` those too that nobody has
     confirmed yet; `unready` lets people in who must change their password first. `beside` lets in whoever shows no key
-    on this machine itself.
+    on this machine itself, `any_key` every key that is valid.
     """
 
     role: Role | None = None
@@ -55,6 +64,7 @@ class Access:
     watch: bool = False
     waiting: bool = False
     unready: bool = False
+    any_key: bool = False
 
     @property
     def who(self) -> str:
@@ -68,6 +78,7 @@ class Access:
         if self.public or (self.beside and is_beside(connection) and credentials(connection).key is None):
             return
         admitted = await self.admit(connection)
+        belongs_to(connection.scope, (Kind.BEARER, admitted.id))
         connection.state.access = self
         connection.state.actor = admitted.actor
         connection.state.signed_in, connection.state.watch = admitted.signed_in, admitted.watch
@@ -111,7 +122,7 @@ class Access:
         if key is None:
             detail = "The key is unknown, has expired or was revoked. Ask an administrator for another."
             raise _signed_out(detail)
-        if self.scope is None or self.scope not in key.scopes:
+        if not self.any_key and (self.scope is None or self.scope not in key.scopes):
             needed = "no key may do this" if self.scope is None else f"it takes one with the scope {self.scope.value}"
             detail = f"The key {key.name} may not do this: {needed}."
             raise ProblemFound(403, "scope-missing", "The key may not do this", detail)
@@ -125,16 +136,22 @@ class Access:
 
 
 def allowed(
-    role: Role | None, *, scope: Scope | None = None, watch: bool = False, unready: bool = False
+    role: Role | None,
+    *,
+    scope: Scope | None = None,
+    watch: bool = False,
+    unready: bool = False,
+    any_key: bool = False,
 ) -> params.Depends:
     """Declares in the `dependencies` of a route who may use it: people with `role`, or everybody (None).
 
-    Keys with `scope` may too, and active watches with `watch`. People who must change their password first may only
-    use what is `unready`. Raises `ValueError` where everybody may, and more is said all the same.
+    Keys with `scope` may too (all that are valid with `any_key`), and active watches with `watch`. People who must
+    change their password first may only use what is `unready`. Raises `ValueError` where everybody may, and more is
+    said all the same.
     """
-    if role is None and (scope is not None or watch or unready):
+    if role is None and (scope is not None or watch or unready or any_key):
         raise ValueError("what is public is so for everybody; for watches alone there is `watch_only`")
-    access = Access(role, public=role is None, scope=scope, watch=watch, unready=unready)
+    access = Access(role, public=role is None, scope=scope, watch=watch, unready=unready, any_key=any_key)
     declared: params.Depends = Depends(access)
     return declared
 

@@ -13,7 +13,7 @@ from pydantic import Field, StrictInt
 
 from sequence_planner.control.commands import ClearOverride, SetOverride
 from sequence_planner.control.override_view import FieldValue
-from sequence_planner.control.task_commands import AcknowledgeTask, ReportProblem, SolveProblem
+from sequence_planner.control.task_commands import AcknowledgeTask, ProblemKind, ReportProblem, SolveProblem
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.watches import Watch
 from sequence_planner.web.access import allowed
@@ -41,8 +41,9 @@ class AcknowledgementBody(TaskBody):
 
 
 class ProblemBody(TaskBody):
-    """The task cannot be done as things are; the reason may say what is in the way."""
+    """The task cannot be done as things are; `what` is in the way as far as one touch can say it, and the reason."""
 
+    what: ProblemKind | None = None
     reason: Reason = None
 
 
@@ -74,7 +75,7 @@ async def report_problem(task: Name, body: ProblemBody, request: Request, client
     with the last reason.
     """
     await _check_own(request.state.watch, task, body.revision, client)
-    await client.send(ReportProblem(actor=actor, task=task, revision=body.revision, reason=body.reason))
+    await client.send(ReportProblem(actor=actor, task=task, revision=body.revision, reason=body.reason, what=body.what))
 
 
 @router.post("/tasks/{task}/problem/solved", status_code=204, dependencies=[DOER])

@@ -1,8 +1,8 @@
 """The server's parts put together: routes, guards, problems, the stream, the page.
 
 From the outside in, a request passes the security headers, what notes it, the last resort for errors, what knows
-proxies where there are any, the guard, what compresses long answers, and then the route for its address; what no route
-knows is a file of the page, or nothing.
+proxies where there are any, the guard, what remembers whose connection it is, what compresses long answers, and then
+the route for its address; what no route knows is a file of the page, or nothing.
 """
 
 from __future__ import annotations
@@ -73,6 +73,7 @@ from sequence_planner.web.figures import Figures
 from sequence_planner.web.forwarded import Forwarded
 from sequence_planner.web.guard import Guard
 from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.liveness import WayToDatabase
 from sequence_planner.web.looking import FlowsShow, NetworkShow
 from sequence_planner.web.noting import Noted, Noting, known_routes
 from sequence_planner.web.openapi_document import describe
@@ -81,6 +82,7 @@ from sequence_planner.web.order_desk import OrderDesk
 from sequence_planner.web.order_of_work import OrderOfWorkDesk
 from sequence_planner.web.problems import LastResort
 from sequence_planner.web.readiness import Readiness
+from sequence_planner.web.remembering import Remembering
 from sequence_planner.web.security_headers import SecurityHeaders
 from sequence_planner.web.settings import Settings
 from sequence_planner.web.static import PageFiles
@@ -147,7 +149,7 @@ class StationServer(FastAPI):
 
 
 def _workshop(office: IdentityOffice, model: Path, settings: Settings) -> Workshop:
-    return Workshop(office, model, revisions_folder(settings.database, model), settings.stream)
+    return Workshop(office, model, revisions_folder(settings.database, model), settings.stream, settings.start)
 
 
 def _backup_desk(office: IdentityOffice, settings: Settings, controller: ControllerClient) -> BackupDesk | None:
@@ -223,6 +225,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     app.state.settings, app.state.attaching = settings, asyncio.Lock()
     app.state.figures, app.state.noted = Figures(controller), Noted()
     app.state.readiness = Readiness(controller, app.state.figures)
+    app.state.way_to_database = WayToDatabase(settings.database)
     problems.install(app)
     for part in PARTS:
         app.include_router(part, prefix=PREFIX)
@@ -242,6 +245,7 @@ def _operation(route: APIRoute) -> str:
 def _surround(app: FastAPI, settings: Settings) -> None:
     """What each request passes before its route, and each answer after it; the last is outermost."""
     app.add_middleware(GZipMiddleware, minimum_size=LONG, compresslevel=1)
+    app.add_middleware(Remembering)
     app.add_middleware(Guard, endpoint=settings)
     if settings.proxies:
         app.add_middleware(Forwarded, proxies=settings.proxies)

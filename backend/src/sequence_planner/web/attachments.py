@@ -89,7 +89,7 @@ async def attach(body: AttachmentBody, request: Request, identity: Identity, act
             answer, edits = await _tried(shop, settings.transport, body)
             outcome = Outcome.REFUSED
             if answer.get("made"):
-                number = (await shop.change(edits, actor, f"{body.topic} belongs to {body.resource}")).number
+                number = await shop.change(edits, actor, f"{body.topic} belongs to {body.resource}")
                 outcome = Outcome.DONE
         except EditError as error:
             raise refusal(error) from error

@@ -76,8 +76,3 @@ def bind(endpoint: Endpoint) -> socket.socket:
             raise SettingsError(f"{endpoint.host} is no address of this machine; use --host") from error
         raise SettingsError(f"port {endpoint.port} cannot be used: {error.strerror}; use --port") from error
     return listener
-
-
-def check_free(endpoint: Endpoint) -> None:
-    """Raise `SettingsError` when `bind` would; for asking before other processes are started."""
-    bind(endpoint).close()

@@ -7,37 +7,61 @@ has so many only. uvicorn only closes connections that have been idle after an a
 from __future__ import annotations
 
 import asyncio
-from ipaddress import IPv4Address, IPv6Address
+from http import HTTPStatus
+from typing import Any, cast
 
+import h11
+from starlette.types import Receive, Scope, Send
 from uvicorn.protocols.http.h11_impl import H11Protocol
 from uvicorn.protocols.websockets.websockets_sansio_impl import WebSocketsSansIOProtocol
 
+from sequence_planner.web.crowd import IN_SCOPE, Crowd, Group, Kind, Place, group_of_address
+from sequence_planner.web.heads import StrictConnection
+from sequence_planner.web.problems import problem_response
 from sequence_planner.web.settings import address_of
 
-MOST_CONNECTIONS = 400  # at once, streams included
-MOST_OF_ONE_ADDRESS = 100  # of these, except from this machine and through a proxy
 HEAD_SECONDS = 10.0  # in which the head of a request must have come, counted from the connection or the last answer
-LARGEST_HEAD = 32 * 1024  # bytes
 IDLE_SECONDS = 5  # in which the next request must have begun
 
 
-class PromptConnection(H11Protocol):
-    """An HTTP connection that is closed when it lets the server wait, or is one too many."""
+class Placed:
+    """The application, to which each request says whose place it takes among all connections."""
 
-    of_one_address = MOST_OF_ONE_ADDRESS
+    def __init__(self, app: Any, place: Place) -> None:  # noqa: ANN401 - uvicorn's several kinds of applications
+        self._app = app
+        self._place = place
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one request or connection."""
+        self._place.asks()
+        scope[IN_SCOPE] = self._place
+        await self._app(scope, receive, send)
+
+
+class PromptConnection(H11Protocol):
+    """An HTTP connection that is closed when it lets the server wait; one of the `crowd`.
+
+    What comes from one of the `proxies` belongs to whom these say.
+    """
+
     _due: asyncio.TimerHandle | None = None
+
+    def __init__(self, *, crowd: Crowd, proxies: tuple[str, ...], **more: Any) -> None:  # noqa: ANN401 - uvicorn's
+        super().__init__(**more)
+        self.conn = StrictConnection()
+        self._crowd = crowd
+        self._proxies = {address_of(each) for each in proxies}
 
     def connection_made(self, transport: asyncio.Transport) -> None:  # type: ignore[override]
         """Begin to wait for the first request."""
         super().connection_made(transport)
-        if len(self.connections) > MOST_CONNECTIONS or self._from_one_address() > self.of_one_address:
-            transport.close()
-        else:
-            self._await_head()
+        self.app = Placed(self.app, Place(self._crowd, transport, self._group()))
+        self._await_head()
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Wait no more."""
         self._wait_no_more()
+        self._crowd.leave(self.transport)
         super().connection_lost(exc)
 
     def on_response_complete(self) -> None:
@@ -46,12 +70,23 @@ class PromptConnection(H11Protocol):
         if not self.transport.is_closing():
             self._await_head()
 
-    def _from_one_address(self) -> int:
-        """How many connections there are from where this one comes from; 0 for this machine itself."""
-        here = _address(self)
-        if here is None or _from_here(here):
-            return 0
-        return sum(_address(each) == here for each in self.connections)
+    def send_400_response(self, msg: str) -> None:
+        """Say what is wrong with what has come, and hang up."""
+        status, why = cast(StrictConnection, self.conn).refusal
+        slug, title = ("head-too-large", "The head is too large") if status == 431 else ("bad-request", "Bad Request")
+        answer = problem_response(status, slug, title, why, headers={"Connection": "close"})
+        for event in (
+            h11.Response(status_code=status, headers=answer.raw_headers, reason=HTTPStatus(status).phrase.encode()),
+            h11.Data(data=bytes(answer.body)),
+            h11.EndOfMessage(),
+        ):
+            self.transport.write(self.conn.send(event) or b"")
+        self.transport.close()
+
+    def _group(self) -> Group:
+        """Whose the connection is as long as nothing has come."""
+        address = self.client[0] if self.client else ""
+        return (Kind.PROXY, address) if address_of(address) in self._proxies else group_of_address(address)
 
     def _await_head(self) -> None:
         self._wait_no_more()
@@ -68,22 +103,6 @@ class PromptConnection(H11Protocol):
             self.transport.close()
 
 
-def _address(connection: object) -> IPv4Address | IPv6Address | None:
-    """Where a connection of uvicorn's, of whatever kind, comes from."""
-    client = getattr(connection, "client", None)
-    return address_of(client[0]) if client else None
-
-
-def _from_here(address: IPv4Address | IPv6Address) -> bool:
-    return address.is_loopback
-
-
-class ProxiedConnection(PromptConnection):
-    """A connection of a server that stands behind proxies, which alone connect to it, for everybody."""
-
-    of_one_address = MOST_CONNECTIONS
-
-
 class Stream(WebSocketsSansIOProtocol):
     """A stream that can be ended at any time, also while its client is about to close it.
 
@@ -91,9 +110,25 @@ class Stream(WebSocketsSansIOProtocol):
     told, at one whose client has said that it closes but has not hung up yet.
     """
 
+    def __init__(self, *, crowd: Crowd, **more: Any) -> None:  # noqa: ANN401 - uvicorn's
+        super().__init__(**more)
+        self._crowd = crowd
+
     def shutdown(self) -> None:
         """Say that the server goes, unless the client went first, and hang up."""
         if self.transport.is_closing():
             self.stop_keepalive()
         else:
             super().shutdown()
+
+    def connection_made(self, transport: asyncio.BaseTransport) -> None:
+        """Go on where the HTTP connection was, with its place."""
+        http = transport.get_protocol() if isinstance(transport, asyncio.Transport) else None
+        super().connection_made(transport)
+        if isinstance(http, PromptConnection):
+            self.app = http.app
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        """Give the place up."""
+        self._crowd.leave(self.transport)
+        super().connection_lost(exc)

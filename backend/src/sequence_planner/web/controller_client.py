@@ -110,8 +110,8 @@ class ControllerClient:
             await asyncio.sleep(wait)
             wait = min(2 * wait, LONGEST_WAIT)
 
-    async def send(self, command: Command) -> None:
-        """Have `command` carried out; returns when it was.
+    async def send(self, command: Command) -> bool:
+        """Have `command` carried out; returns when it was, and whether the journal has it.
 
         Raises `CommandRefused`: with the controller's own words, `controller-unavailable` (503) when it was never
         sent, `controller-no-answer` (504) when it is not known what became of it.
@@ -119,11 +119,12 @@ class ControllerClient:
         expires = time.monotonic() + self._reply_deadline
         request: str | None = structlog.contextvars.get_contextvars().get("request")
         unknown = "It is not known whether the command was carried out: look at the station before trying again."
-        await self._exchange(
+        reply = await self._exchange(
             lambda number: CommandMessage(id=number, command=command, expires=expires, request=request),
             self._reply_deadline,
             unknown,
         )
+        return not isinstance(reply, Reply) or reply.recorded
 
     async def ask(self, ask: AskBase[Told]) -> Told:
         """What answers `ask`. Raises `CommandRefused` as `send` does; asking has changed nothing then."""

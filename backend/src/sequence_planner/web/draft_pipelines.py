@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import Field
 
 from sequence_planner.control.asks import AskRecord
@@ -14,7 +14,8 @@ from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
-from sequence_planner.web.model import TheWorkshop, failed, refusal
+from sequence_planner.web.found import UnreadBody, found, takes
+from sequence_planner.web.model import TheWorkshop, refusal
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 from sequence_planner.web.workshop import Workshop
@@ -22,7 +23,6 @@ from sequence_planner.workshop.pipelines.questions import (
     Everything,
     Examples,
     Fitting,
-    PipelineAnswer,
     PipelineId,
     PipelineQuestion,
     Preview,
@@ -35,7 +35,6 @@ from sequence_planner.workshop.pipelines.view import (
     RecordedView,
     RunsView,
 )
-from sequence_planner.workshop.processes import WorkEndedError
 
 router = APIRouter(prefix="/model/pipelines", tags=["model"], responses=refused(409, 503))
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
@@ -48,44 +47,34 @@ class RecordBody(Body):
     name: Annotated[str, Field(min_length=1, max_length=200)]
 
 
-@router.get("", dependencies=[VIEWER])
-async def draft_pipelines(shop: TheWorkshop) -> DraftPipelinesView:
+@router.get("", dependencies=[VIEWER], response_model=DraftPipelinesView)
+async def draft_pipelines(shop: TheWorkshop) -> Response:
     """The typed graph of the draft as far as it is sound, and what is wrong with it, where it is wrong."""
-    answer = await _asked(shop, Everything())
-    assert isinstance(answer, DraftPipelinesView)
-    return answer
+    return await _found(shop, Everything())
 
 
-@router.post("/fits", dependencies=[VIEWER, JSON_ONLY], responses=refused(422))
-async def find_fits(body: Fitting, shop: TheWorkshop) -> FitsView:
+@router.post("/fits", dependencies=[VIEWER, JSON_ONLY], response_model=FitsView, responses=refused(422))
+async def find_fits(body: Fitting, shop: TheWorkshop) -> Response:
     """What could be put at an edge: kinds of stages, what its fields could become, and further sources of a flow."""
-    answer = await _asked(shop, body)
-    assert isinstance(answer, FitsView)
-    return answer
+    return await _found(shop, body)
 
 
-@router.post("/preview", dependencies=[VIEWER, JSON_ONLY])
-async def preview_pipelines(body: Preview, shop: TheWorkshop) -> PreviewView:
+@router.post("/preview", dependencies=[VIEWER], response_model=PreviewView, openapi_extra=takes(Preview))
+async def preview_pipelines(body: UnreadBody, shop: TheWorkshop) -> Response:
     """What edits would bring about; nothing is changed."""
-    answer = await _asked(shop, body)
-    assert isinstance(answer, PreviewView)
-    return answer
+    return await _found(shop, body)
 
 
-@router.post("/examples", dependencies=[VIEWER, JSON_ONLY], responses=refused(422))
-async def run_examples(body: Examples, shop: TheWorkshop) -> RunsView:
+@router.post("/examples", dependencies=[VIEWER, JSON_ONLY], response_model=RunsView, responses=refused(422))
+async def run_examples(body: Examples, shop: TheWorkshop) -> Response:
     """How the examples of a pipeline end, with the record at every edge."""
-    answer = await _asked(shop, body)
-    assert isinstance(answer, RunsView)
-    return answer
+    return await _found(shop, body)
 
 
-@router.post("/trials", dependencies=[VIEWER, JSON_ONLY], responses=refused(422))
-async def try_pipeline(body: Trial, shop: TheWorkshop) -> RunsView:
+@router.post("/trials", dependencies=[VIEWER, JSON_ONLY], response_model=RunsView, responses=refused(422))
+async def try_pipeline(body: Trial, shop: TheWorkshop) -> Response:
     """What comes of a message, or of several in time that is told, with the record at every edge."""
-    answer = await _asked(shop, body)
-    assert isinstance(answer, RunsView)
-    return answer
+    return await _found(shop, body)
 
 
 @router.post(
@@ -98,14 +87,10 @@ async def record_example(body: RecordBody, shop: TheWorkshop, client: Controller
         return await shop.record(body.pipeline, body.name, heard, actor)
     except EditError as error:
         raise refusal(error) from error
-    except WorkEndedError as error:
-        raise failed(error) from error
 
 
-async def _asked(shop: Workshop, question: PipelineQuestion) -> PipelineAnswer:
+async def _found(shop: Workshop, question: PipelineQuestion | bytes) -> Response:
     try:
-        return await shop.ask_pipelines(question)
+        return found(await shop.ask_pipelines(question))
     except EditError as error:
         raise refusal(error) from error
-    except WorkEndedError as error:
-        raise failed(error) from error

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 from pydantic import Field
 
 from sequence_planner.control.asks import LONGEST_PREDICATE, AskAdvice, AskGoal, AskReset
@@ -17,6 +17,7 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.journal.entry import LONGEST_REASON
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.carried_out import CARRIED_OUT, carried_out
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
@@ -89,7 +90,10 @@ async def take_errand(body: ErrandBody, client: Controller, actor: Actor) -> Non
     await client.send(command)
 
 
-@router.post("/stop", status_code=204, dependencies=[OPERATOR])
-async def stop_errand(body: StopBody, client: Controller, actor: Actor) -> None:
-    """Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it."""
-    await client.send(StopErrand(actor=actor, reason=body.reason))
+@router.post("/stop", status_code=204, dependencies=[OPERATOR], responses=CARRIED_OUT)
+async def stop_errand(body: StopBody, client: Controller, actor: Actor) -> Response:
+    """Start no more of what is carried out; what runs goes on to its end. Anybody who may act can do it.
+
+    200 says that it was done and the journal does not have it yet.
+    """
+    return carried_out(await client.send(StopErrand(actor=actor, reason=body.reason)))

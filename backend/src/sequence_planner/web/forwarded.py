@@ -12,6 +12,7 @@ from ipaddress import ip_address
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from sequence_planner.web.crowd import belongs_to, group_of_address
 from sequence_planner.web.guard import is_own_health_check
 from sequence_planner.web.problems import ProblemFound, problem_response
 from sequence_planner.web.settings import address_of
@@ -37,6 +38,7 @@ class Forwarded:
             response = problem_response(refused.status_code, refused.slug, refused.title, refused.detail)
             await response(scope, receive, send)
             return
+        belongs_to(scope, group_of_address(client))
         scope.update(client=(client, 0), scheme=ENCRYPTED[scope["type"]])  # in place: outer layers learn of the route
         await self.app(scope, receive, send)
 

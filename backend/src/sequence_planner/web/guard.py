@@ -10,13 +10,16 @@ server is, by whatever name it is opened otherwise.
 from __future__ import annotations
 
 import asyncio
+import re
+from urllib.parse import parse_qsl
 
 from starlette.datastructures import Headers
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from sequence_planner.web.problems import ProblemFound, problem_response
+from sequence_planner.web.problems import FieldError, ProblemFound, problem_response
 from sequence_planner.web.settings import LOOPBACK_NAMES, Endpoint, SettingsError, address_of, split_name
 
+_NO_NAME = re.compile("[\x00-\x1f\x7f\ufffd]")  # the last is what uvicorn puts for what is no UTF-8
 READING = ("GET", "HEAD", "OPTIONS")
 LARGEST_BODY = 64 * 1024  # bytes
 EDITS = 4 * 1024 * 1024  # bytes: files of a model, as they were and as they shall be
@@ -40,13 +43,18 @@ class Guard:
             return
         headers = Headers(scope=scope)
         largest = LARGER_BODIES.get(scope["path"], LARGEST_BODY)
-        wrong = _framing(headers) or self._host(scope, headers) or self._origin(scope, headers)
+        wrong = _framing(headers) or _address(scope) or self._host(scope, headers) or self._origin(scope, headers)
         refused = wrong or _length(headers, largest)
         if refused is None:
             await self.app(scope, _bounded(receive, largest), send)
             return
         response = problem_response(
-            refused.status_code, refused.slug, refused.title, refused.detail, headers=refused.headers
+            refused.status_code,
+            refused.slug,
+            refused.title,
+            refused.detail,
+            headers=refused.headers,
+            errors=refused.errors,
         )
         # Starlette turns the answer to a handshake into the messages of the "websocket.http.response" extension.
         await response(scope, receive, send)
@@ -80,6 +88,20 @@ def _framing(headers: Headers) -> ProblemFound | None:
         return None
     detail = "Send either Content-Length or Transfer-Encoding, not both."
     return ProblemFound(400, "two-lengths", "The length is said twice", detail, {"Connection": "close"})
+
+
+def _address(scope: Scope) -> ProblemFound | None:
+    """Refuse what nothing is called: control characters, and what is no UTF-8. Not every database can keep these."""
+    if _NO_NAME.search(scope["path"]):
+        return ProblemFound(
+            404, "not-found", "Not Found", "Nothing has a control character, or no UTF-8, in its address."
+        )
+    question = parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
+    if odd := [name for name, value in question if "\x00" in name + value]:
+        errors = [FieldError(field=f"query.{name}", expected="a text without the character 0") for name in odd]
+        title, detail = "The request is not as expected", "No text has the character 0."
+        return ProblemFound(422, "invalid-request", title, detail, errors=errors)
+    return None
 
 
 def _length(headers: Headers, largest: int) -> ProblemFound | None:

@@ -11,11 +11,15 @@ from typing import Literal
 from fastapi import APIRouter, Request, Response
 from pydantic import BaseModel, JsonValue
 
+from sequence_planner.version import VERSION
 from sequence_planner.web.access import allowed
+from sequence_planner.web.liveness import WayToDatabase
 from sequence_planner.web.problems import problem_response, refused
 from sequence_planner.web.readiness import SILENT, Readiness, ReadinessCheck
 from sequence_planner.web.request_parts import Controller, Identity
 from sequence_planner.web.stream_messages import ControllerState
+
+SHUT = "The server's connections to the database are stuck, and a new one is not. Start the station again."
 
 router = APIRouter(tags=["health"], dependencies=[allowed(None)])
 
@@ -25,6 +29,7 @@ class Health(BaseModel):
 
     status: Literal["alive"]
     controller: Literal[ControllerState.HEARD]
+    version: str
 
 
 class Ready(BaseModel):
@@ -35,12 +40,19 @@ class Ready(BaseModel):
 
 
 @router.get("/healthz", response_model=Health, responses=refused(503))
-async def healthz(client: Controller) -> Health | Response:
-    """Alive: the server answers and its controller is heard. Else 503 `not-alive`, with `reasons` by name."""
-    if client.heard:
-        return Health(status="alive", controller=ControllerState.HEARD)
-    more = {"controller": ControllerState.LOST.value}
-    return _refusal("not-alive", "The station is not well", {ReadinessCheck.CONTROLLER: SILENT}, more)
+async def healthz(request: Request, client: Controller, identity: Identity) -> Health | Response:
+    """Alive: the server answers, its controller is heard, and nothing is wrong that would be right after a restart.
+
+    Else 503 `not-alive`, with `reasons` by name.
+    """
+    way: WayToDatabase = request.app.state.way_to_database
+    is_shut = way.is_shut(identity)
+    if client.heard and not is_shut:
+        return Health(status="alive", controller=ControllerState.HEARD, version=VERSION)
+    reasons = {} if client.heard else {ReadinessCheck.CONTROLLER: SILENT}
+    reasons |= {ReadinessCheck.DATABASE: SHUT} if is_shut else {}
+    more = {"controller": (ControllerState.HEARD if client.heard else ControllerState.LOST).value}
+    return _refusal("not-alive", "The station is not well", reasons, more)
 
 
 @router.get("/readyz", response_model=Ready, responses=refused(503))

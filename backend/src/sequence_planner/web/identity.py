@@ -2,7 +2,7 @@
 
 The database is synchronous, so all work on it is done in threads. A request costs one read: who has been seen is
 noted in memory, and written away from requests (`IdentityOffice.write_seen`). While the database does not answer, who
-was found lately is remembered for some minutes.
+was let in before is remembered.
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from sequence_planner.identity.openid.provider import Provider
 from sequence_planner.identity.openid.settings import ProviderSettings
 from sequence_planner.identity.passwords import Passwords
 from sequence_planner.identity.provider_sign_in import ProviderSignIn
+from sequence_planner.identity.sessions import SignedIn
 from sequence_planner.identity.sign_in import SignIn
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
@@ -91,24 +92,45 @@ class IdentityOffice:
         ended since the request was let in, or the key was revoked: it may have waited for a hash, or behind others.
         """
 
-        def checked(connection: Connection) -> T:
+        def checked(connection: Connection) -> tuple[T, Callable[[], None]]:
             if by is not None:
                 sessions.require_live(connection, by, self.now())
                 keys.require_live(connection, by, self.now())
-            return work(connection)
+            done = work(connection)
+            return done, self._memory.look_up(connection, self.now())
 
-        done = await self._write(checked)
-        self.forget()  # only now: where nothing could be written, who was found lately is still needed
+        done, take = await self._write(checked)
+        take()  # only now: where nothing could be written, everybody is who they were
         return done
 
-    def forget(self) -> None:
-        """Ask the database again who everybody is: something has changed."""
-        self._memory.forget()
+    async def note_session(self, begun: SignedIn, before: str | None) -> None:
+        """Somebody has signed in, where the session with the token `before` was until now, if any.
+
+        That has ended, and others of the same person may have: all who are remembered are looked up again.
+        """
+        shown = Bearer() if before is None else self._memory.recall(Credentials(session=before), self.now()) or Bearer()
+        ended = None if shown.signed_in is None else shown.signed_in.session
+        try:
+            async with asyncio.timeout(PATIENCE):
+                take = await self.read(lambda connection: self._memory.look_up(connection, self.now()))
+        except (StorageError, TimeoutError):
+            self._memory.forget(
+                lambda each: (
+                    each.signed_in is not None
+                    and (each.signed_in.session == ended or each.signed_in.person.id == begun.person.id)
+                )
+            )
+        else:
+            take()
+
+    def remembered(self, shown: Credentials) -> Bearer | None:
+        """Who has shown these credentials in the last minutes; nothing is admitted by it."""
+        return self._memory.recall(shown, self.now())
 
     async def find(self, shown: Credentials) -> Bearer:
         """Who shows these credentials: either a key, or cookies.
 
-        Raises `StorageError` when the database does not answer and nobody has shown them in the last minutes.
+        Raises `StorageError` when the database does not answer and they are not those of somebody who was let in.
         """
         if shown == Credentials():
             return Bearer()
@@ -121,7 +143,8 @@ class IdentityOffice:
                 bearer = await self.read(lambda connection: self._look_up(connection, shown, now))
         except (StorageError, TimeoutError) as error:
             self._ask_again = time.monotonic() + ASK_AGAIN
-            if remembered is None or asked_in != self._memory.round:
+            remembered = self._memory.recall(shown, now)  # who was signed out meanwhile is not remembered any more
+            if remembered is None:
                 raise StorageError(str(error) or "the database does not answer") from error
             return remembered
         self._memory.keep(shown, bearer, now, asked_in)

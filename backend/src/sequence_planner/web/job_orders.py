@@ -6,6 +6,7 @@ that was seen (`If-Match`), a command needs none: what the state of the order do
 
 from __future__ import annotations
 
+import json
 from enum import StrEnum
 from typing import Annotated, Any
 
@@ -19,6 +20,7 @@ from sequence_planner.mes.answers import Kept
 from sequence_planner.mes.order import JobOrder, OrderContent
 from sequence_planner.mes.states import OrderCommand, OrderState
 from sequence_planner.mes.tables import LONGEST_ID
+from sequence_planner.mes.times import Time
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.web.body import Body, Reason
@@ -40,10 +42,23 @@ TAGGED: dict[str, Any] = {
         }
     }
 }
-# Any time that every reader of JSON and every database keeps, up to the year 5138.
-Time = Annotated[float, Field(ge=0, le=1e11, allow_inf_nan=False, strict=True)]
-Condition = Annotated[str | None, Header(pattern=r'^"[0-9]{1,9}"$')]
+Condition = Annotated[str | None, Header(pattern=r'^(\*|"[0-9]{1,9}")$')]
 NewKey = Annotated[str, Header(alias="Idempotency-Key", pattern=r"^[!-~]{1,200}$")]
+REPLAYED = "Idempotency-Replayed"
+STORED: dict[str, Any] = {
+    "headers": {
+        **TAGGED["headers"],
+        "Location": {
+            "description": "Where the order is.",
+            "required": True,
+            "schema": {"type": "string", "format": "uri-reference"},
+        },
+        REPLAYED: {
+            "description": "That this is the answer to the same request of before.",
+            "schema": {"const": "true"},
+        },
+    }
+}
 OrderId = Annotated[str, Path(max_length=200)]
 
 bodiless = APIRouter(prefix="/job-orders", tags=["job orders"], dependencies=[READ])
@@ -67,7 +82,8 @@ class OrdersAnswer(BaseModel):
 class OrderBody(Body):
     """What is ordered: a job of a work master.
 
-    How late it is weighs by its `priority`; nothing begins before `earliest`.
+    How late it is weighs by its `priority`; nothing begins before `earliest`. Times are in seconds since the epoch or
+    in ISO 8601.
     """
 
     work_master: Annotated[str, Field(min_length=1, max_length=200, pattern=TEXT)]
@@ -133,32 +149,35 @@ async def read_job_order(id: OrderId, request: Request, identity: Identity, resp
     return answered(order, desk_of(request))
 
 
-@router.post("", status_code=201, response_model=OrderAnswer, responses={201: TAGGED, **refused(409)})
+@router.post("", status_code=201, response_model=OrderAnswer, responses={201: STORED, **refused(409)})
 async def store_job_order(
     body: NewOrderBody, request: Request, identity: Identity, actor: Actor, idempotency_key: NewKey
 ) -> Response:
     """Store an order; with `start` it may begin at once.
 
-    The same request with the same `Idempotency-Key` stores nothing more and is answered the same, for seven days. 422
+    The same request with the same `Idempotency-Key` stores nothing more and is answered the same, for seven days, with
+    `Idempotency-Replayed: true`. 422
     `idempotency-key-reused` when the key was that of another request; 409 `job-order-exists` when the id was used.
     """
     desk, now = desk_of(request), identity.now()
     digest = answers.digest(request.url.path, body)
     unknown = await desk.unknown_work_master(body.work_master)
 
-    def write(connection: Connection) -> Kept:
+    def write(connection: Connection) -> tuple[Kept, bool]:
         if (kept := answers.recall(connection, actor.id, idempotency_key, digest)) is not None:
-            return kept
+            return kept, True
         if unknown is not None:
             raise unknown
         order = orders.store(connection, body.content(), actor, now, id=body.id, start=body.start)
         kept = Kept(201, _tag(order), answered(order, None).model_dump_json())
         answers.keep(connection, actor.id, idempotency_key, digest, kept, now)
-        return kept
+        return kept, False
 
-    found = await identity.write(write, by=actor)
+    found, again = await identity.write(write, by=actor)
     desk.poke()
-    return Response(found.content, found.status, {"ETag": found.tag}, "application/json")
+    id = json.loads(found.content)["id"]
+    headers = {"ETag": found.tag, "Location": request.url_for("read_job_order", id=id).path}
+    return Response(found.content, found.status, headers | ({REPLAYED: "true"} if again else {}), "application/json")
 
 
 @router.put("/{id}", responses={200: TAGGED, **refused(404, 409, 412, 428)})
@@ -173,12 +192,14 @@ async def change_job_order(
 ) -> OrderAnswer:
     """Let an order be of another content, until the station works on it; what is left out is as if it was new.
 
-    428 without `If-Match`; 412 `job-order-changed` when by now it has another revision; 409 `job-order-started`.
+    428 without `If-Match`, which may be `*` for whatever revision there is; 412 `job-order-changed` when by now it has
+    another revision; 409 `job-order-started`.
     """
     if if_match is None:
         detail = "Name the revision that you saw in the header If-Match, in double quotes."
         raise ProblemFound(428, "revision-needed", "Which revision was seen is not said", detail)
-    desk, revision, now = desk_of(request), int(if_match.strip('"')), identity.now()
+    desk, now = desk_of(request), identity.now()
+    revision = None if if_match == "*" else int(if_match.strip('"'))
     unknown = await desk.unknown_work_master(body.work_master)
 
     def write(connection: Connection) -> JobOrder:

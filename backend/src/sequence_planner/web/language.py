@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter
+from fastapi import APIRouter, Response
 
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
-from sequence_planner.web.model import TheWorkshop, failed
+from sequence_planner.web.found import found
+from sequence_planner.web.model import TheWorkshop
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY
-from sequence_planner.web.workshop import Workshop
 from sequence_planner.workshop.language_view import CompletionView
-from sequence_planner.workshop.processes import WorkEndedError
 from sequence_planner.workshop.questions import (
     FormatView,
     HoverAnswer,
-    LanguageAnswer,
     LanguageQuestionKind,
     PlaceInText,
     ProblemsView,
@@ -30,40 +28,25 @@ router = APIRouter(
 )
 
 
-@router.post("/check")
-async def check_text(body: TextAt, shop: TheWorkshop) -> ProblemsView:
+@router.post("/check", response_model=ProblemsView)
+async def check_text(body: TextAt, shop: TheWorkshop) -> Response:
     """What is wrong with a text, as the check of the whole draft would find it there."""
-    answer = await _asked(shop, LanguageQuestionKind.CHECK, body)
-    assert isinstance(answer, ProblemsView)
-    return answer
+    return found(await shop.ask(LanguageQuestionKind.CHECK, body))
 
 
-@router.post("/completion")
-async def complete_text(body: PlaceInText, shop: TheWorkshop) -> CompletionView:
+@router.post("/completion", response_model=CompletionView)
+async def complete_text(body: PlaceInText, shop: TheWorkshop) -> Response:
     """What can stand at a place in a text."""
-    answer = await _asked(shop, LanguageQuestionKind.COMPLETION, body)
-    assert isinstance(answer, CompletionView)
-    return answer
+    return found(await shop.ask(LanguageQuestionKind.COMPLETION, body))
 
 
-@router.post("/hover")
-async def explain_text(body: PlaceInText, shop: TheWorkshop) -> HoverAnswer:
+@router.post("/hover", response_model=HoverAnswer)
+async def explain_text(body: PlaceInText, shop: TheWorkshop) -> Response:
     """What the name at a place in a text is."""
-    answer = await _asked(shop, LanguageQuestionKind.HOVER, body)
-    assert isinstance(answer, HoverAnswer)
-    return answer
+    return found(await shop.ask(LanguageQuestionKind.HOVER, body))
 
 
-@router.post("/format")
-async def format_text(body: TextAt, shop: TheWorkshop) -> FormatView:
+@router.post("/format", response_model=FormatView)
+async def format_text(body: TextAt, shop: TheWorkshop) -> Response:
     """The text as it is written best; one that cannot be read stays as it is."""
-    answer = await _asked(shop, LanguageQuestionKind.FORMAT, body)
-    assert isinstance(answer, FormatView)
-    return answer
-
-
-async def _asked(shop: Workshop, kind: LanguageQuestionKind, asked: TextAt) -> LanguageAnswer:
-    try:
-        return await shop.ask(kind, asked)
-    except WorkEndedError as error:
-        raise failed(error) from error
+    return found(await shop.ask(LanguageQuestionKind.FORMAT, body))

@@ -7,7 +7,6 @@ import time
 from collections.abc import Collection, Iterator, Mapping
 from enum import StrEnum
 from functools import cache
-from importlib import metadata
 
 from prometheus_client import Metric
 from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, HistogramMetricFamily, InfoMetricFamily
@@ -15,6 +14,7 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Histo
 from sequence_planner.control.alarm_view import AlarmState, Priority
 from sequence_planner.control.figures_view import DistributionView, FiguresView
 from sequence_planner.control.view import Mode, PackML, Production, StationView
+from sequence_planner.version import VERSION
 from sequence_planner.web.noting import Noted
 from sequence_planner.web.readiness import ReadinessCheck
 
@@ -158,4 +158,4 @@ def _add(family: HistogramMetricFamily, labels: list[str], took: DistributionVie
 
 @cache
 def _build() -> dict[str, str]:
-    return {"version": metadata.version("sequence-planner"), "python": platform.python_version()}
+    return {"version": VERSION, "python": platform.python_version()}

@@ -17,17 +17,16 @@ from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, NothingBody
 from sequence_planner.web.controller_client import ControllerClient
+from sequence_planner.web.found import UnreadBody, found, takes
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor
 from sequence_planner.web.stream import serve
 from sequence_planner.web.workshop import Workshop
 from sequence_planner.workshop.check_view import CheckView
-from sequence_planner.workshop.edits import Edit, FilePath, PartChangedError
+from sequence_planner.workshop.edits import ChangeBody, FilePath, PartChangedError
 from sequence_planner.workshop.graph_view import GraphView
-from sequence_planner.workshop.processes import WorkEndedError
 from sequence_planner.workshop.view import DraftView, FilesView, UsagesView
 
-MOST_EDITS = 500  # of one change
 Finding = Annotated[int, Path(ge=0, le=2**31)]
 AbilityName = Annotated[str, Query(min_length=1, max_length=400)]
 PartId = Annotated[str, Field(min_length=3, max_length=500)]
@@ -46,21 +45,14 @@ async def workshop(connection: HTTPConnection) -> Workshop:
     if client.stands_by:
         detail = "The model is edited at the station that commands. Open its page."
         raise ProblemFound(503, "stands-by", "This station stands by", detail)
-    found: Workshop | None = connection.app.state.workshop
-    if found is None:
+    shop: Workshop | None = connection.app.state.workshop
+    if shop is None:
         detail = "This server does not know where the station's model is. Start it with `sequence-planner run MODEL`."
         raise ProblemFound(409, "no-model", "The model is not known", detail)
-    return found
+    return shop
 
 
 TheWorkshop = Annotated[Workshop, Depends(workshop)]
-
-
-class ChangeBody(Body):
-    """Edits that are carried out together, or not at all; `title` says what they do, for the list of changes."""
-
-    title: Annotated[str, Field(min_length=1, max_length=300)]
-    edits: Annotated[list[Edit], Field(min_length=1, max_length=MOST_EDITS)]
 
 
 class RenameBody(Body):
@@ -76,12 +68,12 @@ async def draft(shop: TheWorkshop, actor: Actor) -> DraftView:
     return await shop.view(actor)
 
 
-@router.get("/files", dependencies=[VIEWER])
+@router.get("/files", dependencies=[VIEWER], response_model=FilesView)
 async def draft_files(
     shop: TheWorkshop, path: Annotated[list[FilePath] | None, Query(max_length=500)] = None
-) -> FilesView:
+) -> Response:
     """Files of the draft with what they hold; all of them where no `path` is named."""
-    return await shop.files(path)
+    return found(await shop.files(path))
 
 
 @router.get("/check", dependencies=[VIEWER])
@@ -102,67 +94,64 @@ async def finding_run(
         return await shop.played(finding, ability, number)
     except EditError as error:
         raise ProblemFound(404, "no-run", "There is no such run", _sentence(error)) from error
-    except WorkEndedError as error:
-        raise failed(error) from error
 
 
-@router.post("/changes", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def change_draft(body: ChangeBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+@router.post(
+    "/changes",
+    dependencies=[ENGINEER],
+    response_model=FilesView,
+    responses=refused(422),
+    openapi_extra=takes(ChangeBody),
+)
+async def change_draft(body: UnreadBody, shop: TheWorkshop, actor: Actor) -> Response:
     """Carry edits out; the files that are others now.
 
     An edit of a part that somebody else has changed meanwhile is refused with `part-changed`, and nothing is done.
     """
     try:
-        return await shop.change(body.edits, actor, body.title)
+        return found(await shop.request(body, actor))
     except EditError as error:
         raise refusal(error) from error
 
 
-@router.post("/rename", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def rename_part(body: RenameBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+@router.post("/rename", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(422))
+async def rename_part(body: RenameBody, shop: TheWorkshop, actor: Actor) -> Response:
     """Give a part of the model another name, which all that name it follow; the files that are others now."""
     try:
-        return await shop.rename(body.part, body.name, actor)
+        return found(await shop.rename(body.part, body.name, actor))
     except EditError as error:
         raise refusal(error) from error
-    except WorkEndedError as error:
-        raise failed(error) from error
 
 
-@router.get("/usages", dependencies=[VIEWER], responses=refused(422))
-async def usages(shop: TheWorkshop, part: PartId) -> UsagesView:
+@router.get("/usages", dependencies=[VIEWER], response_model=UsagesView, responses=refused(422))
+async def usages(shop: TheWorkshop, part: PartId) -> Response:
     """Where a part of the model, such as `variable:robot.pose`, is named, and what could not be without it."""
     try:
-        return await shop.usages(part)
+        return found(await shop.usages(part))
     except EditError as error:
         raise refusal(error) from error
-    except WorkEndedError as error:
-        raise failed(error) from error
 
 
 @router.get("/graph", dependencies=[VIEWER], response_model=GraphView)
 async def model_graph(shop: TheWorkshop) -> Response:
     """The model as a whole: all that has a name, on the layers of the station, and what is tied to what."""
-    try:
-        return Response(await shop.tied(), media_type="application/json")
-    except WorkEndedError as error:
-        raise failed(error) from error
+    return found(await shop.tied())
 
 
-@router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def undo_change(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+@router.post("/undo", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(422))
+async def undo_change(body: NothingBody, shop: TheWorkshop, actor: Actor) -> Response:
     """Take back your last change that is not taken back yet; the files that are others now."""
     try:
-        return await shop.undo(actor)
+        return found(await shop.undo(actor))
     except EditError as error:
         raise refusal(error) from error
 
 
-@router.post("/redo", dependencies=[ENGINEER, JSON_ONLY], responses=refused(422))
-async def redo_change(body: NothingBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+@router.post("/redo", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(422))
+async def redo_change(body: NothingBody, shop: TheWorkshop, actor: Actor) -> Response:
     """Do again what you took back last; the files that are others now."""
     try:
-        return await shop.redo(actor)
+        return found(await shop.redo(actor))
     except EditError as error:
         raise refusal(error) from error
 
@@ -173,12 +162,6 @@ async def stream(websocket: WebSocket) -> None:
     shop = await workshop(websocket)
     await shop.open()
     await serve(websocket, shop.latest)
-
-
-def failed(error: WorkEndedError) -> ProblemFound:
-    """The problem that says that something could not be found out."""
-    text = _sentence(error)
-    return ProblemFound(503, "workshop-failed", "It could not be found out", f"{text} Try again.")
 
 
 def refusal(error: EditError) -> ProblemFound:

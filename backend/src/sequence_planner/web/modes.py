@@ -1,6 +1,7 @@
 """How the station executes: its mode and restart mode, production, steps, what is in service, and forces.
 
-Each endpoint makes one command with its actor and waits for the controller's word. 204 means that it was done; a
+Each endpoint makes one command with its actor and waits for the controller's word. 204 means that it was done, 200
+that it was done and is not in the journal yet; a
 refusal is a problem whose `type` ends in the controller's own slug. Which act is possible when: `docs/control.md`.
 """
 
@@ -8,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Response
 from pydantic import Field, StrictBool
 
 from sequence_planner.control.job_commands import SetByOrder
@@ -27,6 +28,7 @@ from sequence_planner.control.view import Mode
 from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.carried_out import CARRIED_OUT, carried_out
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
@@ -87,10 +89,14 @@ class ForceBody(Body):
     reason: Why
 
 
-@router.put("/mode", status_code=204, dependencies=[OPERATOR])
-async def set_mode(body: ModeBody, client: Controller, actor: Actor) -> None:
-    """Change the mode of execution. To go on takes control; to pause and to hold is for anybody, and never refused."""
-    await client.send(SetMode(actor=actor, mode=_MODES[body.mode], reason=body.reason))
+@router.put("/mode", status_code=204, dependencies=[OPERATOR], responses=CARRIED_OUT)
+async def set_mode(body: ModeBody, client: Controller, actor: Actor) -> Response:
+    """Change the mode of execution. To go on takes control; to pause and to hold is for anybody, and never refused.
+
+    200 says that the station is stopped and the journal does not have it yet; 503 `stop-not-kept` that it is stopped
+    and nowhere written down.
+    """
+    return carried_out(await client.send(SetMode(actor=actor, mode=_MODES[body.mode], reason=body.reason)))
 
 
 @router.post("/production/start", status_code=204, dependencies=[OPERATOR])

@@ -8,22 +8,28 @@ may too, null where none does.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Final
 
 from fastapi import APIRouter, FastAPI, Request
+from fastapi.encoders import jsonable_encoder
+from fastapi.openapi.models import Schema
 from fastapi.openapi.utils import get_openapi
 from fastapi.responses import JSONResponse
 from fastapi.routing import iter_route_contexts
-from pydantic.json_schema import models_json_schema
+from pydantic import BaseModel
+from pydantic.json_schema import JsonSchemaMode, models_json_schema
 
-from sequence_planner.identity.roles import Role, Scope
+from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import Access, allowed, declared
 from sequence_planner.web.cookies import NAME, SESSION_COOKIE, WATCH_COOKIE
 from sequence_planner.web.looking_messages import FlowsStreamMessage, NetworkStreamMessage, WorkshopStreamMessage
+from sequence_planner.web.openapi_parts import CONTACT, SERVERS, TAGS, WEBHOOKS, complete_arrays, websockets
 from sequence_planner.web.openapi_refusals import describe_refusals
 from sequence_planner.web.problems import Problem
 from sequence_planner.web.stream_messages import Resync, StreamMessage
 from sequence_planner.web.watch_messages import WatchStreamMessage
+from sequence_planner.workshop.edits import ChangeBody
+from sequence_planner.workshop.pipelines.questions import Preview
 
 REFERENCE = "#/components/schemas/{model}"
 ON_THE_LOOPBACK = "Over plain HTTP, on the loopback alone, it is called `{name}-` and the server's port."
@@ -42,11 +48,19 @@ SCHEMES = {
     },
     "key": {"type": "http", "scheme": "bearer", "description": "A key for other systems; `x-scope` is what it needs."},
 }
+# By their paths, the models of what the server says over WebSockets; all take the same.
+STREAMS: Final[dict[str, type[BaseModel]]] = {
+    "/api/v1/stream": StreamMessage,
+    "/api/v1/ros/stream": NetworkStreamMessage,
+    "/api/v1/pipelines/stream": FlowsStreamMessage,
+    "/api/v1/model/stream": WorkshopStreamMessage,
+    "/api/v1/watches/stream": WatchStreamMessage,
+}
 
 router = APIRouter()
 
 
-@router.get("/openapi.json", include_in_schema=False, dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
+@router.get("/openapi.json", include_in_schema=False, dependencies=[allowed(Role.VIEWER, any_key=True)])
 async def openapi(request: Request) -> JSONResponse:
     """The document of this server."""
     app: FastAPI = request.app
@@ -55,14 +69,20 @@ async def openapi(request: Request) -> JSONResponse:
 
 def describe(app: FastAPI) -> dict[str, Any]:
     """The document of `app`, with the components of the streams and of problems, and who may use what."""
-    document = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
+    document = get_openapi(
+        title=app.title,
+        version=app.version,
+        description=app.description,
+        routes=app.routes,
+        tags=[{"name": name, "description": text} for name, text in TAGS.items()],
+        servers=[*SERVERS],
+        contact=dict(CONTACT),
+    )
+    document["webhooks"] = WEBHOOKS
+    sent: list[tuple[type[BaseModel], JsonSchemaMode]] = [(each, "serialization") for each in STREAMS.values()]
     _, definitions = models_json_schema(
         [
-            (StreamMessage, "serialization"),
-            (NetworkStreamMessage, "serialization"),
-            (FlowsStreamMessage, "serialization"),
-            (WorkshopStreamMessage, "serialization"),
-            (WatchStreamMessage, "serialization"),
+            *sent,
             (Resync, "validation"),
             (Problem, "serialization"),
         ],
@@ -70,9 +90,11 @@ def describe(app: FastAPI) -> dict[str, Any]:
     )
     components = document.setdefault("components", {})
     schemas = components.setdefault("schemas", {})
-    for name, schema in definitions["$defs"].items():
+    for name, schema in {**definitions["$defs"], **_of_unread_bodies()}.items():
         if schemas.setdefault(name, schema) != schema:
             raise RuntimeError(f"two models are called {name}, and a program made from the document would know one")
+    document["x-websockets"] = websockets(STREAMS, Resync.__name__)
+    complete_arrays(schemas)
     components["securitySchemes"] = SCHEMES
     for route in iter_route_contexts(app.routes):
         operations = document["paths"].get(route.path_format, {})
@@ -82,6 +104,15 @@ def describe(app: FastAPI) -> dict[str, Any]:
                 operation.update(_who(access))
                 describe_refusals(components, operation, method, access)
     return document
+
+
+def _of_unread_bodies() -> dict[str, Any]:
+    """The schemas of bodies that FastAPI does not read itself, written as it writes those that it does."""
+    _, found = models_json_schema([(ChangeBody, "validation"), (Preview, "validation")], ref_template=REFERENCE)
+    return {
+        name: jsonable_encoder(Schema.model_validate(schema), by_alias=True, exclude_none=True)
+        for name, schema in found["$defs"].items()
+    }
 
 
 def _who(access: Access) -> dict[str, Any]:

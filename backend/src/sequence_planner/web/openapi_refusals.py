@@ -49,7 +49,7 @@ def describe_refusals(components: dict[str, Any], operation: dict[str, Any], met
 
 def _of_all(operation: dict[str, Any], method: str, access: Access) -> set[int]:
     """With which status operations of this kind may refuse."""
-    found: set[int] = set()
+    found = {431}  # of a head that is too large
     if not access.public:
         found |= {401, 403, 503}  # 503: the database does not answer, or the controller is silent
     if method.upper() not in READING:

@@ -6,6 +6,7 @@ from pydantic import BaseModel
 
 from sequence_planner.mes.order import JobOrder
 from sequence_planner.mes.states import OrderCommand, OrderState, Wish
+from sequence_planner.mes.times import iso
 from sequence_planner.web.order_desk import OrderDesk
 
 _COMMANDS = {
@@ -17,7 +18,9 @@ _COMMANDS = {
 
 
 class OrderAnswer(BaseModel):
-    """An order. Times are in seconds since the epoch; `stored_by` is the name of a person or a key.
+    """An order. Times are in seconds since the epoch, and in ISO 8601 where `_at` is added.
+
+    `stored_by` is the name of a person or a key.
 
     `commanded` is what the station is still to do with it, `allowed` the commands that the order allows now. Since
     `began` the station works on it. `waits_for` says in words why nothing is done for it now.
@@ -28,16 +31,22 @@ class OrderAnswer(BaseModel):
     description: str
     priority: int
     due: float | None
+    due_at = iso("due", optional=True)
     earliest: float | None
+    earliest_at = iso("earliest", optional=True)
     state: OrderState
     commanded: OrderCommand | None
     allowed: list[OrderCommand]
     revision: int
     stored: float
+    stored_at = iso("stored")
     stored_by: str
     changed: float
+    changed_at = iso("changed")
     began: float | None
+    began_at = iso("began", optional=True)
     ended: float | None
+    ended_at = iso("ended", optional=True)
     waits_for: list[str]
 
 

@@ -138,7 +138,7 @@ class OrderDesk:
         masters = await self.work_masters()
         await self._read_orders()
         at_station = [each for each in self._orders if each.is_at_station]
-        if masters is not None and (at_station or self._following.has_jobs) and await self._follow(masters):
+        if masters is not None and await self._follow(masters):
             await self._read_orders(anew=True)
             at_station = [each for each in self._orders if each.is_at_station]
         if view is not None and view.production is not Production.PREPARING:
@@ -170,15 +170,11 @@ class OrderDesk:
 
     async def _hand_over(self, order: JobOrder) -> None:
         """Give an order to the station, where it may still start."""
-        idle = not any(each.is_at_station for each in self._orders)
         now = self._office.now()
 
         def write() -> JobOrder | None:
             with self._office.database.writing() as connection:
-                handed = orders.hand_over(connection, order, now)
-                if handed is not None and idle and not self._following.has_jobs:
-                    self._following.begin(connection)
-                return handed
+                return orders.hand_over(connection, order, now)
 
         handed = await run_in_threadpool(write)
         if handed is None:

@@ -23,6 +23,7 @@ from sequence_planner.mes.sequencing.known_times import KnownTimes
 from sequence_planner.mes.sequencing.process import Sequencer
 from sequence_planner.mes.sequencing.waits import waits_among
 from sequence_planner.mes.sequencing.work import Schedule
+from sequence_planner.mes.times import iso
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.controller_client import ControllerClient
@@ -45,7 +46,9 @@ class ExpectedOperation(BaseModel):
 
     operation: str
     start: float
+    start_at = iso("start")
     end: float
+    end_at = iso("end")
 
 
 class ExpectedOrder(BaseModel):
@@ -59,15 +62,19 @@ class ExpectedOrder(BaseModel):
 class OrderOfWorkAnswer(BaseModel):
     """The orders in the order in which they are to begin, as it was found at `time`; null while there is none.
 
-    It is `optimal` when no other has less weighted tardiness, or with it an earlier end. `fallback` says why it is only
+    The first `horizon` orders were searched for the best that was found in time, the others follow by rule; `bound` is
+    what the weighted `tardiness` of all cannot be below. It is `optimal` when no other has less weighted tardiness, or
+    with it an earlier end. `fallback` says why it is only
     that of priority and due time; empty if it is not. Times are in seconds since the epoch.
     """
 
     time: float | None
+    time_at = iso("time", optional=True)
     job_orders: list[ExpectedOrder]
     tardiness: float
     bound: float
     optimal: bool
+    horizon: int
     fallback: str
 
 
@@ -185,7 +192,9 @@ async def read_order_of_work(request: Request, limit: Annotated[int, Query(ge=1,
     """When orders are expected to be worked, in the order in which they are to begin; only the first `limit`."""
     desk: OrderOfWorkDesk = request.app.state.order_of_work
     if desk.found is None:
-        return OrderOfWorkAnswer(time=None, job_orders=[], tardiness=0.0, bound=0.0, optimal=False, fallback="")
+        return OrderOfWorkAnswer(
+            time=None, job_orders=[], tardiness=0.0, bound=0.0, optimal=False, horizon=0, fallback=""
+        )
     found, schedule = desk.found
     operations: dict[str, list[ExpectedOperation]] = {job: [] for job in schedule.jobs[:limit]}
     for (job, operation), (start, end) in schedule.starts.items():
@@ -199,5 +208,6 @@ async def read_order_of_work(request: Request, limit: Annotated[int, Query(ge=1,
         tardiness=schedule.tardiness,
         bound=schedule.bound,
         optimal=schedule.optimal,
+        horizon=schedule.horizon,
         fallback=schedule.fallback,
     )

@@ -38,7 +38,7 @@ TAGGED: dict[str, Any] = {
         }
     }
 }
-Condition = Annotated[str | None, Header(pattern=r'^"[0-9]{1,9}"$')]
+Condition = Annotated[str | None, Header(pattern=r'^(\*|"[0-9]{1,9}")$')]
 
 
 class PersonAnswer(BaseModel):
@@ -133,13 +133,14 @@ async def change_person(
 ) -> PersonAnswer:
     """Change the role, or whether the person may sign in; either ends all of that person's sessions.
 
-    428 without `If-Match`; 412 `person-changed` when another has changed the person meanwhile; 409
-    `last-administrator` when nobody would be left to administer, or `role-from-provider` where that is not for here.
+    428 without `If-Match`, which may be `*` for whatever revision there is; 412 `person-changed` when another has
+    changed the person meanwhile; 409 `last-administrator` when nobody would be left to administer, or
+    `role-from-provider` where that is not for here.
     """
     if if_match is None:
         detail = "Name the revision that you saw in the header If-Match, in double quotes."
         raise ProblemFound(428, "revision-needed", "Which revision was seen is not said", detail)
-    revision, now = int(if_match.strip('"')), identity.now()
+    revision, now = None if if_match == "*" else int(if_match.strip('"')), identity.now()
 
     def write(connection: Connection) -> PersonAnswer:
         changed = people.change(connection, person, revision, actor, now, role=body.role, disabled=body.disabled)

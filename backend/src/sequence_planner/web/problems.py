@@ -25,6 +25,8 @@ from sequence_planner.identity.refusal import IdentityRefused
 from sequence_planner.mes.refusal import OrderRefused
 from sequence_planner.mes.states import OrderCommand
 from sequence_planner.storage.error import StorageError
+from sequence_planner.workshop.bodies import BodyError
+from sequence_planner.workshop.processes import WorkEndedError
 
 LOG = structlog.get_logger(__name__)
 MEDIA_TYPE = "application/problem+json"
@@ -74,11 +76,18 @@ class ProblemFound(HTTPException):
     """Raised anywhere in a request to answer it with a problem."""
 
     def __init__(
-        self, status: int, slug: str, title: str, detail: str, headers: Mapping[str, str] | None = None
+        self,
+        status: int,
+        slug: str,
+        title: str,
+        detail: str,
+        headers: Mapping[str, str] | None = None,
+        errors: Sequence[FieldError] = (),
     ) -> None:
         super().__init__(status, detail, headers)
         self.slug = slug
         self.title = title
+        self.errors = errors
 
 
 def problem_response(
@@ -117,12 +126,16 @@ def install(app: FastAPI) -> None:
     app.add_exception_handler(IdentityRefused, _identity_refused)
     app.add_exception_handler(OrderRefused, _order_refused)
     app.add_exception_handler(StorageError, _storage_unavailable)
+    app.add_exception_handler(BodyError, _unexpected)
+    app.add_exception_handler(WorkEndedError, _work_ended)
 
 
 async def _http(request: Request, error: Exception) -> Response:
     assert isinstance(error, HTTPException)
     if isinstance(error, ProblemFound):
-        return problem_response(error.status_code, error.slug, error.title, error.detail, headers=error.headers)
+        return problem_response(
+            error.status_code, error.slug, error.title, error.detail, headers=error.headers, errors=error.errors
+        )
     status = error.status_code
     title = HTTPStatus(status).phrase
     detail = DETAILS.get(status, str(error.detail))
@@ -151,6 +164,18 @@ async def _invalid(request: Request, error: Exception) -> Response:
     errors = [FieldError(field=".".join(map(str, each["loc"])), expected=each["msg"]) for each in found]
     detail = "; ".join(f"{each.field}: {each.expected}" for each in errors[:5])
     return problem_response(422, "invalid-request", "The request is not as expected", detail, errors=errors)
+
+
+async def _unexpected(request: Request, error: Exception) -> Response:
+    assert isinstance(error, BodyError)
+    return await _invalid(request, RequestValidationError(error.errors))
+
+
+async def _work_ended(request: Request, error: Exception) -> Response:
+    assert isinstance(error, WorkEndedError)
+    text = str(error)
+    detail = f"{text[:1].upper()}{text[1:]}. Try again."
+    return problem_response(503, "workshop-failed", "It could not be found out", detail)
 
 
 async def _refused(request: Request, error: Exception) -> Response:

@@ -4,29 +4,32 @@ from __future__ import annotations
 
 import secrets
 import shutil
+from enum import StrEnum
 from pathlib import Path as Folder
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query, Request
+from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.control.production_commands import Deploy
+from sequence_planner.control.view import StationView
 from sequence_planner.expressions.types import Value
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.journal.entry import LONGEST_REASON
 from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
+from sequence_planner.web.found import found
 from sequence_planner.web.history import looked_back
-from sequence_planner.web.model import TheWorkshop, failed, refusal
+from sequence_planner.web.model import TheWorkshop, refusal
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, LiveView, controller, live_view
 from sequence_planner.web.workshop import Workshop
 from sequence_planner.workshop.comparison_view import ComparisonView, TransferView
 from sequence_planner.workshop.draft import Draft
 from sequence_planner.workshop.files import Files, write_files
-from sequence_planner.workshop.processes import WorkEndedError, worked
+from sequence_planner.workshop.processes import worked
 from sequence_planner.workshop.view import FilesView, RevisionsView, RevisionView
 from sequence_planner.workshop.what_if_view import WhatIfView
 
@@ -56,12 +59,23 @@ class RestoreBody(Body):
     number: Number
 
 
+class Simulation(StrEnum):
+    """What becomes of emulated devices: they go on as they stand, or they and the station begin as the model says."""
+
+    KEEP = "keep"
+    RESET = "reset"
+
+
 class DeploymentBody(Body):
-    """The revision that the draft is, after its change `number`, takes the place of the model that runs."""
+    """The revision that the draft is, after its change `number`, takes the place of the model that runs.
+
+    A `simulation` can be reset only where the devices are emulated.
+    """
 
     revision: Annotated[str, Field(pattern=f"^{HASH}$")]
     number: Number
     reason: Annotated[str, Field(min_length=1, max_length=LONGEST_REASON)]
+    simulation: Simulation = Simulation.KEEP
 
 
 class WhatIfBody(Body):
@@ -87,39 +101,39 @@ async def save_revision(body: RevisionBody, shop: TheWorkshop, actor: Actor) -> 
         raise refusal(error) from error
 
 
-@router.post("/revisions/{id}/restore", dependencies=[ENGINEER, JSON_ONLY], responses=refused(404))
-async def restore_revision(id: Id, body: RestoreBody, shop: TheWorkshop, actor: Actor) -> FilesView:
+@router.post(
+    "/revisions/{id}/restore", dependencies=[ENGINEER, JSON_ONLY], response_model=FilesView, responses=refused(404)
+)
+async def restore_revision(id: Id, body: RestoreBody, shop: TheWorkshop, actor: Actor) -> Response:
     """Let the draft become a revision again, which can be undone; the files that are others now."""
     draft = await _at(shop, body.number)
     files = await _files(shop, id)
-    return await shop.restore(draft, files, (await _known(shop, id)).name, actor)
+    return found(await shop.restore(draft, files, (await _known(shop, id)).name, actor))
 
 
-@router.get("/comparison", dependencies=[VIEWER], responses=refused(404))
-async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> ComparisonView:
+@router.get("/comparison", dependencies=[VIEWER], response_model=ComparisonView, responses=refused(404))
+async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> Response:
     """How two versions differ, in text and in behaviour: revisions by their ids, the draft, or what runs."""
     files = await _files(shop, old), await _files(shop, new)
-    found = await _worked("compared", *files, shop.folder)
-    assert isinstance(found, ComparisonView)
-    return found
+    return await _found("compared", *files, shop.folder)
 
 
-@router.get("/transfer", dependencies=[VIEWER], responses=refused())
-async def transfer(shop: TheWorkshop, view: LiveView) -> TransferView:
-    """Whether the station could take the draft as it is now."""
-    return await _fitted(shop, view)
+@router.get("/transfer", dependencies=[VIEWER], response_model=TransferView, responses=refused())
+async def transfer(
+    shop: TheWorkshop, view: LiveView, simulation: Annotated[Simulation, Query()] = Simulation.KEEP
+) -> Response:
+    """Whether the station could take the draft as it is now, or with the simulation reset."""
+    return await _found("fitted", *await _to_fit(shop, view, simulation))
 
 
-@router.post("/what-if", dependencies=[ENGINEER, JSON_ONLY], responses=refused(404))
-async def what_if(body: WhatIfBody, shop: TheWorkshop, request: Request) -> WhatIfView:
+@router.post("/what-if", dependencies=[ENGINEER, JSON_ONLY], response_model=WhatIfView, responses=refused(404))
+async def what_if(body: WhatIfBody, shop: TheWorkshop, request: Request) -> Response:
     """How the station would go on with the draft, from its present state or from a past record; nothing of it reaches
     the station.
     """
     draft = await shop.open()
     present = await _present(request) if body.number is None else await _past(request, body.number)
-    found = await _worked("simulated", draft.files, shop.folder, present, body.seconds, SIMULATING)
-    assert isinstance(found, WhatIfView)
-    return found
+    return await _found("simulated", draft.files, shop.folder, present, body.seconds, SIMULATING)
 
 
 @router.post("/deployments", status_code=204, dependencies=[ENGINEER, JSON_ONLY], responses=refused(404, 422, 504))
@@ -127,7 +141,8 @@ async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: 
     """Let the checked revision that the draft is take the place of the model that runs.
 
     The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
-    production.
+    production. Where it cannot be started with it the model before comes back: `deployment` in `GET /station` says what
+    has become of it.
     """
     draft = await _at(shop, body.number)
     known = await _known(shop, body.revision)
@@ -138,15 +153,21 @@ async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: 
     if check.number != draft.number or not check.deployable:
         detail = "Only a model whose check has ended without errors, and with a supervisor, is deployed. See Check."
         raise ProblemFound(409, "not-checked", "The draft is not checked", detail)
-    fits = await _fitted(shop, view)
+    fits = await worked("fitted", *await _to_fit(shop, view, body.simulation))
+    assert isinstance(fits, TransferView)
     if not fits.legal:
         detail = _why_not(fits)
         raise ProblemFound(409, "not-legal", "The station cannot take it now", detail)
+    reset = body.simulation is Simulation.RESET
+    if reset and not view.station.emulated:
+        detail = "Only emulated devices can begin anew as the model says. Deploy without resetting the simulation."
+        raise ProblemFound(409, "not-emulated", "There are real devices", detail)
+    shop.note_deployment(draft)
     staged = client.path.parent / f"deploy-{secrets.token_hex(8)}"
     await run_in_threadpool(_stage, draft.files, staged)
     try:
         await client.send(
-            Deploy(actor=actor, reason=body.reason, revision=known.id, name=known.name, staged=staged.name)
+            Deploy(actor=actor, reason=body.reason, revision=known.id, name=known.name, staged=staged.name, reset=reset)
         )
     finally:
         await run_in_threadpool(shutil.rmtree, staged, True)
@@ -176,13 +197,14 @@ async def _files(shop: Workshop, version: str) -> Files:
     return await shop.files_of(version)
 
 
-async def _fitted(shop: Workshop, view: LiveView) -> TransferView:
+async def _to_fit(shop: Workshop, view: StationView, simulation: Simulation) -> tuple[object, ...]:
+    """What `tasks.fitted` is asked about."""
     draft = await shop.open()
     present = {name: variable.value for name, variable in view.variables.items()}
     running = [name for name, ability in view.abilities.items() if ability.running_since is not None]
-    found = await _worked("fitted", draft.base, draft.files, shop.folder, present, running)
-    assert isinstance(found, TransferView)
-    return found
+    if simulation is Simulation.RESET:  # nothing of all that goes on
+        present, running = {}, []
+    return draft.base, draft.files, shop.folder, present, running
 
 
 async def _present(request: Request) -> dict[str, Value | None]:
@@ -195,19 +217,19 @@ async def _past(request: Request, number: int) -> dict[str, Value | None]:
     return dict(moment.past.values)
 
 
-async def _worked(name: str, *arguments: object) -> object:
+async def _found(name: str, *arguments: object) -> Response:
     """What a task of the workshop finds."""
-    try:
-        return await worked(name, *arguments)
-    except WorkEndedError as error:
-        raise failed(error) from error
+    text = await worked("told", name, *arguments)
+    assert isinstance(text, str)
+    return found(text)
 
 
 def _why_not(fits: TransferView) -> str:
     if fits.obstacle is not None:
         return f"{fits.obstacle}."
     if fits.under_way:
-        return f"{', '.join(fits.under_way)}: this runs now, and is another one there. Wait until it has finished."
+        named = ", ".join(fits.under_way)
+        return f"{named}: this still runs, and is another one in the new model. Wait until it has finished."
     why = f"It would violate: {'; '.join(fits.violated)}" if fits.violated else "From there nothing could come to rest"
     return f"In its present state the station would be outside the safe states of this model. {why}."
 

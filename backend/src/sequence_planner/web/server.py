@@ -9,8 +9,14 @@ from __future__ import annotations
 import contextlib
 import logging
 import resource
+import signal
+import socket
 import ssl
 import sys
+from collections.abc import Callable, Iterator
+from functools import partial
+from types import FrameType
+from typing import Any, NoReturn, cast
 
 import uvicorn
 
@@ -18,15 +24,9 @@ from sequence_planner.storage.database import Database, StorageError
 from sequence_planner.web.app import create_app
 from sequence_planner.web.binding import bind, check_demonstration
 from sequence_planner.web.certificate import server_context
-from sequence_planner.web.connections import (
-    IDLE_SECONDS,
-    LARGEST_HEAD,
-    MOST_CONNECTIONS,
-    PromptConnection,
-    ProxiedConnection,
-    Stream,
-)
+from sequence_planner.web.connections import IDLE_SECONDS, PromptConnection, Stream
 from sequence_planner.web.controller_client import ControllerClient
+from sequence_planner.web.crowd import ACCEPTED_AT_ONCE, Crowd
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
 
 LARGEST_FRAME = 1024 * 1024  # bytes; up to here the stream explains what is wrong, beyond the connection is closed
@@ -37,11 +37,11 @@ OPEN_FILES = 8192  # connections that never finish a TLS handshake are kept for 
 
 def uvicorn_config(settings: Settings) -> uvicorn.Config:
     """How uvicorn serves the station. Raises `SettingsError` when its certificate cannot be used."""
-    tls = _tls(settings)
+    tls, crowd = _tls(settings), Crowd()
     return uvicorn.Config(
         create_app(settings, ControllerClient(settings.controller_socket)),
-        http=ProxiedConnection if settings.proxies else PromptConnection,
-        ws=Stream,
+        http=cast(Any, partial(PromptConnection, crowd=crowd, proxies=settings.proxies)),
+        ws=cast(Any, partial(Stream, crowd=crowd)),
         ws_max_size=LARGEST_FRAME,
         ws_per_message_deflate=False,  # what is secret and what an attacker chose are not compressed together
         ssl_context_factory=None if tls is None else lambda *_: tls,
@@ -50,31 +50,61 @@ def uvicorn_config(settings: Settings) -> uvicorn.Config:
         access_log=False,
         log_config=None,  # its events are written as all others are
         log_level="warning",
-        limit_concurrency=MOST_CONNECTIONS + 1,  # beyond, connections are closed at once
-        h11_max_incomplete_event_size=LARGEST_HEAD,
+        backlog=ACCEPTED_AT_ONCE,
         timeout_keep_alive=IDLE_SECONDS,
         timeout_graceful_shutdown=2,
     )
 
 
-def serve(settings: Settings) -> None:
-    """Serve until SIGTERM or SIGINT.
+def serve(settings: Settings, listener: socket.socket | None = None) -> None:
+    """Serve until SIGTERM or SIGINT, whoever connects to `listener`, which is made if there is none.
 
     Exits with code 2 and a message when host, port, certificate or database cannot be used.
     """
-    try:
+    with _refusing():
         if settings.demonstration:
             check_demonstration(settings)
-        listener = bind(settings)
-        with contextlib.closing(Database.open(settings.database)) as database:
-            database.upgrade()
+        listener = listener or bind(settings)
+        _require_database(settings)
         config = uvicorn_config(settings)
-    except (SettingsError, StorageError) as refused:
-        sys.stderr.write(f"{refused}\n")
-        raise SystemExit(2) from refused
+    _run(config, listener)
+
+
+def serve_when_needed(settings: Settings, listener: socket.socket, needed: Callable[[], bool]) -> None:
+    """Prepare all that can be, and serve as `serve` does once `needed` says so; return when it says no."""
+    with _refusing():
+        config = uvicorn_config(settings)
+        config.load()
+        if not needed():
+            return
+        _require_database(settings)
+    _run(config, listener)
+
+
+def _run(config: uvicorn.Config, listener: socket.socket) -> None:
+    # uvicorn ends in good order and then lets the signal have its way: this process removes what is its own first.
+    signal.signal(signal.SIGTERM, _end)
     logging.getLogger("uvicorn.error").addFilter(lambda record: record.msg != REFUSED_HANDSHAKE)
     _allow_open_files()
     uvicorn.Server(config).run(sockets=[listener])
+
+
+def _end(number: int, frame: FrameType | None) -> NoReturn:
+    raise SystemExit(128 + number)
+
+
+def _require_database(settings: Settings) -> None:
+    with contextlib.closing(Database.open(settings.database)) as database:
+        database.upgrade()
+
+
+@contextlib.contextmanager
+def _refusing() -> Iterator[None]:
+    try:
+        yield
+    except (SettingsError, StorageError) as refused:
+        sys.stderr.write(f"{refused}\n")
+        raise SystemExit(2) from refused
 
 
 def _tls(endpoint: Endpoint) -> ssl.SSLContext | None:

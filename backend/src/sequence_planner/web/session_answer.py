@@ -12,6 +12,7 @@ from sequence_planner.identity import people
 from sequence_planner.identity.roles import Role
 from sequence_planner.identity.sessions import SignedIn
 from sequence_planner.identity.watches import WatchState
+from sequence_planner.version import VERSION
 from sequence_planner.web.access import bearer_of
 from sequence_planner.web.cookies import Credentials, credentials, keep_session
 from sequence_planner.web.demonstration import may_open_demonstration
@@ -51,7 +52,7 @@ class SessionAnswer(BaseModel):
 
     `first-start`: nobody is signed in, and there is no administrator yet. `session` is the id that holds control where
     this session does; `expires` is when it ends at the latest, in seconds since the epoch. `demonstration` says that
-    one may be opened here.
+    one may be opened here. The `version` of the program is for those who are signed in.
     """
 
     state: Literal["signed-out", "signed-in", "first-start"]
@@ -63,12 +64,13 @@ class SessionAnswer(BaseModel):
     demonstration: bool
     watch: SessionWatch | None
     provider: SessionProvider | None
+    version: str | None
 
 
 async def begin_session(request: Request, response: Response, token: str, signed_in: SignedIn) -> SessionAnswer:
     """Have the browser keep a new session, and tell it whose it is."""
     office: IdentityOffice = request.app.state.identity
-    office.forget()  # whatever session was there before has ended
+    await office.note_session(signed_in, credentials(request).session)
     keep_session(response, request.app.state.settings, token)
     return await answered(request, signed_in)
 
@@ -87,6 +89,7 @@ async def answered(request: Request, signed_in: SignedIn | None) -> SessionAnswe
         demonstration=may_open_demonstration(request, state.settings, state.controller),
         watch=None if watch is None else SessionWatch.model_validate(watch, from_attributes=True),
         provider=_provider(request),
+        version=None,
     )
     if signed_in is not None:
         return answer.model_copy(update=_said_of(signed_in))
@@ -113,4 +116,5 @@ def _said_of(signed_in: SignedIn) -> dict[str, object]:
         "kind": "demonstration" if signed_in.kind is ActorKind.DEMONSTRATION else "person",
         "must_change_password": signed_in.person.must_change_password,
         "expires": signed_in.expires,
+        "version": VERSION,
     }

@@ -11,6 +11,7 @@ from pathlib import Path
 from sequence_planner.backup.settings import Keeping
 from sequence_planner.identity.openid.settings import ProviderSettings
 from sequence_planner.mes.webhooks.targets import Targets
+from sequence_planner.start_needs import StartNeeds
 
 LOCALHOST = "localhost"
 LOOPBACK_NAMES = ("127.0.0.1", LOCALHOST, "[::1]")
@@ -104,8 +105,9 @@ class Settings(Endpoint):
     """All that the server needs to know; `page` is the folder of the built page, `model` that of the running station.
 
     With `transport` the network is joined for what a person wants to attach, as the controller joins it. `database`
-    is the URL of where identity and journal are kept. With `demonstration` one may be opened without signing in, with
-    `provider` people may sign in there. `webhooks` is where events may be sent to, `backups` how they are kept.
+    is the URL of where identity and journal are kept; `start` is how the station is run. With `demonstration` one may
+    be opened without signing in, with `provider` people may sign in there. `webhooks` is where events may be sent to,
+    `backups` how they are kept.
     """
 
     controller_socket: Path
@@ -114,6 +116,7 @@ class Settings(Endpoint):
     model: Path | None = None
     transport: str = "auto"
     demonstration: bool = False
+    start: StartNeeds = field(default_factory=StartNeeds)
     provider: ProviderSettings | None = None
     stream: StreamLimits = field(default_factory=StreamLimits)
     webhooks: Targets = field(default_factory=Targets)

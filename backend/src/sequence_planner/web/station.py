@@ -25,6 +25,7 @@ from sequence_planner.control.restart_view import (
 from sequence_planner.control.view import (
     AbilityView,
     ControlView,
+    DeploymentView,
     Mode,
     OperationView,
     PackML,
@@ -33,6 +34,7 @@ from sequence_planner.control.view import (
     ResourceView,
     StandbyView,
     StationIdentity,
+    StationStanding,
     TaskView,
     TopicView,
     VariableView,
@@ -58,6 +60,8 @@ class StationAnswer(Answer):
     revision: int  # of the state: counts up with every change, and what was previewed holds for one
     mode: Mode
     packml: PackML
+    standing: StationStanding
+    silent: list[str]
     stepping: bool
     production: Production
     by_order: bool
@@ -71,6 +75,7 @@ class StationAnswer(Answer):
     questions: list[QuestionView]
     last_correction: LastCorrectionView | None
     standby: StandbyView | None
+    deployment: DeploymentView | None
     approvals: dict[str, ApprovalView]
 
 

@@ -30,6 +30,7 @@ from sequence_planner.control.restart_view import (
 from sequence_planner.control.view import (
     AbilityView,
     ControlView,
+    DeploymentView,
     Mode,
     OperationView,
     PackML,
@@ -38,6 +39,7 @@ from sequence_planner.control.view import (
     ResourceView,
     StandbyView,
     StationIdentity,
+    StationStanding,
     StationView,
     TaskView,
     TopicView,
@@ -55,6 +57,8 @@ class StationChange(TypedDict, total=False):
     revision: int
     mode: Mode
     packml: PackML
+    standing: StationStanding
+    silent: list[str]
     stepping: bool
     production: Production
     unconfirmed: bool
@@ -81,6 +85,7 @@ class StationChange(TypedDict, total=False):
     way_back: WayBackView | None
     analysis: AnalysisDocument | None
     standby: StandbyView | None
+    deployment: DeploymentView | None
 
 
 class StationRemoval(TypedDict, total=False):

@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field, RootModel
 
-from sequence_planner.control.view import Mode, TaskView
+from sequence_planner.control.view import Mode, StationStanding, TaskView
 from sequence_planner.identity.watches import WatchState
 from sequence_planner.web.body import Body, Name
 from sequence_planner.web.looking_messages import Silence
@@ -97,12 +97,17 @@ class WatchSelfAnswer(BaseModel):
 
 
 class WatchSnapshot(StreamPart):
-    """The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title."""
+    """The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title.
+
+    `standing` says whether anything starts by itself, `silent` which devices are not heard.
+    """
 
     kind: Literal["watch"]
     time: float
     station: str
     mode: Mode
+    standing: StationStanding
+    silent: list[str]
     tasks: dict[str, TaskView]
 
 

@@ -56,7 +56,7 @@ class WatchShow:
         for resource, latest in self._shown.items():
             if not latest.somebody.is_set():
                 continue
-            matter = (view.mode, view.station.title, own_tasks(view, resource))
+            matter = (view.mode, view.standing, view.silent, view.station.title, own_tasks(view, resource))
             told, due = self._told.get(resource, (None, now))
             if matter != told or now >= due:
                 self._told[resource] = (matter, now + TELL_EVERY)
@@ -71,5 +71,7 @@ class WatchShow:
             time=view.time,
             station=view.station.title,
             mode=view.mode,
+            standing=view.standing,
+            silent=view.silent,
             tasks=own_tasks(view, resource),
         ).model_dump_json()

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import Annotated
+from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Query, Request
+from fastapi import APIRouter, Depends, Query, Request, Response
 from pydantic import BaseModel, Field, StrictInt
 
 from sequence_planner.identity.roles import Role, Scope
@@ -27,13 +27,31 @@ ADMINISTRATOR = allowed(Role.ADMINISTRATOR, scope=Scope.WEBHOOKS)
 bodiless = APIRouter(prefix="/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR])
 router = APIRouter(prefix="/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR, JSON_ONLY])
 
+MADE: dict[str, Any] = {
+    "headers": {
+        "Location": {
+            "description": "Where the webhook is.",
+            "required": True,
+            "schema": {"type": "string", "format": "uri-reference"},
+        }
+    }
+}
 Number = Annotated[StrictInt, Field(ge=0, le=LARGEST_NUMBER)]
 
 
+class AllowedAnswer(BaseModel):
+    """Where webhooks may go: hosts with their ports, and networks; with `loopback` also to this machine."""
+
+    hosts: list[str]
+    networks: list[str]
+    loopback: bool
+
+
 class WebhooksAnswer(BaseModel):
-    """All webhooks, the newest first."""
+    """All webhooks, the newest first, and where whoever runs the station lets them go."""
 
     webhooks: list[Webhook]
+    allowed: AllowedAnswer
 
 
 class WebhookBody(Body):
@@ -84,14 +102,27 @@ AllowedTargets = Annotated[Targets, Depends(_targets)]
 
 
 @bodiless.get("")
-async def all_webhooks(identity: Identity) -> WebhooksAnswer:
-    """All webhooks, without their secrets, and how it goes with each."""
-    return WebhooksAnswer(webhooks=await identity.read(webhooks.everyone))
+async def all_webhooks(identity: Identity, targets: AllowedTargets) -> WebhooksAnswer:
+    """All webhooks, without their secrets, and how it goes with each; and where they may go."""
+    networks = [str(each) for each in targets.networks]
+    where = AllowedAnswer(hosts=targets.written, networks=networks, loopback=targets.loopback)
+    return WebhooksAnswer(webhooks=await identity.read(webhooks.everyone), allowed=where)
 
 
-@router.post("", status_code=201, responses=refused(409))
+@bodiless.get("/{webhook}", responses=refused(404))
+async def read_webhook(webhook: Identifier, identity: Identity) -> Webhook:
+    """A webhook, without its secret, and how it goes with it."""
+    return await identity.read(lambda connection: webhooks.get(connection, webhook))
+
+
+@router.post("", status_code=201, responses={201: MADE, **refused(409)})
 async def make_webhook(
-    body: WebhookBody, identity: Identity, actor: Actor, targets: AllowedTargets
+    body: WebhookBody,
+    request: Request,
+    response: Response,
+    identity: Identity,
+    actor: Actor,
+    targets: AllowedTargets,
 ) -> NewWebhookAnswer:
     """Make a webhook. Its secret is answered this once; deliveries are signed with it."""
     try:
@@ -104,6 +135,7 @@ async def make_webhook(
         lambda connection: webhooks.make(connection, seal, body.title, body.url, body.kinds, body.after, actor, now),
         by=actor,
     )
+    response.headers["Location"] = request.url_for("read_webhook", webhook=webhook.id).path
     return NewWebhookAnswer(webhook=webhook, secret=secret)
 
 

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import Awaitable, Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from sqlalchemy import Connection
 from starlette.concurrency import run_in_threadpool
@@ -14,6 +16,7 @@ from sequence_planner.actor import Actor
 from sequence_planner.control.definition_view import AutomatonView
 from sequence_planner.control.pipeline_view import RecordView
 from sequence_planner.model.paths import EditError
+from sequence_planner.start_needs import StartNeeds
 from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.latest import Latest
 from sequence_planner.web.looking_messages import WorkshopSnapshot
@@ -24,63 +27,57 @@ from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckView, waiting
 from sequence_planner.workshop.draft import Change, Differences, Draft, Proposal
 from sequence_planner.workshop.draft_process import DraftProcess
+from sequence_planner.workshop.editing_process import EditingProcess
 from sequence_planner.workshop.edits import AddEntry, Edit, PartChangedError, WriteText
 from sequence_planner.workshop.files import Files, FolderReader
 from sequence_planner.workshop.pipelines.questions import (
     Asked,
     Examples,
-    PipelineAnswer,
     PipelineQuestion,
     Recording,
 )
-from sequence_planner.workshop.pipelines.view import RecordedView, RecordingView, RunsView
+from sequence_planner.workshop.pipelines.view import RecordedView
 from sequence_planner.workshop.processes import worked
-from sequence_planner.workshop.questions import LanguageAnswer, LanguageQuestionKind, TextAt
-from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
-from sequence_planner.workshop.showing import Reader, change_view, marks
-from sequence_planner.workshop.view import DraftView, FilesView, RevisionsView, RevisionView, UsagesView, WorkshopView
+from sequence_planner.workshop.questions import LanguageQuestionKind, TextAt
+from sequence_planner.workshop.revisions import Revision
+from sequence_planner.workshop.showing import change_view, marks, revisions_view
+from sequence_planner.workshop.view import DraftView, FileMark, RevisionsView, RevisionView, WorkshopView
 
 MOST_SHOWN = 50  # changes
 ANSWERED_WITHIN = 20.0  # seconds, for questions about a text
 RUN_WITHIN = 30.0  # seconds, for questions about pipelines, which run
 
 
-def _revision_view(revision: Revision, running: str, edited: str) -> RevisionView:
-    return RevisionView(
-        id=revision.id,
-        name=revision.name,
-        message=revision.message,
-        by=revision.by,
-        time=revision.time,
-        running=revision.tree == running,
-        draft=revision.tree == edited,
-    )
-
-
 class Workshop:
-    """The draft of the station in the folder `model`, and its `revisions`. Used from one event loop."""
+    """The draft of the station in the folder `model`, which is run as `start` says, and its `revisions`. Used from one
+    event loop.
+    """
 
-    def __init__(self, identity: IdentityOffice, model: Path, revisions: Path, limits: StreamLimits) -> None:
+    def __init__(
+        self, identity: IdentityOffice, model: Path, revisions: Path, limits: StreamLimits, start: StartNeeds
+    ) -> None:
         self.latest = Latest(self._present, limits)
         self.folder = model
         self._files = FolderReader(model)
         self._identity = identity
-        self._revisions = Revisions(revisions)
-        self._keeping = asyncio.Lock()
-        self._reader = Reader()
+        self._revisions = revisions
+        self._editing = EditingProcess()
         self._process = DraftProcess()
-        self._desk = CheckDesk(model, self._process, self._found)
+        self._desk = CheckDesk(model, start, self._process, self._found)
         self._pipelines = DraftAnswering("pipelines.worker", "answering", 2)  # the draft, and what runs
         self._check: CheckView | None = None
         self._shown: WorkshopView | None = None
         self._encoded: str | None = None
+        self._marks: tuple[Draft, dict[str, FileMark]] | None = None
         self._opening = asyncio.Lock()
+        self._deployed_over: Files | None = None  # the files before the last deployment
         self._tied: tuple[int, str] | None = None  # the number of a draft, and its graph
         self._tying = asyncio.Lock()
 
     async def close(self) -> None:
         """End what is being checked and answered."""
         await self._desk.close()
+        await self._editing.close()
         await self._process.close()
         await self._pipelines.close()
 
@@ -88,29 +85,39 @@ class Workshop:
         """Read what the files hold, so that whoever asks for them first need not wait for that."""
         files = await run_in_threadpool(self._files.read)
         draft = await self._identity.read(drafts.read)
-        for each in (draft, Draft(draft.number, files, files)):
-            await run_in_threadpool(self._reader.views, each, each.files)
+        await self._editing.ask(draft.files or files, "shown", draft.number, None)
 
     async def open(self) -> Draft:
-        """The draft, begun if there is none yet, with what has happened to the files of the station since."""
+        """The draft, begun if there is none yet, with what has happened to the files of the station since.
+
+        Raises `WorkEndedError`.
+        """
         async with self._opening:
             files = await run_in_threadpool(self._files.read)
             draft = await self._identity.read(drafts.read)
-            if not draft.number or draft.base != files:
-                now = self._identity.now()
-                draft = await self._identity.write(lambda connection: drafts.take_up(connection, files, now))
+            if draft.number and draft.base != files and files == self._deployed_over:
+                # A deployment was undone. What was deployed stays in the draft, where it can be mended.
+                await self._identity.write(lambda connection: drafts.rebase(connection, files))
+                draft = replace(draft, base=files)
+            while not draft.number or draft.base != files:
+                proposal = await self._proposed(draft, "taken_up", draft.number, draft.base, files)
+                taking = partial[Draft | None](_taken_up, draft, files, proposal, self._identity.now())
+                if (taken := await self._identity.write(taking)) is None:
+                    taken = await self._identity.read(drafts.read)
+                draft = taken
             await self._noticed(draft)
         return draft
 
     async def view(self, by: Actor) -> DraftView:
-        """The draft, for somebody who could undo what they did."""
+        """The draft, for somebody who could undo what they did. Raises `WorkEndedError`."""
         draft = await self.open()
+        files = await self._marked(draft)
 
         def read(connection: Connection) -> DraftView:
             done, undone = drafts.stacks(connection, by)
             return DraftView(
                 number=draft.number,
-                files=marks(draft),
+                files=files,
                 changes=[change_view(each) for each in drafts.changes(connection, MOST_SHOWN)],
                 undo=done[-1].title if done else None,
                 redo=undone[-1].title if undone else None,
@@ -118,40 +125,39 @@ class Workshop:
 
         return await self._identity.read(read)
 
-    async def files(self, paths: Sequence[str] | None = None) -> FilesView:
-        """Files of the draft; all of them where none are named."""
-        draft = await self.open()
-        chosen = list(draft.files) if paths is None else paths
-        found = await run_in_threadpool(self._reader.views, draft, chosen)
-        return FilesView(number=draft.number, files=found)
+    async def files(self, paths: Sequence[str] | None = None) -> str:
+        """JSON of a `FilesView` of the draft; all its files where none are named. Raises `WorkEndedError`."""
+        return await self._files_of(await self.open(), paths)
 
-    async def change(self, edits: Sequence[Edit], by: Actor, title: str) -> FilesView:
-        """Carry edits out; the files that are others now. Raises `EditError`."""
-        return await self._changed(lambda draft: run_in_threadpool(drafts.editing, draft, edits, title), by)
+    async def request(self, body: bytes, by: Actor) -> str:
+        """Carry out the edits of a `ChangeBody`; the files that are others now, as JSON of a `FilesView`.
 
-    async def rename(self, part: str, name: str, by: Actor) -> FilesView:
-        """Give a part another name, which all that name it follow; the files that are others now.
+        Raises `BodyError`, `EditError` and `WorkEndedError`.
+        """
+        return (await self._changed(lambda draft: self._proposed(draft, "requested", body), by))[1]
+
+    async def change(self, edits: Sequence[Edit], by: Actor, title: str) -> int:
+        """Carry edits out; the number of the change. Raises `EditError` and `WorkEndedError`."""
+        return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[0]
+
+    async def rename(self, part: str, name: str, by: Actor) -> str:
+        """Give a part another name, which all that name it follow; the files that are others now, as JSON.
 
         Raises `EditError` and `WorkEndedError`.
         """
 
         async def propose(draft: Draft) -> Proposal:
             found = await self._process.ask(draft.files, "renamed_files", part, name)
-            if isinstance(found, str):
-                raise EditError(found)
             assert isinstance(found, dict)
             edits = [WriteText(file=path, was=draft.files.get(path), text=text) for path, text in found.items()]
-            title = f"{part.partition(':')[2]} is called {name}"
-            return await run_in_threadpool(drafts.editing, draft, edits, title)
+            return await self._proposed(draft, "edited", edits, f"{part.partition(':')[2]} is called {name}")
 
-        return await self._changed(propose, by)
+        return (await self._changed(propose, by))[1]
 
-    async def usages(self, part: str) -> UsagesView:
-        """Where a part is named. Raises `EditError` and `WorkEndedError`."""
+    async def usages(self, part: str) -> str:
+        """Where a part is named, as JSON of a `UsagesView`. Raises `EditError` and `WorkEndedError`."""
         found = await self._process.ask((await self.open()).files, "used", part)
-        if isinstance(found, str):
-            raise EditError(found)
-        assert isinstance(found, UsagesView)
+        assert isinstance(found, str)
         return found
 
     async def tied(self) -> str:
@@ -181,13 +187,13 @@ class Workshop:
         assert isinstance(found, list)
         return found
 
-    async def undo(self, by: Actor) -> FilesView:
-        """Take back what somebody did last. Raises `EditError`."""
-        return await self._changed(lambda draft: self._again(draft, by, undo=True), by)
+    async def undo(self, by: Actor) -> str:
+        """Take back what somebody did last; JSON of a `FilesView`. Raises `EditError` and `WorkEndedError`."""
+        return (await self._changed(lambda draft: self._again(draft, by, undo=True), by))[1]
 
-    async def redo(self, by: Actor) -> FilesView:
-        """Do again what somebody took back last. Raises `EditError`."""
-        return await self._changed(lambda draft: self._again(draft, by, undo=False), by)
+    async def redo(self, by: Actor) -> str:
+        """Do again what somebody took back last; JSON of a `FilesView`. Raises `EditError` and `WorkEndedError`."""
+        return (await self._changed(lambda draft: self._again(draft, by, undo=False), by))[1]
 
     async def checked(self) -> CheckView:
         """What is known of the draft."""
@@ -195,71 +201,74 @@ class Workshop:
         return self._check or waiting(draft.number)
 
     async def revised(self) -> RevisionsView:
-        """All revisions."""
+        """All revisions. Raises `WorkEndedError`."""
         draft = await self.open()
-
-        def read() -> RevisionsView:
-            edited, running = tree_of(draft.files), tree_of(draft.base)
-            views = [_revision_view(each, running, edited) for each in self._revisions.all()]
-            return RevisionsView(
-                revisions=views,
-                saved=any(each.draft for each in views),
-                running=any(each.running for each in views),
-            )
-
-        return await run_in_threadpool(read)
+        found = await self._editing.ask(draft.files, "revised", self._revisions, draft.base)
+        assert isinstance(found, tuple)
+        return revisions_view(*found)
 
     async def files_of(self, revision: str) -> dict[str, str]:
-        """The files of a revision. Raises `EditError` where there is none."""
-        return await run_in_threadpool(self._revisions.files, revision)
+        """The files of a revision. Raises `EditError` where there is none, and `WorkEndedError`."""
+        found = await self._editing.ask((await self.open()).files, "files_of", self._revisions, revision)
+        assert isinstance(found, dict)
+        return found
 
     async def save(self, draft: Draft, name: str, message: str, by: Actor) -> RevisionView:
-        """Save the draft under a name. Raises `EditError`."""
-        async with self._keeping:
-            saved = await run_in_threadpool(
-                self._revisions.save, draft.files, draft.base, name, message, by, self._identity.now()
-            )
-        return _revision_view(saved, tree_of(draft.base), saved.tree)
+        """Save the draft under a name. Raises `EditError` and `WorkEndedError`."""
+        asked = self._revisions, draft.base, name, message, by, self._identity.now()
+        saved = await self._editing.ask(draft.files, "saved", *asked)
+        assert isinstance(saved, Revision)
+        return next(each for each in (await self.revised()).revisions if each.id == saved.id)
 
-    async def restore(self, draft: Draft, files: Files, name: str, by: Actor) -> FilesView:
-        """Let the draft become these files, those of the revision `name`; the files that are others now."""
+    def note_deployment(self, draft: Draft) -> None:
+        """The draft is about to be deployed."""
+        self._deployed_over = draft.base
+
+    async def restore(self, draft: Draft, files: Files, name: str, by: Actor) -> str:
+        """Let the draft become these files, those of the revision `name`; JSON of a `FilesView` of what is other now.
+
+        Raises `EditError` and `WorkEndedError`.
+        """
         edits = [
             WriteText(file=path, was=draft.files.get(path), text=files.get(path))
             for path in sorted(draft.files.keys() | files.keys())
             if draft.files.get(path) != files.get(path)
         ]
-        return await self.change(edits, by, f"Back to “{name}”")
+        title = f"Back to “{name}”"
+        return (await self._changed(lambda draft: self._proposed(draft, "edited", edits, title), by))[1]
 
-    async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> LanguageAnswer:
-        """What is answered to a question about a text. Raises `WorkEndedError`."""
+    async def ask(self, kind: LanguageQuestionKind, asked: TextAt) -> str:
+        """What is answered to a question about a text, as JSON. Raises `WorkEndedError`."""
         draft = await self.open()
         answer = await self._process.ask(draft.files, "answer", kind, asked, patience=ANSWERED_WITHIN)
-        assert isinstance(answer, LanguageAnswer)
+        assert isinstance(answer, str)
         return answer
 
-    async def ask_pipelines(self, question: PipelineQuestion) -> PipelineAnswer:
-        """What is answered to a question about the pipelines. Raises `EditError` and `WorkEndedError`."""
-        draft = await self.open()
+    async def ask_pipelines(self, question: PipelineQuestion | bytes) -> str:
+        """What is answered to a question about the pipelines, as JSON; bytes are the body of a `Preview`.
 
-        def asked(changed: Changed, running: Changed) -> Asked:
-            return Asked(draft.number, changed, running, self.folder, question)
-
-        answer = await self._pipelines.ask(asked, draft.files, draft.base, patience=RUN_WITHIN)
-        if isinstance(answer, str):
-            raise EditError(answer)
-        assert isinstance(answer, PipelineAnswer)
+        Raises `EditError`, `BodyError` and `WorkEndedError`.
+        """
+        answer = await self._asked(question, as_json=True)
+        assert isinstance(answer, str)
         return answer
 
     async def record(self, pipeline: str, name: str, heard: RecordView, by: Actor) -> RecordedView:
         """Add an example to the draft. Raises `EditError` and `WorkEndedError`."""
         question = Recording(pipeline=pipeline, name=name, first=heard.first, last=heard.last)
-        made = await self.ask_pipelines(question)
-        assert isinstance(made, RecordingView)
+        (made,) = await self._asked(question, as_json=False)
         edit = AddEntry(file=made.file, path=[*made.path, 0], value=made.example)
-        changed = await self.change([edit], by, f"An example of {pipeline}: {name}")
-        runs = await self.ask_pipelines(Examples(pipeline=pipeline, name=name))
-        assert isinstance(runs, RunsView)
-        return RecordedView(number=changed.number, run=runs.runs[-1], example=made.example, left_out=made.left_out)
+        number = await self.change([edit], by, f"An example of {pipeline}: {name}")
+        (runs,) = await self._asked(Examples(pipeline=pipeline, name=name), as_json=False)
+        return RecordedView(number=number, run=runs.runs[-1], example=made.example, left_out=made.left_out)
+
+    async def _asked(self, question: PipelineQuestion | bytes, *, as_json: bool) -> Any:  # noqa: ANN401 - one or the other
+        draft = await self.open()
+
+        def asked(changed: Changed, running: Changed) -> Asked:
+            return Asked(draft.number, changed, running, self.folder, question, as_json)
+
+        return await self._pipelines.ask(asked, draft.files, draft.base, patience=RUN_WITHIN)
 
     async def _again(self, draft: Draft, by: Actor, *, undo: bool) -> Proposal:
         def last(connection: Connection) -> tuple[Change, Differences]:
@@ -268,11 +277,22 @@ class Workshop:
                 raise EditError(f"there is nothing of yours to {'undo' if undo else 'do again'}")
             return found[-1], drafts.differences_of(connection, found[-1])
 
-        propose = drafts.undoing if undo else drafts.redoing
-        return await run_in_threadpool(propose, draft, *await self._identity.read(last))
+        return await self._proposed(draft, "undone" if undo else "redone", *await self._identity.read(last))
 
-    async def _changed(self, propose: Callable[[Draft], Awaitable[Proposal]], by: Actor) -> FilesView:
-        """Let the draft be what is proposed, which is thought of again where somebody else was quicker."""
+    async def _proposed(self, draft: Draft, name: str, *asked: object) -> Proposal:
+        proposal = await self._editing.ask(draft.files, name, *asked)
+        assert isinstance(proposal, Proposal)
+        return proposal
+
+    async def _files_of(self, draft: Draft, paths: Sequence[str] | None) -> str:
+        found = await self._editing.ask(draft.files, "shown", draft.number, paths)
+        assert isinstance(found, str)
+        return found
+
+    async def _changed(self, propose: Callable[[Draft], Awaitable[Proposal]], by: Actor) -> tuple[int, str]:
+        """Let the draft be what is proposed, which is thought of again where somebody else was quicker; the number of
+        the change, and the files that are others then as JSON of a `FilesView`.
+        """
         while True:
             before = await self.open()
             try:
@@ -284,13 +304,7 @@ class Workshop:
             if after is not None:
                 break
         await self._noticed(after)
-        touched = [
-            path
-            for path in sorted(before.files.keys() | after.files.keys())
-            if before.files.get(path) != after.files.get(path)
-        ]
-        found = await run_in_threadpool(self._reader.views, after, touched)
-        return FilesView(number=after.number, files=found)
+        return after.number, await self._files_of(after, list(proposal.changed))
 
     async def _told_by_whom(self, error: PartChangedError, by: Actor) -> PartChangedError:
         """The same with the name of who was there before."""
@@ -301,14 +315,21 @@ class Workshop:
 
     async def _noticed(self, draft: Draft) -> None:
         """Show the draft, and check it, where it is another one; after a deployment only how its files stand is."""
+        files = await self._marked(draft)
         if (shown := self._shown) is not None and shown.number == draft.number:
-            if (files := marks(draft)) != shown.files:
+            if files != shown.files:
                 self._show(shown.model_copy(update={"files": files}))
             return
         changes = await self._identity.read(lambda connection: drafts.changes(connection, 1))
         last = change_view(changes[0]) if changes else None
-        self._shown = WorkshopView(number=draft.number, files=marks(draft), last=last, check=waiting(draft.number))
+        self._shown = WorkshopView(number=draft.number, files=files, last=last, check=waiting(draft.number))
         self._desk.check(draft.number, draft.files)
+
+    async def _marked(self, draft: Draft) -> dict[str, FileMark]:
+        """How each file stands; found once for each draft."""
+        if self._marks is None or self._marks[0] != draft:
+            self._marks = draft, await run_in_threadpool(marks, draft)
+        return self._marks[1]
 
     def _found(self, check: CheckView) -> None:
         self._check = check
@@ -325,6 +346,10 @@ class Workshop:
             assert self._shown is not None  # nobody listens before it was opened
             self._encoded = WorkshopSnapshot(kind="workshop", workshop=self._shown).model_dump_json()
         return self._encoded
+
+
+def _taken_up(draft: Draft, files: Files, proposal: Proposal, now: float, connection: Connection) -> Draft | None:
+    return drafts.take_up(connection, draft, files, proposal, now)
 
 
 def _written(draft: Draft, proposal: Proposal, by: Actor, now: float, connection: Connection) -> Draft | None:

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from sequence_planner.control.view_part import View
+from sequence_planner.model.paths import EditError
+from sequence_planner.workshop.bodies import BodyError
 from sequence_planner.workshop.files import Files
 from sequence_planner.workshop.processes import Answering
 
@@ -28,6 +31,15 @@ class Knowing:
         return changed
 
 
+def answered(work: Callable[[], object]) -> object:
+    """What such a process answers: what `work` gives, views of it as JSON, or why there is nothing."""
+    try:
+        found = work()
+    except (EditError, BodyError) as error:
+        return error
+    return found.model_dump_json() if isinstance(found, View) else found
+
+
 class DraftAnswering:
     """Asks `name`, a function of a module of this room, about several versions of a model."""
 
@@ -36,7 +48,10 @@ class DraftAnswering:
         self._known = [Knowing() for _ in range(versions)]
 
     async def ask(self, question: Callable[..., object], *versions: Files, patience: float) -> object:
-        """The answer to what `question` makes of what has changed in each version. Raises `WorkEndedError`."""
+        """The answer to what `question` makes of what has changed in each version.
+
+        Raises `WorkEndedError`, and the `EditError` or `BodyError` that was answered.
+        """
 
         def asked() -> object:
             if not self._process.begun:
@@ -44,7 +59,10 @@ class DraftAnswering:
                     known.forget()
             return question(*(known.news(files) for known, files in zip(self._known, versions, strict=True)))
 
-        return await self._process.ask(asked, patience)
+        answer = await self._process.ask(asked, patience)
+        if isinstance(answer, EditError | BodyError):
+            raise answer
+        return answer
 
     async def close(self) -> None:
         """End the process."""

@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Callable
 from pathlib import Path
 
+from sequence_planner.start_needs import StartNeeds
 from sequence_planner.workshop.check_view import CheckState, CheckView, waiting
 from sequence_planner.workshop.draft_process import DraftProcess
 from sequence_planner.workshop.files import Files
@@ -15,14 +16,18 @@ SETTLED = 0.15  # seconds without a change after which the whole is checked
 
 
 class CheckDesk:
-    """Checks what it is told to, from one event loop; `stages` is the model whose Python stages belong to the draft.
+    """Checks what it is told to, from one event loop. `stages` is the model whose Python stages belong to the draft,
+    which is to be run as `start` says.
 
     `process` says at once what makes the draft unusable; all else is found by a process for each check, from scratch.
     `tell` is called with each view, all of one check in their order.
     """
 
-    def __init__(self, stages: Path | None, process: DraftProcess, tell: Callable[[CheckView], None]) -> None:
+    def __init__(
+        self, stages: Path | None, start: StartNeeds, process: DraftProcess, tell: Callable[[CheckView], None]
+    ) -> None:
         self._stages = stages
+        self._start = start
         self._process = process
         self._tell = tell
         self._wanted: tuple[int, Files] | None = None
@@ -68,7 +73,7 @@ class CheckDesk:
         await asyncio.sleep(SETTLED)
         view = waiting(number)
         try:
-            async with working("checking", "checked", number, files, self._stages) as found:
+            async with working("checking", "checked", number, files, self._stages, self._start) as found:
                 async for told in found:
                     assert isinstance(told, CheckView)
                     view = told

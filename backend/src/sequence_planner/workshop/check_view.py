@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import StrEnum
 
 from sequence_planner.analysis.document import AnalysisDocument, FindingDocument
 from sequence_planner.control.view_part import View
+
+MOST_FINDINGS = 500  # that are shown
+MORE = "more"  # the kind of the last of them where there are more
 
 
 class CheckState(StrEnum):
@@ -49,6 +53,16 @@ class CheckView(View):
             and self.analysis is not None
             and self.analysis.supervised is True
         )
+
+
+def listed(findings: Sequence[FindingDocument]) -> list[FindingDocument]:
+    """Findings as they are shown: the first of very many, errors before others, and in the last place how many more."""
+    if len(findings) <= MOST_FINDINGS:
+        return list(findings)
+    worst = sorted(findings, key=lambda finding: finding.severity != "error")
+    shown, left = worst[:MOST_FINDINGS], worst[MOST_FINDINGS:]
+    message = f"there are {len(left)} more findings, which are not shown: mend those before this one first"
+    return [*shown, left[0].model_copy(update={"kind": MORE, "message": message, "trace": None})]
 
 
 def waiting(number: int) -> CheckView:

@@ -72,15 +72,11 @@ def read(connection: Connection) -> Draft:
     )
 
 
-def take_up(connection: Connection, files: Files, now: float) -> Draft:
-    """Let the draft be one of the station that consists of `files`, with what was edited brought together with what
-    has happened to them since. A file of which both changed the same lines stays as it is in the draft; the change
-    says so, and the other version is what the draft is compared with from now on.
+def taking_up(draft: Draft, files: Files) -> Proposal:
+    """What was edited, brought together with what has happened to the files of the station since. A file of which both
+    changed the same lines stays as it is in the draft; the title says so.
     """
-    draft, conflicts = read(connection), list[str]()
-    if draft.number and draft.base == files:
-        return draft
-    after = dict(draft.files)
+    after, conflicts = dict(draft.files), list[str]()
     for path in sorted(draft.base.keys() | files.keys()):
         try:
             text = merged(draft.base.get(path), files.get(path), draft.files.get(path))
@@ -94,7 +90,16 @@ def take_up(connection: Connection, files: Files, now: float) -> Draft:
     title = "The files of the station have changed" if draft.number else "The files of the station"
     if conflicts:
         title += f"; where the draft had changed the same lines, its own are kept: {', '.join(conflicts)}"
-    _write(connection, draft, Proposal(after, ChangeKind.TAKEN, None, title), SYSTEM, now, always=bool(conflicts))
+    return Proposal(_changed(draft.files, after), ChangeKind.TAKEN, None, title, always=bool(conflicts))
+
+
+def take_up(connection: Connection, draft: Draft, files: Files, proposal: Proposal, now: float) -> Draft | None:
+    """Let the draft be one of the station that consists of `files`, with which `proposal` brings it together: what it
+    is compared with from now on. None where it is another one by now than the `draft` this was made from.
+    """
+    if read(connection) != draft:
+        return None
+    _write(connection, draft, proposal, SYSTEM, now)
     rebase(connection, files)
     return read(connection)
 
@@ -108,29 +113,33 @@ def rebase(connection: Connection, files: Files) -> None:
 
 @dataclass(frozen=True)
 class Proposal:
-    """What shall become of the files of a draft, and what it is."""
+    """What shall become of the files of a draft, of those that are others then (none is no file), and what it is.
 
-    after: Files
+    Without any it is a change only if it is to be one `always`.
+    """
+
+    changed: Mapping[str, str | None]
     kind: ChangeKind
     of: int | None
     title: str
+    always: bool = False
 
 
 def editing(draft: Draft, edits: Sequence[Edit], title: str) -> Proposal:
     """Carry edits out, all of them or none. Raises `EditError`."""
-    return Proposal(applied(draft.files, edits), ChangeKind.EDIT, None, title)
+    return Proposal(_changed(draft.files, applied(draft.files, edits)), ChangeKind.EDIT, None, title)
 
 
 def undoing(draft: Draft, of: Change, differences: Differences) -> Proposal:
     """Take a change back, wherever others have not changed the same lines since. Raises `EditError`."""
     edits = [WriteText(file=path, was=after, text=before) for path, (before, after) in differences.items()]
-    return Proposal(applied(draft.files, edits), ChangeKind.UNDO, of.number, of.title)
+    return Proposal(_changed(draft.files, applied(draft.files, edits)), ChangeKind.UNDO, of.number, of.title)
 
 
 def redoing(draft: Draft, of: Change, differences: Differences) -> Proposal:
     """Do again what was taken back. Raises `EditError`."""
     edits = [WriteText(file=path, was=before, text=after) for path, (before, after) in differences.items()]
-    return Proposal(applied(draft.files, edits), ChangeKind.REDO, of.number, of.title)
+    return Proposal(_changed(draft.files, applied(draft.files, edits)), ChangeKind.REDO, of.number, of.title)
 
 
 def write(connection: Connection, draft: Draft, proposal: Proposal, by: Actor, now: float) -> Draft | None:
@@ -175,16 +184,16 @@ def stacks(connection: Connection, by: Actor) -> tuple[list[Change], list[Change
     return done, undone
 
 
-def _write(
-    connection: Connection, draft: Draft, proposal: Proposal, by: Actor, now: float, *, always: bool = False
-) -> Draft:
-    after = proposal.after
-    differences = {
-        path: (draft.files.get(path), after.get(path))
-        for path in sorted(draft.files.keys() | after.keys())
-        if draft.files.get(path) != after.get(path)
-    }
-    if not differences and draft.number and not always:
+def _changed(before: Files, after: Files) -> dict[str, str | None]:
+    paths = sorted(before.keys() | after.keys())
+    return {path: after.get(path) for path in paths if before.get(path) != after.get(path)}
+
+
+def _write(connection: Connection, draft: Draft, proposal: Proposal, by: Actor, now: float) -> Draft:
+    changed = {path: text for path, text in proposal.changed.items() if draft.files.get(path) != text}
+    differences = {path: (draft.files.get(path), text) for path, text in changed.items()}
+    after = {path: text for path, text in {**draft.files, **changed}.items() if text is not None}
+    if not differences and draft.number and not proposal.always:
         return draft
     number = draft.number + 1
     connection.execute(

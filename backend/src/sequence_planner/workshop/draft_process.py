@@ -21,7 +21,7 @@ class DraftProcess:
     async def ask(self, files: Files, name: str, *asked: object, patience: float = PATIENCE) -> object:
         """What `name` of the answers there are says about these files, within so many seconds once its turn has come.
 
-        Raises `WorkEndedError`.
+        Views are told as JSON. Raises `EditError` and `WorkEndedError`.
         """
 
         def question(changed: Changed) -> object:

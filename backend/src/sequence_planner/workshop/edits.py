@@ -15,9 +15,10 @@ from sequence_planner.model import editing
 from sequence_planner.model.order import declared_order
 from sequence_planner.model.paths import EditError, shown_path
 from sequence_planner.model.reading import EntryPath
-from sequence_planner.workshop.files import MOST_FILES, Files, check_path, check_text
+from sequence_planner.workshop.files import Files, check_path, check_size, check_text
 from sequence_planner.workshop.merging import MergeConflictError, merged
 
+MOST_EDITS = 500  # of one change
 Step = Annotated[str, Field(max_length=500)] | Annotated[int, Field(ge=0, le=100_000, strict=True)]
 Steps = Annotated[list[Step], Field(max_length=50)]
 FilePath = Annotated[str, Field(min_length=1, max_length=300)]
@@ -31,6 +32,10 @@ class PartChangedError(EditError):
         super().__init__(message)
         self.file = file
         self.path = path
+
+    def __reduce__(self) -> tuple[type[PartChangedError], tuple[str, EntryPath, str]]:
+        """How it comes from the process in which the edit was made."""
+        return PartChangedError, (self.file, self.path, str(self))
 
 
 class EditBase(BaseModel):
@@ -90,6 +95,14 @@ class WriteText(EditBase):
 Edit = Annotated[SetEntry | AddEntry | RemoveEntry | MoveEntry | WriteText, Field(discriminator="kind")]
 
 
+class ChangeBody(BaseModel):
+    """Edits that are carried out together, or not at all; `title` says what they do, for the list of changes."""
+
+    model_config = ConfigDict(extra="forbid")
+    title: Annotated[str, Field(min_length=1, max_length=300)]
+    edits: Annotated[list[Edit], Field(min_length=1, max_length=MOST_EDITS)]
+
+
 def applied(files: Files, edits: Sequence[Edit]) -> dict[str, str]:
     """The files after the edits, one after the other. Raises `EditError`, of which `PartChangedError` is one."""
     after = dict(files)
@@ -101,8 +114,7 @@ def applied(files: Files, edits: Sequence[Edit]) -> dict[str, str]:
         else:
             check_text(edit.file, text)
             after[edit.file] = text
-    if len(after) > MOST_FILES:
-        raise EditError(f"a model has at most {MOST_FILES} files")
+    check_size(after)
     return after
 
 

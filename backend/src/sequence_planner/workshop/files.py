@@ -21,9 +21,12 @@ from sequence_planner.model.saving import BYTE_ORDER_MARK
 
 # Texts by their paths below the model's folder, such as `resources/robot.yaml`.
 Files = Mapping[str, str]
+# The same files byte by byte, those that are no text among them.
+Contents = Mapping[str, bytes]
 
 LONGEST_FILE = 1_000_000  # characters
 MOST_FILES = 2_000
+MOST_CHARACTERS = 10_000_000  # of all files together
 STAGES = "stages"
 _FOLDERS = ("resources", "messages")  # where files are looked for
 
@@ -48,6 +51,14 @@ def check_text(path: str, text: str) -> None:
         raise EditError(f"{path} has {len(text)} characters, and a file of a model has at most {LONGEST_FILE}")
     if (wrong := _NO_TEXT.search(text)) is not None:
         raise EditError(f"{path} would hold the character {ord(wrong[0]):#06x}, which no text does")
+
+
+def check_size(files: Files) -> None:
+    """Raises `EditError` for more files, or longer ones, than a model has."""
+    if len(files) > MOST_FILES:
+        raise EditError(f"a model has at most {MOST_FILES} files")
+    if (size := sum(map(len, files.values()))) > MOST_CHARACTERS:
+        raise EditError(f"the model would have {size} characters, and has at most {MOST_CHARACTERS} in all its files")
 
 
 def read_files(folder: Path) -> dict[str, str]:
@@ -124,18 +135,42 @@ def put_in_place(files: Files, folder: Path) -> None:
     before = read_files(folder)
     for name, text in files.items():
         if before.get(name) != text:
-            _put(folder / name, text)
+            _put(folder / name, text.encode("utf-8"))
     for name in before.keys() - files.keys():
         (folder / name).unlink(missing_ok=True)
 
 
-def _put(path: Path, text: str) -> None:
+def read_contents(folder: Path) -> dict[str, bytes]:
+    """All that a deployment may write or remove of the model in `folder`, byte by byte. Raises `OSError`."""
+    return {name: Path(entry.path).read_bytes() for name, entry in sorted(_found(folder), key=itemgetter(0))}
+
+
+def write_contents(contents: Contents, folder: Path) -> None:
+    """Make `folder` hold these files. Raises `OSError`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, content in contents.items():
+        path = folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+
+
+def restore_contents(contents: Contents, folder: Path) -> None:
+    """Let the model in `folder` consist of these files again, to the byte; see `put_in_place`. Raises `OSError`."""
+    now = read_contents(folder)
+    for name, content in contents.items():
+        if now.get(name) != content:
+            _put(folder / name, content)
+    for name in now.keys() - contents.keys():
+        (folder / name).unlink(missing_ok=True)
+
+
+def _put(path: Path, content: bytes) -> None:
     target = path.resolve()  # a link stays a link
     target.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
     try:
         with os.fdopen(handle, "wb") as file:
-            file.write(text.encode("utf-8"))
+            file.write(content)
             file.flush()
             os.fsync(file.fileno())
         Path(name).chmod(target.stat().st_mode & 0o777 if target.exists() else 0o644)

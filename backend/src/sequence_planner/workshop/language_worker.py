@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable, Iterator, Mapping
+from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 from sequence_planner.analysis.document import FindingDocument, error_document
 from sequence_planner.model.loading import load_station
-from sequence_planner.model.paths import EditError
 from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.ros.errors import MessageDefinitionError
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.station import Before, read_station
+from sequence_planner.workshop.asking import answered
+from sequence_planner.workshop.check_view import listed
 from sequence_planner.workshop.files import Files, write_files
 from sequence_planner.workshop.graph_view import graph_view
 from sequence_planner.workshop.language import Field, Lexicon, check, complete, formatted, hover
@@ -154,24 +156,18 @@ def answer(draft: Draft, kind: LanguageQuestionKind, asked: TextAt) -> LanguageA
 
 def errors(draft: Draft) -> list[FindingDocument]:
     """What makes the draft unusable, as far as it shows before pipelines are built."""
-    return [error_document(finding) for finding in draft.errors()]
+    return listed([error_document(finding) for finding in draft.errors()])
 
 
-def renamed_files(draft: Draft, part: str, name: str) -> dict[str, str | None] | str:
-    """The files that are others once a part has another name, or why it cannot have it."""
-    try:
-        return renamed(draft.files, parse_part(part), name, draft.messages())
-    except EditError as error:
-        return str(error)
+def renamed_files(draft: Draft, part: str, name: str) -> dict[str, str | None]:
+    """The files that are others once a part has another name. Raises `EditError`."""
+    return renamed(draft.files, parse_part(part), name, draft.messages())
 
 
-def used(draft: Draft, part: str) -> UsagesView | str:
-    """Where a part is named, or why nobody can say."""
-    try:
-        wanted, messages = parse_part(part), draft.messages()
-        found, without = usages(draft.files, wanted, messages), dependants(draft.files, wanted, messages)
-    except EditError as error:
-        return str(error)
+def used(draft: Draft, part: str) -> UsagesView:
+    """Where a part is named. Raises `EditError`."""
+    wanted, messages = parse_part(part), draft.messages()
+    found, without = usages(draft.files, wanted, messages), dependants(draft.files, wanted, messages)
     return UsagesView(
         usages=list(map(_usage_view, found.found)),
         unwritten=list(map(_usage_view, found.unwritten)),
@@ -219,4 +215,4 @@ def answering(connection: Connection, folder: Path) -> None:
             question: Question = connection.recv()
             changed, name, asked = question
             draft.take(changed)
-            connection.send(_ANSWERS[name](draft, *asked))
+            connection.send(answered(partial(_ANSWERS[name], draft, *asked)))

@@ -2,11 +2,23 @@
 
 from __future__ import annotations
 
-from merge3 import Merge3
+from collections import deque
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from difflib import SequenceMatcher
 
 
 class MergeConflictError(Exception):
     """Both changed the same lines; the text says which."""
+
+
+@dataclass(frozen=True)
+class _Change:
+    """The lines of the old text from `start` up to `end` have become `lines`."""
+
+    start: int
+    end: int
+    lines: Sequence[str]
 
 
 def merged(old: str | None, mine: str | None, theirs: str | None) -> str | None:
@@ -17,8 +29,47 @@ def merged(old: str | None, mine: str | None, theirs: str | None) -> str | None:
         return theirs
     if old is None or mine is None or theirs is None:
         raise MergeConflictError("in another way: it was made, or taken away")
-    merge = Merge3(old.splitlines(True), mine.splitlines(True), theirs.splitlines(True))
-    for region in merge.merge_regions():
-        if region[0] == "conflict":
-            raise MergeConflictError(f"in the same lines, from line {region[1] + 1} of the old text on")
-    return "".join(merge.merge_lines())
+    lines, found, done = old.splitlines(True), list[str](), 0
+    for change in _both(lines, _changes(lines, mine.splitlines(True)), _changes(lines, theirs.splitlines(True))):
+        found += [*lines[done : change.start], *change.lines]
+        done = change.end
+    return "".join([*found, *lines[done:]])
+
+
+def _changes(old: Sequence[str], new: Sequence[str]) -> list[_Change]:
+    """What leads from one text to the other."""
+    return [
+        _Change(start, end, new[begin:until])
+        for tag, start, end, begin, until in SequenceMatcher(None, old, new).get_opcodes()
+        if tag != "equal"
+    ]
+
+
+def _both(old: Sequence[str], one: Iterable[_Change], other: Iterable[_Change]) -> Iterator[_Change]:
+    """All changes in their order; those that overlap or touch one another are one, if they come to the same."""
+    mine, theirs = deque(one), deque(other)
+    while mine or theirs:
+        begin = min(each[0].start for each in (mine, theirs) if each)
+        end, ours, others = begin, list[_Change](), list[_Change]()
+        grown = True
+        while grown:
+            grown = False
+            for waiting, taken in ((mine, ours), (theirs, others)):
+                while waiting and waiting[0].start <= end:
+                    taken.append(waiting.popleft())
+                    end, grown = max(end, taken[-1].end), True
+        if not others or not ours:
+            yield from ours or others
+        elif (lines := _after(old, begin, end, ours)) == _after(old, begin, end, others):
+            yield _Change(begin, end, lines)
+        else:
+            raise MergeConflictError(f"in the same lines, from line {begin + 1} of the old text on")
+
+
+def _after(old: Sequence[str], begin: int, end: int, changes: Sequence[_Change]) -> list[str]:
+    """What has become of the lines from `begin` up to `end`."""
+    found, done = list[str](), begin
+    for change in changes:
+        found += [*old[done : change.start], *change.lines]
+        done = change.end
+    return [*found, *old[done:end]]

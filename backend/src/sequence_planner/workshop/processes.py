@@ -21,10 +21,11 @@ from pathlib import Path
 from typing import Any
 
 from sequence_planner.lifeline import end_without_parent
+from sequence_planner.memory_limit import MemoryLimit, memory_limit
 
 _CONTEXT = multiprocessing.get_context("forkserver")
 _CONTEXT.set_forkserver_preload(
-    [f"{__package__}.{each}" for each in ("checking", "tasks", "language_worker", "pipelines.worker")]
+    [f"{__package__}.{each}" for each in ("checking", "tasks", "editing_worker", "language_worker", "pipelines.worker")]
 )
 PATIENCE = 60.0  # seconds for a task
 _ANSWERING, _WORKING = 5, 15  # niceness: ticks come first, then whoever waits for an answer, then checks
@@ -41,8 +42,9 @@ async def working(module: str, name: str, *arguments: object) -> AsyncIterator[A
     """What the generator `name` of a module of this room tells, until the block is left: then its process is killed.
 
     It is called with `arguments` and the path of an empty folder. Iterating raises `WorkEndedError` when the process
-    ends too early.
+    ends too early, as it does when it takes more memory than there is for it.
     """
+    limit = MemoryLimit(memory_limit())
     with tempfile.TemporaryDirectory(prefix=_PREFIX) as folder:
         ours, theirs = _CONTEXT.Pipe(duplex=False)
         with ours:
@@ -51,7 +53,8 @@ async def working(module: str, name: str, *arguments: object) -> AsyncIterator[A
             with theirs:
                 await asyncio.to_thread(process.start)
             try:
-                yield _heard(ours)
+                with limit.held(process):
+                    yield _heard(ours, limit)
             finally:
                 process.kill()
                 await asyncio.shield(asyncio.to_thread(process.join))
@@ -126,7 +129,7 @@ class Answering:
         ours, theirs = _CONTEXT.Pipe()
         with theirs:
             given = (theirs, f"{__package__}.{module}", name, Path(folder.name))
-            process = _CONTEXT.Process(target=_answer, args=given, daemon=True, name=name)
+            process = _CONTEXT.Process(target=_answer, args=given, daemon=True, name=module)
             process.start()
         return process, ours, folder
 
@@ -141,9 +144,15 @@ class Answering:
                 folder.cleanup()
 
 
-async def _heard(connection: Connection) -> AsyncIterator[object]:
+async def _heard(connection: Connection, limit: MemoryLimit) -> AsyncIterator[object]:
     while True:
-        yield await _told(connection)
+        try:
+            word = await _told(connection)
+        except WorkEndedError:
+            if limit.reached:
+                raise WorkEndedError(str(limit)) from None
+            raise
+        yield word
 
 
 async def _told(connection: Connection) -> object:

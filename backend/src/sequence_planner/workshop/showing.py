@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import json
 from collections import OrderedDict
 from collections.abc import Iterable
-from threading import Lock
 
 from pydantic import JsonValue
 
@@ -13,9 +13,10 @@ from sequence_planner.model.editing import plain
 from sequence_planner.model.reading import read_text
 from sequence_planner.model.source import ModelError
 from sequence_planner.workshop.draft import Change, Draft, digest
-from sequence_planner.workshop.view import ChangeView, FileMark, FileState, FileView
+from sequence_planner.workshop.revisions import Revision
+from sequence_planner.workshop.view import ChangeView, FileMark, FileState, FileView, RevisionsView, RevisionView
 
-MOST_READ = 5000  # files whose content is remembered
+MOST_READ, MOST_CHARACTERS = 5000, 50_000_000  # files whose content is remembered, and what they may take together
 
 
 def marks(draft: Draft) -> dict[str, FileMark]:
@@ -43,29 +44,49 @@ def change_view(change: Change) -> ChangeView:
     )
 
 
+def revisions_view(revisions: Iterable[Revision], running: str, edited: str) -> RevisionsView:
+    """Revisions, as people read them; the other two are the trees of what runs, and of the draft."""
+    views = [
+        RevisionView(
+            id=each.id,
+            name=each.name,
+            message=each.message,
+            by=each.by,
+            time=each.time,
+            running=each.tree == running,
+            draft=each.tree == edited,
+        )
+        for each in revisions
+    ]
+    return RevisionsView(
+        revisions=views, saved=any(each.draft for each in views), running=any(each.running for each in views)
+    )
+
+
 class Reader:
-    """Reads files, each text once; used from any thread."""
+    """Reads files, each text once, and tells what they hold as JSON."""
 
     def __init__(self) -> None:
-        self._lock = Lock()
-        self._read: OrderedDict[tuple[str, str], FileView] = OrderedDict()
+        self._read: OrderedDict[tuple[str, str], str] = OrderedDict()
+        self._characters = 0
 
-    def views(self, draft: Draft, paths: Iterable[str]) -> dict[str, FileView | None]:
-        """These files, those that are not there as null."""
-        return {path: self._view(path, draft.files[path]) if path in draft.files else None for path in paths}
+    def shown(self, draft: Draft, paths: Iterable[str]) -> str:
+        """JSON of a `FilesView` of these files, those that are not there as null."""
+        views = {path: self._view(path, draft.files[path]) if path in draft.files else "null" for path in paths}
+        files = ",".join(f"{json.dumps(path)}:{view}" for path, view in views.items())
+        return f'{{"number":{draft.number},"files":{{{files}}}}}'
 
-    def _view(self, path: str, text: str) -> FileView:
+    def _view(self, path: str, text: str) -> str:
         key = path, digest(text)
-        with self._lock:
-            known = self._read.get(key)
+        known = self._read.get(key)
         if known is None:
             content, wrong = _content(path, text)
-            known = FileView(path=path, digest=key[1], text=text, content=content, wrong=wrong)
-        with self._lock:
-            self._read[key] = known
-            self._read.move_to_end(key)
-            if len(self._read) > MOST_READ:
-                self._read.popitem(last=False)
+            view = FileView(path=path, digest=key[1], text=text, content=content, wrong=wrong)
+            known = self._read[key] = view.model_dump_json()
+            self._characters += len(known)
+        self._read.move_to_end(key)
+        while len(self._read) > MOST_READ or self._characters > MOST_CHARACTERS:
+            self._characters -= len(self._read.popitem(last=False)[1])
         return known
 
 

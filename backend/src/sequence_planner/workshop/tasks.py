@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
 from sequence_planner.analysis.analysis import analyses
 from sequence_planner.analysis.document import TraceDocument
 from sequence_planner.control.definition_view import AutomatonView
+from sequence_planner.control.view_part import View
 from sequence_planner.expressions.types import Value
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import ReadyStation, prepare_station
@@ -29,6 +30,12 @@ from sequence_planner.workshop.what_if_view import WhatIfView
 
 class Unusable(Exception):
     """A model that cannot be used, and why."""
+
+
+def told(name: str, *arguments: object) -> Iterator[str]:
+    """What the task `name` finds, as JSON."""
+    for each in _TOLD[name](*arguments):
+        yield each.model_dump_json()
 
 
 def compared(old: Files, new: Files, stages: Path | None, folder: Path) -> Iterator[ComparisonView]:
@@ -108,6 +115,13 @@ def drawn(
         return
     found = automaton.abilities.get(ability)
     yield f"the model has no ability `{ability}`" if found is None else played(automaton, found, trace)
+
+
+_TOLD: Mapping[str, Callable[..., Iterator[View]]] = {
+    "compared": compared,
+    "fitted": fitted,
+    "simulated": simulated,
+}
 
 
 def _meant(what: str, files: Files, stages: Path | None, folder: Path) -> Meant:

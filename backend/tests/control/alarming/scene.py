@@ -55,10 +55,14 @@ def commander(station: ReadyStation) -> Commander:
 
 
 def alarms_of(
-    execution: Execution, station: ReadyStation, told: Told | None = None, known: Known | None = None
+    execution: Execution,
+    station: ReadyStation,
+    told: Told | None = None,
+    known: Known | None = None,
+    feeds: Feeds | None = None,
 ) -> Alarms:
-    """The alarms of a station of which no device has been heard yet."""
-    feeds = Feeds(station.pipelines, station.registry)
+    """The alarms of a station of which no device has been heard yet; those of `feeds` may have been."""
+    feeds = feeds or Feeds(station.pipelines, station.registry)
     network = NetworkWatch(station.pipelines, station.registry)
     return Alarms(execution, Outside(execution), feeds, network, commander(station), told or Told(), known)
 

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 from control.alarming.scene import acknowledge, alarms
 from control.rig import Rig, never
 from sequence_planner.control.alarm_view import AlarmState, Priority
 from sequence_planner.control.alarming.alarms import Alarms
+from sequence_planner.control.by_hand import Moved, WentOn
 from sequence_planner.control.conduct import LastErrand, OutOfService
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_view import QuestionView
+from sequence_planner.control.task_commands import ProblemKind
 from sequence_planner.control.tasks import TaskProblem
 from sequence_planner.control.view import Mode, PlanStatus
 from sequence_planner.immutable import replace
@@ -76,9 +80,12 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     assert rig.run(5, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
     told = shown.current(None, Moment(rig.now + 6, rig.now + 6))[late]
     assert told.state is AlarmState.RETURNED
-    told = shown.current(None, Moment(rig.now + 40, rig.now + 40))[late]
-    assert told.state is AlarmState.UNACKNOWLEDGED
-    assert told.text.startswith("Run the nutrunner has not finished within ")
+    both = shown.current(
+        None, Moment(rig.now + 29.8, rig.now + 29.8)
+    )  # nor has the robot moved, for which the tool waits
+    (robot,) = (alarm for key, alarm in both.items() if key.startswith("overdue:robot") and alarm.ended is None)
+    assert robot.state is AlarmState.UNACKNOWLEDGED
+    assert any(part.startswith("Run the nutrunner has not finished within ") for part in robot.parts)
 
 
 def test_a_specification_that_is_broken_for_certain_is_an_alarm_whatever_else_is_unknown() -> None:
@@ -231,5 +238,24 @@ def test_a_problem_with_a_task_is_told_with_who_has_it_and_what_waits_for_it() -
     assert (alarm.priority, alarm.state) == (Priority.MEDIUM, AlarmState.UNACKNOWLEDGED)
     assert alarm.text == f"Eva has a problem with “{task.title}”: no bolts"
     assert alarm.consequence.endswith("wait.") or alarm.consequence.endswith("waits.")
+    shown.problems = {task.id: (task.ability, TaskProblem("Eva", rig.now, "", ProblemKind.MISSING))}
+    assert shown.current(None, now)[f"problem:{task.id}"].text.endswith("”: a part is missing")
+    shown.problems = {task.id: (task.ability, TaskProblem("Eva", rig.now, "the left one", ProblemKind.DAMAGED))}
+    assert shown.current(None, now)[f"problem:{task.id}"].text.endswith("”: something is damaged, the left one")
     shown.problems = {}
     assert f"problem:{task.id}" not in there(shown, now)
+
+
+def test_what_was_moved_by_hand_is_a_notice_that_nobody_has_to_acknowledge() -> None:
+    rig = Rig()
+    shown, now = alarms(rig), rig_now(rig)
+    moved = Moved("robot", {"robot.pose": ("bolt_pair_1", "home")}, now)
+    shown.moved = [moved]
+    told = shown.current(None, now)["by-hand:robot"]
+    assert (told.priority, told.state) == (Priority.LOW, AlarmState.ACKNOWLEDGED)
+    assert told.text == "Robot UR10 says robot.pose == home (before: bolt_pair_1), which nothing commanded"
+    assert told.consequence == "Nothing has been started because of it yet."
+    shown.moved = [dataclasses.replace(moved, by="robot.move_to_position(home)", how=WentOn.STARTED, on=now)]
+    assert shown.current(None, now)["by-hand:robot"].consequence == "“Move to home” was started after it."
+    shown.moved = ()
+    assert "by-hand:robot" not in shown.current(None, now)

@@ -20,7 +20,7 @@ LOOKS = st.lists(
 
 
 def cause(key: str, *follows: str, priority: Priority = Priority.MEDIUM) -> Cause:
-    return Cause(key, priority, f"{key} is wrong", "nothing", "look", follows)
+    return Cause(key, priority, f"{key} is wrong", "nothing", "look", follows, past=f"{key} was wrong")
 
 
 @examples(300)
@@ -54,14 +54,18 @@ def test_whatever_is_there_is_told_once_as_urgently_as_it_is(
 def test_what_follows_from_what_follows_is_a_part_too() -> None:
     told = Folding().fold([cause("a"), cause("b", "a"), cause("c", "b")], (), 0)
     assert told.alarms["a"].parts == ("b is wrong", "c is wrong")
+    assert told.alarms["a"].past_parts == ("b was wrong", "c was wrong")
     assert told.folded == {"b", "c"}
 
 
 def test_what_outlasts_its_cause_for_long_is_an_alarm_of_its_own() -> None:
     folding = Folding()
-    folding.fold([cause("a"), cause("b", "a")], (), 0)
-    over = folding.fold([cause("b", "a")], (), 5).alarms["a"]
-    assert over.text == "a is wrong (this is over, but not all that followed)"
+    part = replace(cause("b", "a", priority=Priority.LOW), consequence="it waits", action="look at b")
+    folding.fold([cause("a", priority=Priority.HIGH), part], (), 0)
+    over = folding.fold([part], (), 5).alarms["a"]
+    assert over.text == "a was wrong. This is over, but not all that followed"
+    assert (over.consequence, over.action) == ("it waits", "look at b"), "of what is left"
+    assert over.priority is Priority.LOW
     assert folding.fold([cause("b", "a")], (), 5 + LINGERS).alarms.keys() == {"b"}
 
 

@@ -22,7 +22,16 @@ FAR = 1000.0  # seconds after which nothing counts as coming and going
 
 
 def cause(key: str, priority: Priority = Priority.MEDIUM) -> Cause:
-    return Cause(key, priority, f"{key} is wrong", "nothing", "look")
+    return Cause(
+        key,
+        priority,
+        f"{key} is wrong",
+        "nothing",
+        "look",
+        parts=("x is",),
+        past=f"{key} was wrong",
+        past_parts=("x was",),
+    )
 
 
 @dataclass
@@ -58,6 +67,9 @@ def test_an_alarm_stays_until_its_cause_is_gone_and_a_person_knows_of_it() -> No
     assert (came.state, came.ended) == (AlarmState.UNACKNOWLEDGED, None)
     returned = on.look()["a"]
     assert (returned.state, returned.since, returned.ended) == (AlarmState.RETURNED, came.since, on.now.epoch)
+    assert (came.text, came.consequence, came.action, came.parts) == ("a is wrong", "nothing", "look", ["x is"])
+    assert (returned.text, returned.consequence, returned.action) == ("a was wrong", "", ""), "it is over, and reads so"
+    assert returned.parts == ["x was"]
     on.lives.acknowledge("a", came.since, "Eva")
     assert on.lives.view() == {}
     assert on.told == [("a", "came"), ("a", "returned"), ("a", "acknowledged")]

@@ -95,7 +95,7 @@ def check_corrections(given_: Stopped, advice: Advice) -> None:
     assert {each for each in found if len(each) == (1 if one else 2)} == expected
     assert bool(found) == bool(expected)
     if any(len(each) > 1 for each in found) and one:
-        assert all(o.effort.restates for o in full(advice, OfferKind.CORRECTION) if o.effort.changes == 1)
+        assert all(o.only_if_checked for o in full(advice, OfferKind.CORRECTION) if o.effort.changes == 1)
 
 
 def check_physical_changes(given_: Stopped, advice: Advice) -> None:
@@ -112,8 +112,8 @@ def test_what_is_offered_is_what_exhaustive_search_finds(given_: Stopped) -> Non
     assert advice.complete
     for offer in advice.offers:
         carried_out(given_, offer)
-    costs = [offer.effort.cost for offer in advice.offers]
-    assert costs == sorted(costs)
+    ranks = [offer.rank for offer in advice.offers]
+    assert ranks == sorted(ranks)
     goes_on = possible(given_)
     assert bool(full(advice, OfferKind.REPLAN)) == goes_on
     if not goes_on:

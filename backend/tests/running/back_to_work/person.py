@@ -224,7 +224,7 @@ class Person:
 
     def _chosen(self, advice: Document, prefers: str) -> Document:
         """The first that hands are able to, but what is preferred before it, and what needs none at the product."""
-        able = [offer for offer in advice["offers"] if self.hands.can_bring(brought(offer))]
+        able = [offer for offer in advice["offers"] + advice["if_checked"] if self.hands.can_bring(brought(offer))]
         offers = [offer for offer in able if not offer["left_out"]]
         if not offers:
             raise StuckError(f"no way back is offered: {advice}, {self.get('alarms')}")

@@ -112,12 +112,20 @@ def test_a_field_may_become_exactly_what_the_checker_lets_it(at: tuple[str, str,
         ("member", STATE, 0, None),
         ("python", STATE, 0, "no file in the folder `stages` on the server has a function whose parameters"),
         ("match", "/robot/scene", 0, "`attached` is text[], and only texts are matched"),
+        ("rename", "/robot/scene", 0, "every variable of the resource is given already: declare one first"),
     ],
 )
 def test_what_does_not_fit_says_why(kind: str, pipeline: str, edge: int, reason: str | None) -> None:
     found = offer(kind, pipeline, edge)
     assert found.fits == (reason is None)
     assert (reason or "") in (found.reason or "")
+
+
+@pytest.mark.parametrize("at", EDGES, ids=str)
+def test_reasons_are_in_words_of_our_own_and_about_what_there_is(at: tuple[str, str, int]) -> None:
+    for each in offered(*at).stages:
+        assert "Input should" not in (each.reason or ""), each
+        assert "`x`" not in (each.reason or ""), each
 
 
 def test_a_function_of_the_station_is_offered_where_the_record_has_what_it_reads(tmp_path: Path) -> None:

@@ -9,15 +9,18 @@ export interface About {
 	readonly resources: readonly string[];
 	/** Topics on which something is to be seen. */
 	readonly topics: readonly string[];
-	/** Whether what to do is done on the page Restart. */
+	/** Whether what to do is done on the page Restart, also since the state is unsafe because of it. */
 	readonly restart: boolean;
 }
 
 /** What is read of the station. */
-export type Known = Pick<StationView, 'resources' | 'abilities' | 'variables' | 'topics'>;
+export type Known = Pick<StationView, 'resources' | 'abilities' | 'variables' | 'topics' | 'standing'>;
 
 /** Those whose remedy is a plan, a correction or a decision of a person. */
 const RESTART = new Set(['no-plan', 'unsafe-state', 'contradiction', 'undecided-outputs', 'not-restored']);
+
+/** From which an unsafe state can follow, which is a part of them then. */
+const LEADS_THERE = new Set(['silent', 'many-silent', 'never-heard', 'still', 'overdue', 'given-up']);
 
 /** What the alarm `key` is about at a station like this. */
 export function aboutOf(key: string, station: Known): About {
@@ -27,7 +30,7 @@ export function aboutOf(key: string, station: Known): About {
 	const about = (resources: readonly (string | null | undefined)[], topics: readonly string[] = []): About => ({
 		resources: [...new Set(resources)].filter((name) => name != null && Object.hasOwn(station.resources, name)) as string[],
 		topics,
-		restart: RESTART.has(kind)
+		restart: RESTART.has(kind) || (LEADS_THERE.has(kind) && station.standing === 'stopped')
 	});
 	switch (kind) {
 		case 'silent':
@@ -35,6 +38,7 @@ export function aboutOf(key: string, station: Known): About {
 		case 'network':
 			return about([rest], troubled(station, (topic) => topic.resource === rest && topic.trouble !== null));
 		case 'still':
+		case 'by-hand':
 		case 'given-up':
 			return about([rest]);
 		case 'overdue':
@@ -48,6 +52,7 @@ export function aboutOf(key: string, station: Known): About {
 			const place = Object.keys(station.topics).find((name) => rest.startsWith(`${name}:`));
 			return about([place === undefined ? null : station.topics[place]?.resource], place === undefined ? [] : [place]);
 		}
+		case 'never-heard':
 		case 'many-silent': {
 			const topics = troubled(station, (topic) => !topic.fresh && topic.direction === 'in');
 			return about(topics.map((name) => station.topics[name]?.resource), topics);

@@ -4,14 +4,14 @@ import { byUrgency, isNew, setAside } from './priority.ts';
 
 const names = (alarms: [string, unknown][]): string[] => alarms.map(([name]) => name);
 
-test('alarms stand by priority, then what nobody has seen, then the newest', () => {
+test('alarms stand by priority, then what nobody has seen, then the newest, and what is over comes last', () => {
 	const alarms = {
 		low: alarm({ priority: 'low' }),
 		'high, older': alarm({ priority: 'high', since: 10 }),
 		'high, seen': alarm({ priority: 'high', state: 'acknowledged', since: 30 }),
 		'high, over': alarm({ priority: 'high', state: 'returned', since: 20, ended: 25 })
 	};
-	expect(names(byUrgency(alarms))).toEqual(['high, over', 'high, older', 'high, seen', 'low']);
+	expect(names(byUrgency(alarms))).toEqual(['high, older', 'high, seen', 'low', 'high, over']);
 });
 
 test('what is shelved or out of service stands apart', () => {

@@ -27,7 +27,12 @@ export type Alarms = Readonly<Record<string, Alarm>>;
 /** An alarm with its key. */
 export type Keyed = [key: string, alarm: Alarm];
 
-/** Those that people are told of, the most urgent first; of equals those that nobody has seen, then the newest. */
+/** Whether its cause is over, and it is only left to be seen. */
+export function isOver(alarm: Alarm): boolean {
+	return alarm.ended !== null;
+}
+
+/** Those that people are told of, the most urgent first and what is over last; of equals what nobody has seen, then the newest. */
 export function byUrgency(alarms: Alarms): Keyed[] {
 	return sorted(Object.entries(alarms).filter(([, alarm]) => isTold(alarm)));
 }
@@ -40,6 +45,7 @@ export function setAside(alarms: Alarms): Keyed[] {
 function sorted(alarms: Keyed[]): Keyed[] {
 	return alarms.sort(
 		([, a], [, b]) =>
+			Number(isOver(a)) - Number(isOver(b)) ||
 			NUMBER[a.priority] - NUMBER[b.priority] || Number(isNew(b)) - Number(isNew(a)) || b.since - a.since
 	);
 }

@@ -4,7 +4,7 @@
  * A command succeeds or is refused; a refusal carries words for the person. What a command did is never taken from its
  * answer: it shows in the stream.
  */
-import type { Alarm, ApprovedAct, CorrectionPreview, Mode, OutOfService, Value, WayOffer, WhyNot } from '#lib/contract.ts';
+import type { Alarm, ApprovedAct, CorrectionPreview, Mode, OutOfService, ProblemKind, Value, WayOffer, WhyNot } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { command, request, type Answer } from '#lib/rest/request.ts';
 
@@ -168,9 +168,14 @@ export function acknowledge(id: string, revision: number): Promise<Refusal | nul
 }
 
 /** Says that the task `id` cannot be done as it was shown in `revision`. 404 or 409: it is gone. */
-export function reportProblem(id: string, revision: number, reason: string): Promise<Refusal | null> {
+export function reportProblem(
+	id: string,
+	revision: number,
+	what: ProblemKind | null,
+	reason: string
+): Promise<Refusal | null> {
 	const why = reason.trim();
-	const body = why === '' ? { revision } : { revision, reason: why };
+	const body = why === '' ? { revision, what } : { revision, what, reason: why };
 	return command('POST', `/api/v1/tasks/${encodeURIComponent(id)}/problem`, { body });
 }
 

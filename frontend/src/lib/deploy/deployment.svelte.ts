@@ -1,4 +1,5 @@
 /** A deployment that was sent, until the station runs the model. */
+import type { Simulation } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import type { Station } from '#lib/stream/station.svelte.ts';
 import { follow, type Phase } from './progress.ts';
@@ -8,9 +9,19 @@ import { deployRevision } from './send.ts';
 const LOOK = 250;
 const LATE = 60_000;
 
+/** A revision, which the draft is after its change `number`. */
+export interface Wanted {
+	readonly revision: string;
+	readonly number: number;
+	readonly reason: string;
+	readonly simulation: Simulation;
+}
+
 export class Deployment {
 	phase = $state<Phase>('sent');
 	late = $state(false);
+	/** Why it was undone. */
+	why = $state<string | null>(null);
 	readonly name: string;
 	readonly #station: Station;
 	readonly #before: number;
@@ -23,18 +34,18 @@ export class Deployment {
 		this.#before = station.view?.tick ?? 0;
 	}
 
-	/** Sends it; `ran` is called once the station runs it. Why it was refused, or null. */
-	async send(revision: string, number: number, reason: string, ran: () => void): Promise<Refusal | null> {
-		const refusal = await deployRevision(revision, number, reason);
+	/** Sends it; `ended` is called once the station runs it, or the model before again. Why it was refused, or null. */
+	async send({ revision, number, reason, simulation }: Wanted, ended: () => void): Promise<Refusal | null> {
+		const refusal = await deployRevision(revision, number, reason, simulation);
 		if (refusal === null) {
 			this.phase = 'accepted';
 			const began = performance.now();
 			this.#timer = setInterval(() => {
-				this.#look();
+				this.#look(revision);
 				this.late = performance.now() - began > LATE;
-				if (this.phase !== 'runs') return;
+				if (this.phase !== 'runs' && this.phase !== 'undone') return;
 				this.end();
-				ran();
+				ended();
 			}, LOOK);
 		}
 		return refusal;
@@ -45,9 +56,11 @@ export class Deployment {
 		clearInterval(this.#timer);
 	}
 
-	#look(): void {
+	#look(revision: string): void {
 		const { live, view } = this.#station;
-		const heard = { live, production: view?.production ?? null, tick: view?.tick ?? 0 };
+		const outcome = view?.deployment?.revision === revision ? view.deployment : null;
+		const heard = { live, production: view?.production ?? null, tick: view?.tick ?? 0, state: outcome?.state ?? null };
 		this.phase = follow(this.phase, heard, this.#before);
+		if (this.phase === 'undone') this.why = outcome?.why ?? null;
 	}
 }

@@ -1,6 +1,6 @@
 import { describe, expect, test } from 'vitest';
 import type { Revisions, StationView, Transfer, Workshop } from '#lib/contract.ts';
-import { differing, fateOf, isStanding, isUnrun, needsOf, savedAs, type Known } from './needs.ts';
+import { differing, fateOf, isStanding, isUnrun, needsOf, runningOf, savedAs, type Known } from './needs.ts';
 
 const VIEW: Known['view'] = { mode: 'paused', production: 'started', errand: null, analysis: null };
 const UNMET: StationView['analysis'] = {
@@ -35,6 +35,17 @@ const missing = (change: Partial<Known>): string[] =>
 	needsOf({ ...KNOWN, ...change })
 		.filter(([, met]) => !met)
 		.map(([need]) => need);
+
+test('what still runs is told from the station as it is now, whatever was known of it before', () => {
+	const ability = { resource: 'robot', title: 'Move', human: false, restart: false, enabled: false, executing: true, finished: false };
+	const abilities = {
+		move: { ...ability, running_since: 5 },
+		turn: { ...ability, title: 'Turn', running_since: null }
+	};
+	expect(runningOf({ abilities })).toEqual(['Move']);
+	expect(runningOf({ abilities }, ['move', 'turn'])).toEqual(['Move']);
+	expect(runningOf({ abilities }, ['turn'])).toEqual([]);
+});
 
 describe('a deployment needs', () => {
 	test('nothing more where all is so', () => {

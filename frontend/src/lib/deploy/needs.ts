@@ -37,6 +37,13 @@ export function isStanding(view: Known['view']): boolean {
 	return !(view.production === 'started' && view.mode === 'automatic');
 }
 
+/** The titles of what runs now, or of those of it that are `among` these: all that is said of it comes from here. */
+export function runningOf({ abilities }: Pick<StationView, 'abilities'>, among?: readonly string[]): string[] {
+	return Object.entries(abilities)
+		.filter(([name, ability]) => ability.running_since !== null && (among?.includes(name) ?? true))
+		.map(([, ability]) => ability.title);
+}
+
 /** All that is needed, in the order in which a person brings it about, and whether it is so. */
 export function needsOf({ view, workshop, revisions, transfer, mine }: Known): [need: Need, met: boolean][] {
 	const { check, number, files } = workshop;

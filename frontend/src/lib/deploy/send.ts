@@ -1,5 +1,5 @@
 /** What is asked of the server about revisions, and what is done with them. */
-import type { Comparison, FilesView, Revision, Transfer } from '#lib/contract.ts';
+import type { Comparison, FilesView, Revision, Simulation, Transfer } from '#lib/contract.ts';
 import type { Refusal } from '#lib/rest/refusal.ts';
 import { command, request, type Answer } from '#lib/rest/request.ts';
 
@@ -24,12 +24,20 @@ export function compare(old: string, newer: string): Promise<Answer<Comparison>>
 	return request('GET', `${ADDRESS}/comparison?${new URLSearchParams({ old, new: newer })}`, { patience: LONG });
 }
 
-/** Whether the station could take the draft as it is now. Nothing is changed by asking. */
-export function findTransfer(): Promise<Answer<Transfer>> {
-	return request('GET', `${ADDRESS}/transfer`, { patience: LONG });
+/** Whether the station could take the draft as it is now, or with the simulation reset. Nothing is changed by asking. */
+export function findTransfer(simulation: Simulation): Promise<Answer<Transfer>> {
+	return request('GET', `${ADDRESS}/transfer?${new URLSearchParams({ simulation })}`, { patience: LONG });
 }
 
 /** Lets a revision, which the draft is after its change `number`, take the place of the model that runs. */
-export function deployRevision(revision: string, number: number, reason: string): Promise<Refusal | null> {
-	return command('POST', `${ADDRESS}/deployments`, { body: { revision, number, reason }, patience: LONG });
+export function deployRevision(
+	revision: string,
+	number: number,
+	reason: string,
+	simulation: Simulation
+): Promise<Refusal | null> {
+	return command('POST', `${ADDRESS}/deployments`, {
+		body: { revision, number, reason, simulation },
+		patience: LONG
+	});
 }

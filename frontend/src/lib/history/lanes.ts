@@ -33,7 +33,7 @@ export interface Lane {
 }
 
 const MODE_KINDS = new Set(['production-started', 'called-off', 'stepping-changed', 'step-taken', 'errand-taken', 'errand-stopped']);
-const HAND_KINDS = new Set(['corrected', 'confirmed', 'forced', 'force-released', 'service-changed']);
+const HAND_KINDS = new Set(['corrected', 'confirmed', 'forced', 'force-released', 'service-changed', 'by-hand']);
 
 /** What is drawn, and how: `resources` have a lane each, in their order; what goes on is drawn up to `until`. */
 export interface Drawing {

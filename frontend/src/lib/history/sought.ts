@@ -19,7 +19,7 @@ export const EVERYTHING_OF_NOTE: Sought = { kind: 'note', who: null, resource: '
 const MOST_IDS = 90;
 
 const MODE = ['production-started', 'mode-changed', 'called-off', 'stepping-changed', 'step-taken', 'errand-taken', 'errand-stopped'];
-const HAND = ['corrected', 'confirmed', 'forced', 'force-released', 'service-changed'];
+const HAND = ['corrected', 'confirmed', 'forced', 'force-released', 'service-changed', 'by-hand'];
 const JOBS = ['by-order-changed', 'job-taken', 'job-commanded'];
 const WORK = ['started', 'ended', 'activated', 'completed', 'called_off', 'given_up'];
 

@@ -77,6 +77,8 @@ export function told(record: Tellable, names: Names): Told {
 			return { ...nothing, what: words.forced, on: setting(textOf(what['name']), what['value'], names) };
 		case 'force-released':
 			return { ...nothing, what: words.released, on: names.variable(textOf(what['name'])) };
+		case 'by-hand':
+			return { ...nothing, ...byHand(what, names) };
 		case 'errand-taken': {
 			const errand = partOf(what, 'errand') ?? what;
 			return { ...nothing, what: words.errand, who: textOf(errand['by']), why: textOf(errand['why']) };
@@ -102,6 +104,21 @@ export function told(record: Tellable, names: Names): Told {
 		default:
 			return { ...nothing, what: plain(kind.replaceAll('-', ' ')) };
 	}
+}
+
+/** What changed that nothing commanded, or by which ability the station then went on. */
+function byHand(what: Content, names: Names): Partial<Told> & { what: string } {
+	const words = say().history.words;
+	const ability = textOf(what['by_ability']);
+	const how = words.wentOn[textOf(what['how'])];
+	const outcome = ability === '' || how === undefined ? '' : how(names.ability(ability));
+	const changed = partOf(what, 'changed');
+	if (changed === null) return { what: words.movedOn, on: names.resource(textOf(what['resource'])), outcome };
+	const on = Object.entries(changed).map(([name, values]) => {
+		const [before, after] = Array.isArray(values) ? values : [null, values];
+		return `${names.variable(name)}: ${anyValue(before)} → ${anyValue(after)}`;
+	});
+	return { what: words.moved, on: list(on), outcome };
 }
 
 /** What is said of the plan from a record on; null where it says nothing of it. */

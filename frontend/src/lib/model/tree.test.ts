@@ -78,6 +78,8 @@ describe('the tree', () => {
 		expect(shown([], '')).toEqual(['1 station', '1 resources', '1 operations', '1 specifications', '1 work_masters', '1 messages']);
 		expect(shown(['#resources', robot], '')).toContain('3 abilities');
 		expect(shown([], 'mov')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
+		expect(shown([], 'robot.move')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
+		expect(shown([], ' Robot.Move.leaves')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move', '5 leaves']);
 		expect(shown([], 'nothing like it')).toEqual([]);
 	});
 

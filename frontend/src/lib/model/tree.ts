@@ -276,11 +276,14 @@ export interface Row {
 	readonly isOpen: boolean;
 }
 
+/** The full name of a node, as expressions have it: `robot.move`. */
+const qualified = (node: Node): string | null => partOf(node)?.replace(/^\w+:/, '') ?? null;
+
 /** The rows that are in sight where the nodes in `open` are open; with `sought`, what fits it and what is around that. */
 export function rowsOf(tree: readonly Node[], open: ReadonlySet<string>, sought: string): Row[] {
 	const words = sought.trim().toLowerCase();
 	const fits = (node: Node): boolean =>
-		node.kind !== 'section' && [node.name, node.title].some((text) => text?.toLowerCase().includes(words));
+		node.kind !== 'section' && [node.name, node.title, qualified(node)].some((text) => text?.toLowerCase().includes(words));
 	/** With what fits in it; with all that is in it where it fits itself. */
 	const sift = (nodes: readonly Node[]): Node[] =>
 		nodes.flatMap((node) => {

@@ -10,16 +10,22 @@ function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 		description: '',
 		priority: 0,
 		due: null,
+		due_at: null,
 		earliest: null,
+		earliest_at: null,
 		state: 'AllowedToStart',
 		commanded: null,
 		allowed: [],
 		revision: 1,
 		stored: 0,
+		stored_at: '1970-01-01T00:00:00Z',
 		stored_by: 'MES',
 		changed: 0,
+		changed_at: '1970-01-01T00:00:00Z',
 		began: null,
+		began_at: null,
 		ended: null,
+		ended_at: null,
 		waits_for: [],
 		...rest
 	};
@@ -27,6 +33,7 @@ function order(id: string, rest: Partial<JobOrder> = {}): JobOrder {
 
 const FOUND: OrderOfWork = {
 	time: 1,
+	time_at: '1970-01-01T00:00:01Z',
 	job_orders: [
 		{ id: 'c', late: 12, operations: [] },
 		{ id: 'a', late: 0, operations: [] }
@@ -34,6 +41,7 @@ const FOUND: OrderOfWork = {
 	tardiness: 12,
 	bound: 12,
 	optimal: true,
+	horizon: 2,
 	fallback: ''
 };
 

@@ -1,8 +1,9 @@
 import fc from 'fast-check';
 import { describe, expect, test } from 'vitest';
+import { ticksOf } from '#lib/axis/ticks.ts';
 import type { PlanStep } from '#lib/contract.ts';
 import { step } from '#lib/testing/view.ts';
-import { endOf, hasBegun, lateness, layOut, timesOf, type Block, type Lane } from './lanes.ts';
+import { cutAt, endOf, hasBegun, lateness, layOut, MOST_MARKS, timesOf, type Block, type Lane } from './lanes.ts';
 
 const NOW = 1000;
 const ROOM = { words: 3, mark: 0.5 };
@@ -137,4 +138,17 @@ test('what runs is drawn to where it is expected to end, and to the present wher
 	const end = (list: PlanStep[]): number | undefined => blocksOf(drawn(list))[0]?.to;
 	expect(end([running(NOW + 2)])).toBe(2);
 	expect(end([running(NOW - 2)])).toBe(0);
+});
+
+test('an axis of any length has few marks, and what is later than it is counted', () => {
+	fc.assert(
+		fc.property(steps, fc.integer({ min: 1, max: 40 }), (list, limit) => {
+			const lanes = drawn(list);
+			const { lanes: cut, later } = cutAt(lanes, limit);
+			expect(endOf(cut)).toBeLessThanOrEqual(limit);
+			expect(blocksOf(cut).length + later).toBe(blocksOf(lanes).length);
+			for (const block of blocksOf(cut)) expect(block.from).toBeLessThan(limit);
+		})
+	);
+	for (const length of [10, 200, 1506, 16_000, 1e6]) expect(ticksOf(-60, length, MOST_MARKS).length).toBeLessThanOrEqual(MOST_MARKS + 1);
 });

@@ -10,6 +10,12 @@ import type { PlanStep } from '#lib/contract.ts';
 /** Rows that every lane has, so that the page stays where it is when a short step needs a second one. */
 export const ROWS = 2;
 
+/** So many times what is in sight is the axis long at most, whatever is expected of the plan. */
+export const MOST_SPANS = 10;
+
+/** So many marks has the axis at most. */
+export const MOST_MARKS = 36;
+
 export interface Block {
 	readonly step: PlanStep;
 	/** Where it is drawn: this covers the time it takes. */
@@ -74,6 +80,17 @@ export function layOut(all: readonly PlanStep[], resources: readonly string[], n
 		const rows = pack(steps, now, late, room);
 		return { resource, rows: Math.max(ROWS, rows.length), blocks: rows.flat() };
 	});
+}
+
+/** The lanes without what begins after `limit`, and the rest of them cut there; how many blocks are not drawn. */
+export function cutAt(lanes: readonly Lane[], limit: number): { lanes: Lane[]; later: number } {
+	let later = 0;
+	const cut = lanes.map((lane) => {
+		const blocks = lane.blocks.filter((block) => block.from < limit);
+		later += lane.blocks.length - blocks.length;
+		return { ...lane, blocks: blocks.map((block) => ({ ...block, to: Math.min(block.to, limit) })) };
+	});
+	return { lanes: cut, later };
 }
 
 /** The last moment, in seconds after `now`, at which something is drawn. */

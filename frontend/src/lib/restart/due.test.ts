@@ -4,7 +4,7 @@ import type { AdviceAnswer } from '#lib/contract.ts';
 import { offer } from '#lib/testing/offer.ts';
 import { isDue, isSettled, type Asked } from './due.ts';
 
-const answer: AdviceAnswer = { revision: 7, offers: [offer()], reasons: null, complete: true, seconds: 0.1 };
+const answer: AdviceAnswer = { revision: 7, offers: [offer()], if_checked: [], reasons: null, complete: true, seconds: 0.1 };
 const asked = (over: Partial<Asked> = {}): Asked => ({ answer, refused: false, times: 1, since: 3000, ...over });
 
 describe('ways back are asked for', () => {

@@ -6,13 +6,14 @@ import { nextAct, type Next, type Standing } from './next.ts';
 
 const QUESTION = { variable: 'b', believed: 'placed', possible: ['empty'], because: [] };
 const UNDECIDED = { 'robot.go': { value: true, reacts: [], quiet: [false] } };
-const ERRAND = { kind: 'reset', title: '', by: 'Eva', why: '', since: 0, ends: '', ability: null } as const;
+const ERRAND = { kind: 'reset', title: '', by: 'Eva', why: '', since: 0, ends: null, into_safe: true, ability: null } as const;
 const HANDS = offer({ kind: 'physical', online: ['robot'] });
 const TAKE = offer({ kind: 'restart', errand: preview('back') });
 const WAY_BACK = { violated: [], threatened: [], differences: [], awaits: [], ticks: null, steps: [], breaks: [], reason: '' };
 
 function advice(...offers: WayOffer[]): AdviceAnswer {
-	return { revision: 0, offers, reasons: null, complete: true, seconds: 0 };
+	const if_checked = offers.filter((each) => each.only_if_checked);
+	return { revision: 0, offers: offers.filter((each) => !each.only_if_checked), if_checked, reasons: null, complete: true, seconds: 0 };
 }
 
 function next(over: Partial<StationView>, answer: AdviceAnswer | null = null, who: Partial<Standing> = {}): Next {
@@ -67,6 +68,14 @@ describe('what a person does next', () => {
 		expect(next(inside, advice())).toBe('stuck');
 		expect(next(inside, advice(offer()))).toBe('leave');
 		expect(next({ ...inside, errand: ERRAND }, advice(offer()))).toBe('errand');
+	});
+
+	test('is to look, where all that is left is said and not done', () => {
+		const corrections = [{ name: 'b', now: 'placed', then: 'empty' }];
+		expect(next({ mode: 'restart' }, advice(offer({ kind: 'correction', corrections })))).toBe('check');
+		const tight = offer({ kind: 'correction', corrections, claims: ['tighten'], only_if_checked: true });
+		expect(next({ mode: 'restart' }, advice(tight))).toBe('check');
+		expect(next({ mode: 'restart' }, advice(TAKE, tight))).toBe('take');
 	});
 
 	test('is never told from ways back for another state', () => {

@@ -1,7 +1,7 @@
 /** What a person does next on the way back to production. It is said, never done by itself. */
 import type { AdviceAnswer, StationView } from '#lib/contract.ts';
 import type { Text } from '#lib/text/text.svelte.ts';
-import { asksForHands, goesOn } from './offer.ts';
+import { asksForHands, goesOn, onlySays } from './offer.ts';
 import { wantedFor } from './shown.ts';
 
 export type Next = Exclude<keyof Text['restart']['next'], 'title' | 'there'>;
@@ -38,8 +38,9 @@ function offered(view: StationView, advice: AdviceAnswer | null): Next {
 	const inside = view.mode === 'restart';
 	if (advice === null || advice.revision !== view.revision) return 'looking';
 	const [first] = advice.offers;
-	if (first === undefined) return 'stuck';
+	if (first === undefined) return advice.if_checked.length > 0 ? 'check' : 'stuck';
 	if (asksForHands(first)) return 'physical';
+	if (onlySays(first)) return 'check';
 	if (!goesOn(first)) return inside ? 'take' : 'enter';
 	if (inside) return 'leave';
 	if (view.mode !== 'automatic') return 'continue';
@@ -61,6 +62,7 @@ export const PLACE: Record<Next, string | null> = {
 	start: 'production',
 	physical: 'ways',
 	take: 'ways',
+	check: 'ways',
 	looking: 'ways',
 	stuck: 'ways',
 	leave: 'production',

@@ -1,7 +1,7 @@
 import { expect, test } from 'vitest';
 import { offer, preview } from '#lib/testing/offer.ts';
 import { en } from '#lib/text/en.ts';
-import { asksForHands, canBeTaken, goesOn } from './offer.ts';
+import { asksForHands, canBeTaken, goesOn, mayBeWanted, onlySays } from './offer.ts';
 import { effortWords, kindWord } from './offer-words.ts';
 
 const CHANGE = { name: 'b', now: 'placed', then: 'empty' };
@@ -14,6 +14,14 @@ test('an offer is to be taken, done by hand, or nothing but going on: one of the
 	expect(asked(offer({ online: ['robot'], corrections: [CHANGE] }))).toEqual([true, false, false]);
 	expect(asked(offer({ in_service: ['move'] }))).toEqual([true, false, false]);
 	expect(asked(offer({ physical: [CHANGE], errand: preview('move') }))).toEqual([true, false, false]);
+});
+
+test('what only says what is true of the product is never shown as what to do', () => {
+	expect(onlySays(offer({ corrections: [CHANGE] }))).toBe(true);
+	expect(onlySays(offer({ corrections: [CHANGE], errand: preview('move') }))).toBe(false);
+	expect(mayBeWanted(offer({ corrections: [CHANGE] }))).toBe(false);
+	expect(mayBeWanted(offer({ corrections: [CHANGE], errand: preview('move') }))).toBe(false);
+	expect(mayBeWanted(offer({ errand: preview('move') }))).toBe(true);
 });
 
 test('what it takes is said, and what it does not take is not', () => {

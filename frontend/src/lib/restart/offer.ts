@@ -11,6 +11,16 @@ export function canBeTaken(offer: WayOffer): boolean {
 	return !asksForHands(offer) && (offer.errand !== null || offer.corrections.length > 0);
 }
 
+/** Whether it does nothing, and only says what is true of the product. */
+export function onlySays(offer: WayOffer): boolean {
+	return !asksForHands(offer) && offer.errand === null && offer.corrections.length > 0;
+}
+
+/** Whether it may be shown as what to do now: what is only said never is, for nobody but a person knows whether it is so. */
+export function mayBeWanted(offer: WayOffer): boolean {
+	return offer.corrections.length === 0 && !offer.only_if_checked;
+}
+
 /** Whether nothing has to be done but to go on. */
 export function goesOn(offer: WayOffer): boolean {
 	return !asksForHands(offer) && !canBeTaken(offer);

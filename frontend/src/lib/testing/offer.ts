@@ -22,6 +22,7 @@ export function offer(rest: Partial<WayOffer> = {}): WayOffer {
 		corrections: [],
 		errand: null,
 		ends: null,
+		into_safe: false,
 		operation: null,
 		needs_restart: false,
 		unsupervised: false,
@@ -30,6 +31,8 @@ export function offer(rest: Partial<WayOffer> = {}): WayOffer {
 		then: preview('move'),
 		goals: ['tighten'],
 		left_out: [],
+		claims: [],
+		only_if_checked: false,
 		effort: { cost: 1, corrections: 0, physical: 0, returns: 0, starts: 0, seconds: 1 },
 		obstacle: null,
 		...rest

@@ -10,6 +10,7 @@ export function sessionAnswer(rest: Partial<SessionAnswer> = {}): SessionAnswer 
 		session: 's-1',
 		kind: 'person',
 		must_change_password: false,
+		version: null,
 		expires: 2000,
 		demonstration: false,
 		watch: null,

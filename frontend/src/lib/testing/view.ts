@@ -83,6 +83,8 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		revision: 0,
 		mode: 'automatic',
 		packml: 'execute',
+		standing: 'working',
+		silent: [],
 		stepping: false,
 		production: 'started',
 		unconfirmed: false,
@@ -109,6 +111,7 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		control: null,
 		analysis: null,
 		standby: null,
+		deployment: null,
 		...rest
 	};
 }

@@ -4,7 +4,6 @@
  */
 import { common } from './en/common.ts';
 import { door } from './en/door.ts';
-import { header } from './en/header.ts';
 import { pages } from './en/pages.ts';
 import { watch } from './en/watch.ts';
 
@@ -13,7 +12,6 @@ export const front = {
 	locale: 'en-GB',
 	common,
 	door,
-	header,
 	pages,
 	watch
 };

@@ -6,6 +6,7 @@ import { alarms } from './en/alarms.ts';
 import { backups } from './en/backups.ts';
 import { check } from './en/check.ts';
 import { deploy } from './en/deploy.ts';
+import { header } from './en/header.ts';
 import { history } from './en/history.ts';
 import { model } from './en/model.ts';
 import { operate } from './en/operate.ts';
@@ -18,4 +19,4 @@ import { station } from './en/station.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, backups, check, deploy, history, model, operate, orders, pipelines, restart, ros, state, station, webhooks, whatIf };
+export const en = { ...front, ability, account, alarms, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, webhooks, whatIf };

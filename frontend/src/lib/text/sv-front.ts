@@ -4,9 +4,8 @@
  */
 import { common } from './sv/common.ts';
 import { door } from './sv/door.ts';
-import { header } from './sv/header.ts';
 import { pages } from './sv/pages.ts';
 import { watch } from './sv/watch.ts';
 import type { Front } from './text.svelte.ts';
 
-export const front: Front = { locale: 'sv-SE', common, door, header, pages, watch };
+export const front: Front = { locale: 'sv-SE', common, door, pages, watch };

@@ -43,6 +43,7 @@ class Declarations:
         self._check_resources()
         self._read_enumerations()
         self._read_variables()
+        self._check_values()
         self._declare_flags()
         self._declare_activities()
 
@@ -147,6 +148,27 @@ class Declarations:
             for kind in _KINDS:
                 for name, document in getattr(resource_document, kind.value).items():
                     self._read_variable(resource, name, document, kind)
+
+    def _check_values(self) -> None:
+        """Note values of enumerations that a variable of the same name hides where both can be meant: among the texts
+        of a resource that has something of the enumeration, and everywhere if the variable is the station's.
+        """
+        for enumeration, values in self._station.station.enumerations.items():
+            for value in values:
+                for resource in (None, *self._resources_with(str(enumeration))):
+                    variable = value if resource is None else f"{resource}.{value}"
+                    if variable in self.places:
+                        message = f"the value `{value}` of `{enumeration}` has the name of the variable `{variable}`"
+                        self._findings.add(value, f"{message}, which hides it: rename one of them")
+
+    def _resources_with(self, enumeration: str) -> list[str]:
+        """The resources with a variable of the type, or an ability with a parameter of it."""
+        return [
+            name
+            for name, document in self._station.resources.items()
+            if any(each.type == enumeration for kind in _KINDS for each in getattr(document, kind.value).values())
+            or any(enumeration in each.parameters.values() for each in document.abilities.values())
+        ]
 
     def _read_variable(self, resource: str | None, name: SourceText, document: VariableDocument, kind: Kind) -> None:
         self.check_name(name)

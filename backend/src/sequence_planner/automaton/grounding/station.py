@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from sequence_planner.automaton.dependencies import ordered_flags
 from sequence_planner.automaton.grounding.abilities import GroundBefore, ground_abilities
 from sequence_planner.automaton.grounding.declarations import FLAGS, Declarations
@@ -29,6 +31,7 @@ def ground(station: Station, before: GroundBefore | None = None) -> Automaton:
     rest = meaning.predicate(station.station.rest, meaning.scope({}))
     if isinstance(station.station.rest, SourceText):
         declarations.places.setdefault("rest", station.station.rest.place)
+    declarations.places |= {Path(place.file).name: place for place in station.empty}
     automaton = Automaton(
         name=str(station.station.name),
         title=str(station.title),

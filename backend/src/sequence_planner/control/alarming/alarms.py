@@ -16,6 +16,7 @@ from sequence_planner.control.alarm_commands import (
 )
 from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.alarming.folding import Folding
+from sequence_planner.control.alarming.following import Following
 from sequence_planner.control.alarming.keeping import KIND, aside_to_keep
 from sequence_planner.control.alarming.life import Aside, Life
 from sequence_planner.control.alarming.lives import Lives
@@ -52,9 +53,11 @@ class Alarms(StationAlarms):
         known: Known | None = None,
     ) -> None:
         known = known or Known()
-        super().__init__(execution, outside, known.left_out)
+        undone = known.deployment if known.deployment and known.deployment.why is not None else None
+        super().__init__(execution, outside, known, undone)
         self._devices = DeviceAlarms(execution, feeds, network, commander)
-        self._plans = PlanAlarms(execution, feeds)
+        self._plans = PlanAlarms(execution, feeds, lambda: bool(self._touched()))
+        self._following = Following(execution.automaton, self._touched)
         self._folding = Folding()
         self._lives = Lives(self._told)
         self._tell = tell
@@ -66,12 +69,10 @@ class Alarms(StationAlarms):
         """Take note of what is there now; often enough that nothing comes and goes unseen."""
         self._resume(moment)
         unused = self._execution.conduct.out_of(ServiceKind.RESOURCE)
-        causes = (
-            *self.causes(),
-            *self._devices.causes(moment, unused),
-            *self._plans.causes(planner_trouble, moment.monotonic),
-        )
-        folded = self._folding.fold(causes, self._lives.out_of_service, moment.monotonic)
+        of_devices = tuple(self._devices.causes(moment, unused))
+        of_plans = self._plans.causes(planner_trouble, moment.monotonic, self._devices.untold)
+        causes = (*of_devices, *of_plans, *self.causes())
+        folded = self._folding.fold(self._following.trace(causes), self._lives.out_of_service, moment.monotonic)
         self._lives.look(folded.alarms, folded.folded, moment)
         self._keep(moment)
 
@@ -96,6 +97,11 @@ class Alarms(StationAlarms):
             case RestoreAlarm():
                 self._lives.restore(key)
         self._keep(moment)
+
+    def _touched(self) -> frozenset[str]:
+        """The variables for which the state is unsafe."""
+        situation = self._outside.situation
+        return frozenset() if situation is None or not situation.certain else self._outside.touched(situation)
 
     def _resume(self, moment: Moment) -> None:
         """What was aside before the start is so again."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from sequence_planner.control.alarm_view import Priority
 
@@ -13,7 +13,8 @@ _URGENCY = (Priority.LOW, Priority.MEDIUM, Priority.HIGH)
 class Cause:
     """`key` stays the same as long as it is the same alarm; `parts` are what it consists of, where that is several.
 
-    It is no alarm of its own but a part of another as long as one of those is there that it `follows` from.
+    It is no alarm of its own but a part of another as long as one of those is there that it `follows` from. `past` is
+    its `text` once it is over, `past_parts` are its parts then, and `of` the resources whose devices fail with it.
     """
 
     key: str
@@ -23,6 +24,9 @@ class Cause:
     action: str  # what to do
     follows: tuple[str, ...] = ()
     parts: tuple[str, ...] = ()
+    past: str = field(kw_only=True)
+    past_parts: tuple[str, ...] = field(default=(), kw_only=True)
+    of: frozenset[str] = field(default=frozenset(), kw_only=True)
 
 
 def urgency(priority: Priority) -> int:

@@ -77,23 +77,35 @@ class Consequences:
         return f"Whether {listed(titles)} can begin is not known." if titles else ""
 
     def held_up(self, resources: Collection[str]) -> frozenset[str]:
-        """The active operations that what is left of the plan cannot complete while these resources do nothing.
+        """The active operations that cannot be completed while these resources do nothing.
 
-        A relaxation says it, so of one that waits for something more subtle it is not said.
+        Of those in the plan what is left of it counts, of those it leaves out all that could be done; without a plan
+        all wait. A relaxation says it, so of one that waits for something more subtle it is not said.
         """
         execution = self._execution
         order = execution.plan.order
+        if execution.plan.status is not PlanStatus.FOLLOWED:
+            return execution.active
         about = (order.names, len(order.running), execution.active)
         if about != self._about:
             self._about, self._held_up = about, {}
         idle = frozenset(resources)
         if idle not in self._held_up:
+            planned, active = order.goals & execution.active, execution.active
             barred = frozenset(execution.automaton.abilities) - set(order.names)
-            circumstances = Circumstances(offline=idle, restart=True, barred=barred)
-            relaxed = reachable(execution.automaton, execution.state, circumstances)
-            goals = {name: execution.automaton.operations[name].goal for name in execution.active & order.goals}
-            self._held_up[idle] = frozenset(name for name, goal in goals.items() if not relaxed.may(goal))
+            self._held_up[idle] = self._beyond(idle, planned, barred) | self._beyond(idle, active - planned)
         return self._held_up[idle]
+
+    def _beyond(
+        self, idle: frozenset[str], names: Collection[str], barred: frozenset[str] = frozenset()
+    ) -> frozenset[str]:
+        """Those of the operations whose goals cannot come true without these resources and abilities."""
+        execution = self._execution
+        if not names:
+            return frozenset()
+        circumstances = Circumstances(offline=idle, restart=True, barred=barred)
+        relaxed = reachable(execution.automaton, execution.state, circumstances)
+        return frozenset(name for name in names if not relaxed.may(execution.automaton.operations[name].goal))
 
     def of_values(self, names: Collection[str]) -> str:
         """Of values that are wrong or not known: which operations are decided by them."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, replace
 
-from sequence_planner.control.alarming.cause import Cause, most_urgent
+from sequence_planner.control.alarming.cause import Cause, most_urgent, urgency
 
 LINGERS = 10.0  # seconds that an alarm lasts longer than its cause at most, for what followed from it
 
@@ -44,7 +44,7 @@ class Folding:
                 folded.add(key)
         self._had_parts = {key: bearing[key] for key in parts}
         alarms = {key: _with(cause, parts.get(key, ())) for key, cause in present.items() if key not in folded}
-        over = {key: _with(_over(cause), parts[key]) for key, cause in lingering.items() if key in parts}
+        over = {key: _with(_over(cause, parts[key]), parts[key]) for key, cause in lingering.items() if key in parts}
         return Folded({**alarms, **over}, frozenset(folded))
 
     def _lingering(self, present: Mapping[str, Cause], monotonic: float) -> dict[str, Cause]:
@@ -66,13 +66,23 @@ def _with(cause: Cause, parts: Iterable[Cause]) -> Cause:
     """The alarm with what follows from its cause. It is as urgent as the most urgent of it."""
     every = list(parts)
     texts = [text for part in every for text in (part.parts or (part.text,))]
+    past = [text for part in every for text in (part.past_parts or (part.past,))]
     return replace(
         cause,
         priority=most_urgent(cause.priority, *(part.priority for part in every)),
         parts=tuple(dict.fromkeys((*cause.parts, *texts))),
+        past_parts=tuple(dict.fromkeys((*cause.past_parts, *past))),
     )
 
 
-def _over(cause: Cause) -> Cause:
-    """The cause as it is told when it is over and what followed is not."""
-    return replace(cause, text=f"{cause.text} (this is over, but not all that followed)", parts=())
+def _over(cause: Cause, left: Iterable[Cause]) -> Cause:
+    """The cause as it is told when it is over and what followed is not: what is `left` says what comes of it."""
+    worst = max(left, key=lambda part: urgency(part.priority))
+    return replace(
+        cause,
+        priority=worst.priority,
+        text=f"{cause.past}. This is over, but not all that followed",
+        consequence=worst.consequence,
+        action=worst.action,
+        parts=(),
+    )

@@ -20,6 +20,7 @@ class PutAside(BaseModel):
     model_config = ConfigDict(frozen=True)
     priority: Priority
     text: str
+    past: str = ""  # of a program that did not write it
     consequence: str
     action: str
     by: str
@@ -33,6 +34,7 @@ class PutAside(BaseModel):
         return cls(
             priority=cause.priority,
             text=cause.text,
+            past=cause.past,
             consequence=cause.consequence,
             action=cause.action,
             by=aside.by,
@@ -42,7 +44,7 @@ class PutAside(BaseModel):
 
     def cause(self, key: str) -> Cause:
         """What was said of it."""
-        return Cause(key, self.priority, self.text, self.consequence, self.action)
+        return Cause(key, self.priority, self.text, self.consequence, self.action, past=self.past or self.text)
 
     def aside(self, now: Moment) -> Aside:
         """That it is put aside."""

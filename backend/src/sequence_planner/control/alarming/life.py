@@ -78,21 +78,21 @@ class Life:
         self.acknowledged, self.by, self.count = True, by, 0
 
     def view(self) -> AlarmView:
-        """As it is shown."""
-        aside = self.aside
+        """As it is shown. Of one that is over nothing comes any more, and nothing is to be done about it."""
+        aside, cause, over = self.aside, self.cause, self.ended is not None
         return AlarmView(
-            priority=self.cause.priority,
+            priority=cause.priority,
             state=self.state,
-            text=self.cause.text,
-            consequence=self.cause.consequence,
-            action=self.cause.action,
+            text=cause.past if over else cause.text,
+            consequence="" if over else cause.consequence,
+            action="" if over else cause.action,
             since=self.since,
             ended=self.ended,
             by=self.by if aside is None else aside.by,
             until=None if aside is None or aside.until is None else aside.until.epoch,
             why=None if aside is None else aside.why,
             count=self.count,
-            parts=list(self.cause.parts),
+            parts=list(cause.past_parts if over else cause.parts),
         )
 
 

@@ -15,8 +15,10 @@ from sequence_planner.control.feeds import Feed, Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 
-PATIENCE = 15.0  # seconds after the start for devices to be heard first
+GRACE = 30.0  # seconds after the start for devices to be heard first
+STUMBLES = 3.0  # seconds for which one that was heard may be silent meanwhile: much begins at once
 MANY = "many-silent"
+UNHEARD = "never-heard"
 _MOST = 3  # so many devices, and half of all, fall silent at once only for one reason; or both of two
 _DEFAULTS = "The device gets the default instead. Correct the pipeline."
 
@@ -31,6 +33,7 @@ class DeviceAlarms:
         self._network = network
         self._commander = commander
         self._began: float | None = None
+        self.untold: Collection[str] = ()  # resources whose silence is too young to be told
 
     def causes(self, moment: Moment, unused: Collection[str]) -> Iterator[Cause]:
         """All that there are now. That an `unused` resource is silent is nothing to be told."""
@@ -44,42 +47,78 @@ class DeviceAlarms:
         yield from self._defaults(self._commander.reports, moment)
 
     def _silences(self, monotonic: float, unused: Collection[str]) -> Iterator[Cause]:
-        """Of each silent resource one, however many of its topics are; and one of many silent resources."""
+        """Of each silent resource one, however many of its topics are; and one of many silent resources.
+
+        What many that were heard share can have failed them. Those that were never heard may not have been started.
+        """
         used = set(map(self._feeds.resource_of, self._feeds.expected)) - set(unused)
         silent: dict[str, dict[str, Feed]] = {}
+        early: set[str] = set()
         for name in self._feeds.awaited(monotonic):
             resource, feed = self._feeds.resource_of(name), self._feeds.expected[name]
-            if resource in used and not self._is_early(feed, monotonic):
+            if self._is_early(feed, monotonic):
+                early.add(resource)
+            elif resource in used:
                 silent.setdefault(resource, {})[name] = feed
-        many = len(silent) > 1 and (len(silent) == len(used) or len(silent) >= max(_MOST, len(used) / 2))
-        if many:
-            every = f"All {len(used)}" if len(silent) == len(used) else f"{len(silent)} of {len(used)}"
-            yield Cause(
+        self.untold = early - silent.keys()
+        lost = [each for each, feeds in silent.items() if any(feed.last is not None for feed in feeds.values())]
+        unheard = [each for each in silent if each not in lost]
+        told: dict[str, str] = {}  # by resource, the alarm of many that it is a part of
+        if _are_many(lost, silent, used):
+            told |= dict.fromkeys(lost, MANY)
+            yield self._together(
                 MANY,
                 Priority.HIGH,
-                f"{every} devices are silent, so it is probably the network",
-                self._consequences.without(silent.keys()),
-                "Check what these devices share: the network, the power, and the ROS_DOMAIN_ID of their nodes.",
+                lost,
+                "No contact with",
+                "There was no contact with",
+                "Check what they share: power, network, and the ROS_DOMAIN_ID of their nodes.",
+            )
+        if _are_many(unheard, silent, used):
+            told |= dict.fromkeys(unheard, UNHEARD)
+            yield self._together(
+                UNHEARD,
+                Priority.MEDIUM,
+                unheard,
+                "Nothing has been heard since the controller began of",
+                "For some time after the controller began nothing was heard of",
+                "Start them, or check their power, network and ROS_DOMAIN_ID.",
             )
         for resource, feeds in silent.items():
             # As a part of another alarm it is told by its text alone; what comes of it takes some time to find out.
-            yield self._silence(resource, feeds, "" if many else self._consequences.without({resource}))
+            consequence = "" if resource in told else self._consequences.without({resource})
+            yield self._silence(resource, feeds, consequence, MANY if resource in lost else UNHEARD)
+
+    def _together(
+        self, key: str, priority: Priority, resources: Collection[str], text: str, past: str, action: str
+    ) -> Cause:
+        titles = listed(self._execution.automaton.resources[name] for name in resources)
+        consequence = self._consequences.without(resources)
+        return Cause(key, priority, f"{text} {titles}", consequence, action, past=f"{past} {titles}")
 
     def _is_early(self, feed: Feed, monotonic: float) -> bool:
-        return feed.last is None and self._began is not None and monotonic - self._began < PATIENCE
+        """Whether a silence need not be one yet: as a station begins much is begun beside it."""
+        if self._began is None or monotonic - self._began >= GRACE:
+            return False
+        return feed.last is None or monotonic - feed.last < (feed.pipeline.deadline or 0.0) + STUMBLES
 
-    def _silence(self, resource: str, feeds: Mapping[str, Feed], consequence: str) -> Cause:
+    def _silence(self, resource: str, feeds: Mapping[str, Feed], consequence: str, follows: str) -> Cause:
+        past = [_silence_of(name, feed, name in self._feeds.topics, over=True) for name, feed in feeds.items()]
         texts = [_silence_of(name, feed, name in self._feeds.topics) for name, feed in feeds.items()]
         explained = [_mismatch_key(resource)] if feeds.keys() <= self._network.troubles.keys() else []
-        alike = f"Nothing is heard on {len(feeds)} topics: the values of {resource} are unknown"
+        title = self._execution.automaton.resources[resource]
+        alike, alike_past = (f"Nothing {was} heard on {len(feeds)} topics of {title}" for was in ("is", "was"))
         return Cause(
             silent_key(resource),
             Priority.MEDIUM,
-            f"{texts[0]}: the values of {resource} are unknown" if len(texts) == 1 else alike,
+            f"{texts[0]}: the values of {title} are unknown" if len(texts) == 1 else f"{alike}: its values are unknown",
             consequence,
-            f"Check that the node of {resource} runs and is reachable.",
-            follows=(MANY, *explained),
+            f"Check that the node of {title} runs and is reachable.",
+            follows=(follows, *explained),
             parts=() if len(texts) == 1 else tuple(texts),
+            past=past[0] if len(past) == 1 else alike_past,
+            of=frozenset({resource}),
+            past_parts=() if len(past) == 1 else tuple(past),
         )
 
     def _mismatches(self) -> Iterator[Cause]:
@@ -95,6 +134,7 @@ class DeviceAlarms:
                 "Nothing passes between that node and the station there.",
                 "Check which nodes run, and how they were built.",
                 parts=() if len(texts) == 1 else tuple(texts),
+                past=f"Something on the topics of {resource} was not understood",
             )
 
     def _rivals(self) -> Iterator[Cause]:
@@ -107,6 +147,7 @@ class DeviceAlarms:
                 self._consequences.standstill(),
                 "Stop the other one, or this station.",
                 parts=() if len(texts) == 1 else tuple(texts),
+                past=f"Somebody else commanded on {', '.join(self._network.rivals)}",
             )
 
     def _owed(self) -> Iterator[Cause]:
@@ -116,6 +157,7 @@ class DeviceAlarms:
             return
         resources = {topic: self._commander.topics[topic].pipeline.topic.resource for topic in owed}
         texts = [f"{resources[topic]} has not been sent its command on {topic}: {why}" for topic, why in owed.items()]
+        past = [f"{resources[topic]} was not sent its command on {topic} in time" for topic in owed]
         of_one = len(set(resources.values())) == 1
         yield Cause(
             "command",
@@ -123,8 +165,10 @@ class DeviceAlarms:
             texts[0] if len(texts) == 1 else f"{len(texts)} commands have not been sent: {texts[0]}",
             self._consequences.standstill(),
             "It is tried again. Check the network.",
-            follows=(MANY, *map(silent_key, sorted(set(resources.values())) if of_one else ())),
+            follows=(MANY, UNHEARD, *map(silent_key, sorted(set(resources.values())) if of_one else ())),
             parts=() if len(texts) == 1 else tuple(texts),
+            past=past[0] if len(past) == 1 else f"{len(past)} commands were not sent in time",
+            past_parts=() if len(past) == 1 else tuple(past),
         )
 
     def _made_no_sense(self, place: str, cause: str, report: Report, moment: Moment) -> Cause:
@@ -140,13 +184,20 @@ class DeviceAlarms:
             f"Unknown because of it: {listed(unknown)}." if unknown else "It was passed over.",
             "Check the node that sends it.",
             follows=(silent_key(self._feeds.resource_of(place)),) if silent else (),
+            past=f"Made no sense: {_counted(place, report, moment)}",
         )
 
     def _defaults(self, reports: Reports, moment: Moment) -> Iterator[Cause]:
         for place, cause, report in reports.current(moment.monotonic):
             text = _counted(place, report, moment)
             comes_of_it = "The device does not do what the station believes to have commanded."
-            yield Cause(_report_key(place, cause), Priority.MEDIUM, text, comes_of_it, _DEFAULTS)
+            past = f"The device got the default: {text}"
+            yield Cause(_report_key(place, cause), Priority.MEDIUM, text, comes_of_it, _DEFAULTS, past=past)
+
+
+def _are_many(resources: Collection[str], silent: Collection[str], used: Collection[str]) -> bool:
+    """Whether so many of those that are used are silent at once that there is one reason for all."""
+    return len(resources) > 1 and (len(silent) == len(used) or len(resources) >= max(_MOST, len(used) / 2))
 
 
 def silent_key(resource: str) -> str:
@@ -162,8 +213,10 @@ def _report_key(place: str, cause: str) -> str:
     return f"message:{place}:{cause}"
 
 
-def _silence_of(name: str, feed: Feed, is_topic: bool) -> str:
+def _silence_of(name: str, feed: Feed, is_topic: bool, over: bool = False) -> str:
     what = "message" if is_topic else "answer"
+    if over:
+        return f"For some time no {what} came on {name}"
     silence = f"No {what} yet" if feed.last is None else f"No {what} any more"
     why = f" ({feed.why})" if feed.abandoned and feed.why else ""
     return f"{silence} on {name}{why}"

@@ -2,54 +2,72 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Collection, Iterator
+from math import inf
 
 from sequence_planner.automaton.structure import Ability
 from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.alarming.cause import Cause
 from sequence_planner.control.alarming.consequence import Consequences, listed
-from sequence_planner.control.alarming.of_devices import MANY, silent_key
+from sequence_planner.control.alarming.following import LATE
+from sequence_planner.control.alarming.of_devices import MANY, UNHEARD, silent_key
 from sequence_planner.control.conduct import OutOfService
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.offer_showing import end_text
 from sequence_planner.control.plan_reasons import violation
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.standing_still import StandingStill
-from sequence_planner.control.timeouts import overdue
+from sequence_planner.control.timeouts import in_the_past, overdue
 from sequence_planner.control.value_text import value_text
 from sequence_planner.control.view import PlanStatus, Production
+from sequence_planner.control.waiting import idle_since, waits_for
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.planning.plan import PlanAnswer
 
+_STILL = "still:"
+_HURRY = 5.0  # seconds of patience with a device while the state is unsafe
+START_WITHIN = 5.0  # seconds in which the next start of what was taken begins, or it is said why not
+END_WITHIN = 30.0  # seconds in which it comes to its end once nothing of it is left to be started
+
 
 class PlanAlarms:
-    """Looks at what `execution` does; `feeds` say which resources tell a measured variable."""
+    """Looks at what `execution` does; `feeds` say which resources tell a measured variable.
 
-    def __init__(self, execution: Execution, feeds: Feeds) -> None:
+    Where the state is `unsafe`, a device that is late for it is told soon: it is why.
+    """
+
+    def __init__(self, execution: Execution, feeds: Feeds, unsafe: Callable[[], bool]) -> None:
         self._execution = execution
+        self._unsafe = unsafe
+        self._told_still: frozenset[str] = frozenset()
         self._consequences = Consequences(execution)
         self._still = StandingStill(execution)
+        self._feeds = feeds
         self._tellers = {
             name: frozenset(feeds.resource_of(topic) for topic in topics) for name, topics in feeds.sources.items()
         }
 
-    def causes(self, planner_trouble: str | None, monotonic: float) -> Iterator[Cause]:
-        """All that there are now."""
+    def causes(self, planner_trouble: str | None, monotonic: float, untold: Collection[str] = ()) -> Iterator[Cause]:
+        """All that there are now. What comes of it that the `untold` are silent is told no sooner than that."""
         yield from self._late(monotonic)
         yield from self._standing_still(monotonic)
         yield from self._given_up()
         yield from self._called_off()
+        yield from self._waiting_errand(monotonic)
         if planner_trouble is not None:
             yield Cause(
                 "planner",
                 Priority.MEDIUM,
                 planner_trouble,
-                f"No new plan is made. {self._consequences.waiting(self._execution.active)}",
-                "Tell the maintainers of this station's model.",
+                past=f"The planner did not work: {planner_trouble}",
+                consequence=f"No new plan is made. {self._consequences.waiting(self._execution.active)}",
+                action="Tell the maintainers of this station's model.",
             )
         elif self._execution.production is Production.STARTED:  # that there is no plan has no other cause
             yield from self._violated()
-            yield from self._missing()
+            if self._execution.conduct.silent.isdisjoint(untold):
+                yield from self._missing()
 
     def _late(self, monotonic: float) -> Iterator[Cause]:
         """Abilities that take longer than they may; those that are planned anew then are called off instead."""
@@ -62,12 +80,14 @@ class PlanAlarms:
             resource = automaton.resources[ability.resource]
             receives = f"Check that {resource} receives its commands and is ready."
             yield Cause(
-                f"overdue:{ability.name}",
+                f"{LATE}{ability.name}",
                 Priority.MEDIUM,
                 f"{ability.title} {late}",
                 self._consequences.waiting(self._consequences.held_up({ability.resource}), " until it does"),
                 receives if "begun" in late else f"Look after {resource}.",
-                follows=self._silences(ability),
+                follows=(*self._silences(ability), f"{_STILL}{ability.resource}"),
+                past=f"{ability.title} {in_the_past(late)}",
+                of=frozenset({ability.resource}),
             )
 
     def _standing_still(self, monotonic: float) -> Iterator[Cause]:
@@ -75,18 +95,23 @@ class PlanAlarms:
         automaton, state = self._execution.automaton, self._execution.state
         running = [(step, automaton.abilities[step.ability]) for step in self._execution.plan.order.running]
         late = {ability.resource for step, ability in running if overdue(step, ability, monotonic)}
-        for name, unchanged in sorted(self._still.devices(monotonic).items()):
-            if name in late:
+        still = self._still.devices(monotonic, _HURRY if self._unsafe() else inf)
+        # What was told stays the alarm, whatever becomes late with it meanwhile.
+        self._told_still = frozenset(name for name in still if name in self._told_still or name not in late)
+        for name, unchanged in sorted(still.items()):
+            if name not in self._told_still:
                 continue
             resource = automaton.resources[name]
             known = {each: value for each in sorted(unchanged) if (value := state[each]) is not None}
             says = listed(value_text(automaton, each, value) for each, value in known.items()) or "nothing"
             yield Cause(
-                f"still:{name}",
+                f"{_STILL}{name}",
                 Priority.MEDIUM,
                 f"{resource} does not do what it should: it still says {says}",
                 self._consequences.waiting(self._consequences.held_up({name}), " until it does"),
                 f"Look after {resource}.",
+                past=f"{resource} did not do what it should: it still said {says}",
+                of=frozenset({name}),
             )
 
     def _given_up(self) -> Iterator[Cause]:
@@ -98,6 +123,7 @@ class PlanAlarms:
         for resource, gone in given_up.items():
             abilities = self._execution.automaton.abilities
             texts = [f"{abilities[each.name].title} {each.why}" for each in gone]
+            past = [f"{abilities[each.name].title} {in_the_past(each.why)}" for each in gone]
             titles = listed(abilities[each.name].title for each in gone)
             yield Cause(
                 f"given-up:{resource}",
@@ -107,29 +133,62 @@ class PlanAlarms:
                 f"Look after {self._execution.automaton.resources[resource]}, then put {titles} back in service.",
                 follows=tuple(dict.fromkeys(key for each in gone for key in self._silences(abilities[each.name]))),
                 parts=() if len(texts) == 1 else tuple(texts),
+                past=f"{past[0]}: it was given up" if len(past) == 1 else f"{len(past)} were given up: {titles}",
+                past_parts=() if len(past) == 1 else tuple(past),
+                of=frozenset({resource}),
             )
 
     def _called_off(self) -> Iterator[Cause]:
         for name, times in self._execution.conduct.tried.items():
             ability = self._execution.automaton.abilities[name]
+            text = f"{ability.title} was not in time and was called off{f', {times} times' if times > 1 else ''}"
             yield Cause(
                 f"tried:{name}",
                 Priority.LOW,
-                f"{ability.title} was not in time and was called off{f', {times} times' if times > 1 else ''}",
+                text,
                 f"It is planned anew, and given up after {ability.timeouts.retries + 1} times.",
                 f"Look after {self._execution.automaton.resources[ability.resource]}.",
                 follows=self._silences(ability),
+                past=text,
             )
+
+    def _waiting_errand(self, monotonic: float) -> Iterator[Cause]:
+        """What a person has taken, and does not go on."""
+        execution, errand = self._execution, self._execution.errand
+        if errand is None or errand.ability is not None or (since := idle_since(execution, errand)) is None:
+            return
+        ahead, waited = execution.plan.order.ahead, monotonic - since
+        if waited <= (START_WITHIN if ahead else END_WITHIN):
+            return
+        if ahead:
+            title = execution.automaton.abilities[ahead[0].ability].title
+            waits = listed(waits_for(execution, ahead[0].ability, self._feeds.heard_on)) or "nothing that is known"
+            text = f"{title} has not started for {START_WITHIN:g} s: it waits for {waits}"
+        else:
+            condition = end_text(errand.goal, errand.into_safe)
+            inside = ["the station to be back in its safe states"] if errand.into_safe else []
+            waits = listed([*inside, *([condition] if condition else [])])
+            text = f"What was taken has not come to its end for {END_WITHIN:g} s: it waits for {waits}"
+        yield Cause(
+            "errand-waits",
+            Priority.MEDIUM,
+            text,
+            f"\u201c{errand.title}\u201d, which {errand.by} has taken, does not go on, and operations wait.",
+            "See to what it waits for, or stop it and look at the ways back again.",
+            past=f"“{errand.title}” did not go on for some time",
+        )
 
     def _violated(self) -> Iterator[Cause]:
         for name, since in self._execution.pursued.violated.items():
             active = name in self._execution.active
+            text = f"The local specification {violation(self._execution.automaton, name)}"
             yield Cause(
                 f"local:{name}:{since.epoch}",
                 Priority.MEDIUM,
-                f"The local specification {violation(self._execution.automaton, name)}",
+                text,
                 "It is not planned for any more." if active else "Its goal was reached all the same.",
                 "Bring its goal about by hand." if active else "Check what was made meanwhile.",
+                past=text,
             )
 
     def _missing(self) -> Iterator[Cause]:
@@ -139,7 +198,8 @@ class PlanAlarms:
             return
         if plan.status is PlanStatus.NONE and (follows or not execution.blind):
             waiting = self._consequences.waiting(execution.active)
-            yield Cause("no-plan", Priority.MEDIUM, plan.reason, waiting, self._needed(), follows)
+            past = "There was no plan"
+            yield Cause("no-plan", Priority.MEDIUM, plan.reason, waiting, self._needed(), follows, past=past)
         elif plan.status is not PlanStatus.NONE and plan.answer is not None:
             yield from self._left_out(plan.answer, follows)
 
@@ -159,13 +219,15 @@ class PlanAlarms:
         excluded = [name for name in answer.left_out if name in active and name not in answer.undecided]
         waits = self._consequences.waiting
         if excluded:
-            text = f"Left out of the plan: {', '.join(operations[name].title for name in excluded)}"
+            titles = ", ".join(operations[name].title for name in excluded)
             action = "It is proven that no plan reaches these goals together with the others, as things are."
-            yield Cause("left-out", Priority.LOW, text, waits(excluded), action, follows)
+            text, past = f"Left out of the plan: {titles}", f"Was left out of the plan: {titles}"
+            yield Cause("left-out", Priority.LOW, text, waits(excluded), action, follows, past=past)
         if undecided:
-            text = f"Not in the plan yet: {', '.join(operations[name].title for name in undecided)}"
+            titles = ", ".join(operations[name].title for name in undecided)
             action = "No plan that reaches these goals too was found in time, and none is ruled out; it is tried again."
-            yield Cause("undecided", Priority.LOW, text, waits(undecided), action, follows)
+            text, past = f"Not in the plan yet: {titles}", f"Was not in the plan: {titles}"
+            yield Cause("undecided", Priority.LOW, text, waits(undecided), action, follows, past=past)
 
     def _silences(self, ability: Ability | None) -> tuple[str, ...]:
         """The silences from which it can follow that an ability is late, or without one that there is no plan."""
@@ -173,7 +235,7 @@ class PlanAlarms:
         if ability is not None:
             awaited = frozenset[str]().union(*(self._tellers.get(name, ()) for name in _deciding(ability)))
             silent = silent & (awaited | {ability.resource})
-        return (MANY, *(silent_key(name) for name in sorted(silent))) if silent else ()
+        return (MANY, UNHEARD, *(silent_key(name) for name in sorted(silent))) if silent else ()
 
 
 def _deciding(ability: Ability) -> set[str]:

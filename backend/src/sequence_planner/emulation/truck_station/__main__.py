@@ -9,6 +9,7 @@ import signal
 import sys
 from pathlib import Path
 
+from sequence_planner.emulation.truck_station import mir
 from sequence_planner.emulation.truck_station.node import NODE_TYPES, live
 from sequence_planner.emulation.truck_station.server import WorldServer
 from sequence_planner.emulation.truck_station.world import World
@@ -22,15 +23,15 @@ PORT, MIR_PORT = 8700, 8701
 def main() -> None:
     """Run the world, one node of it, or all of them as processes of their own, until a signal ends it."""
     parser = argparse.ArgumentParser(prog="truck_station", description=__doc__)
-    parser.add_argument("what", choices=("world", *NODE_TYPES, "all"))
+    parser.add_argument("what", choices=("world", mir.NAME, *NODE_TYPES, "all"))
     parser.add_argument("--port", type=int, default=PORT, help="of the world, on the loopback")
-    parser.add_argument("--mir-port", type=int, default=MIR_PORT, help="of the AGV's own interface")
+    parser.add_argument("--mir-port", type=int, default=MIR_PORT, help="of the AGV, on the loopback")
     parser.add_argument("--messages", type=Path, help="folder of the message definitions; needed for a node")
     parser.add_argument("--speed", type=float, default=1.0, help="of the world")
     parser.add_argument("--seed", type=int, default=0, help="of the world")
     given = parser.parse_args()
-    if given.what != "world" and given.messages is None:
-        parser.error("a node needs --messages")
+    if given.what not in ("world", mir.NAME) and given.messages is None:
+        parser.error("a node that speaks ROS 2 needs --messages")
     with contextlib.suppress(asyncio.CancelledError):
         asyncio.run(_run(given))
 
@@ -41,7 +42,10 @@ async def _run(given: argparse.Namespace) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, task.cancel)
     if given.what == "world":
-        await WorldServer(World(given.seed), given.speed).serve(given.port, given.mir_port)
+        await WorldServer(World(given.seed), given.speed).serve(given.port)
+        return
+    if given.what == mir.NAME:
+        await mir.serve(given.port, given.mir_port)
         return
     if given.what == "all":
         await _run_all(given)
@@ -60,7 +64,7 @@ async def _run_all(given: argparse.Namespace) -> None:
     world = ("--speed", str(given.speed), "--seed", str(given.seed))
     module = ("-m", "sequence_planner.emulation.truck_station")
     processes = []
-    for what in ("world", *NODE_TYPES):
+    for what in ("world", mir.NAME, *NODE_TYPES):
         arguments = (*module, what, *common, *(world if what == "world" else ()))
         processes.append(await asyncio.create_subprocess_exec(sys.executable, *arguments))
     try:

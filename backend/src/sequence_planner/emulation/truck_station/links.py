@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import json
+import time
 from dataclasses import dataclass
 from typing import Any, Protocol
 
 from sequence_planner.emulation.truck_station.drivers import Signals
-from sequence_planner.emulation.truck_station.mir import GOAL, STATUS, request
+from sequence_planner.emulation.truck_station.rest import GOAL, STATUS, request
+
+PATIENCE = 15.0  # seconds in which the world may start
 
 
 class WorldEndedError(Exception):
@@ -43,8 +46,15 @@ class WorldLink:
 
     @classmethod
     async def to(cls, node: str, port: int) -> WorldLink:
-        """Connect. Raises OSError when there is no world."""
-        return cls(node, *await asyncio.open_connection("127.0.0.1", port))
+        """Connect, once there is a world. Raises OSError when there is none after `PATIENCE`."""
+        until = time.monotonic() + PATIENCE
+        while True:
+            try:
+                return cls(node, *await asyncio.open_connection("127.0.0.1", port))
+            except OSError:
+                if time.monotonic() > until:
+                    raise
+                await asyncio.sleep(0.1)
 
     async def exchange(self, put: Signals) -> Answer:
         """See `Link.exchange`."""

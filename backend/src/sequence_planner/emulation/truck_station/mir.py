@@ -1,7 +1,4 @@
-"""The AGV's own REST interface, as a small HTTP server beside the world, and the client of it in the bridge.
-
-`GET /api/v2.0.0/status` answers `{"position": .., "state_text": ..}`; `PUT /api/v2.0.0/goal` takes `{"goal": ..}`.
-"""
+"""The AGV, a computer of its own behind the bridge `mircom`: its REST interface (see `rest`) as a small HTTP server."""
 
 from __future__ import annotations
 
@@ -9,19 +6,37 @@ import asyncio
 import json
 from http import HTTPStatus
 
-from sequence_planner.emulation.truck_station.signals import put, read
-from sequence_planner.emulation.truck_station.world import World
+from sequence_planner.emulation.truck_station.drivers import Signals
+from sequence_planner.emulation.truck_station.links import Link, WorldEndedError, WorldLink
+from sequence_planner.emulation.truck_station.rest import GOAL, STATUS
 
-STATUS, GOAL = "/api/v2.0.0/status", "/api/v2.0.0/goal"
+NAME = "mir"
 GOALS = ("kitting", "station")
 LONGEST_BODY = 1 << 12
 
 
-class MirServer:
-    """Answers requests about the AGV of a world, one a connection."""
+async def serve(port: int, mir_port: int) -> None:
+    """Be the AGV, whose interface is at `mir_port`, until cancelled or until the world at `port` ends.
 
-    def __init__(self, world: World) -> None:
-        self._world = world
+    Raises OSError when there is no world, or the port is taken.
+    """
+    link = await WorldLink.to(NAME, port)
+    agv = MirServer(link)
+    server = await asyncio.start_server(agv.connected, "127.0.0.1", mir_port)
+    try:
+        async with server:
+            await agv.ended.wait()
+    finally:
+        link.close()
+
+
+class MirServer:
+    """Answers requests about the AGV behind a link, one a connection. `ended` is set once the world has."""
+
+    def __init__(self, link: Link) -> None:
+        self._link = link
+        self._turn = asyncio.Lock()
+        self.ended = asyncio.Event()
 
     async def connected(self, reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         """Answer one request."""
@@ -31,7 +46,10 @@ class MirServer:
             length = int(lengths[0]) if lengths else 0
             body = await reader.readexactly(length) if 0 < length <= LONGEST_BODY else b""
             method, path, _ = head[0].split()
-            status, answer = self.answer(method, path, body)
+            answered = await self.answer(method, path, body)
+            if answered is None:
+                return
+            status, answer = answered
             content = json.dumps(answer).encode()
             writer.write(
                 f"HTTP/1.1 {status.value} {status.phrase}\r\nContent-Type: application/json\r\n"
@@ -44,10 +62,12 @@ class MirServer:
         finally:
             writer.close()
 
-    def answer(self, method: str, path: str, body: bytes) -> tuple[HTTPStatus, dict[str, object]]:
-        """The status and the document for a request."""
+    async def answer(self, method: str, path: str, body: bytes) -> tuple[HTTPStatus, dict[str, object]] | None:
+        """The status and the document for a request; None where the AGV says nothing."""
         if (method, path) == ("GET", STATUS):
-            position = read(self._world, "mircom")["position"]
+            if (read := await self._exchanged({})) is None:
+                return None
+            position = read["position"]
             return HTTPStatus.OK, {"position": position, "state_text": "Executing" if position == "moving" else "Ready"}
         if (method, path) != ("PUT", GOAL):
             return HTTPStatus.NOT_FOUND, {"error": f"there are GET {STATUS} and PUT {GOAL}"}
@@ -57,23 +77,17 @@ class MirServer:
             goal = None
         if goal not in GOALS:
             return HTTPStatus.BAD_REQUEST, {"error": f"`goal` is one of {', '.join(GOALS)}"}
-        put(self._world, "mircom", {"goal": goal})
-        return HTTPStatus.OK, {"goal": goal}
+        return None if await self._exchanged({"goal": goal}) is None else (HTTPStatus.OK, {"goal": goal})
 
-
-async def request(port: int, method: str, path: str, body: dict[str, object] | None = None) -> dict[str, object]:
-    """Ask the AGV at `port` of the loopback. Raises OSError when it is not there or does not answer like HTTP."""
-    reader, writer = await asyncio.open_connection("127.0.0.1", port)
-    try:
-        content = b"" if body is None else json.dumps(body).encode()
-        head = f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Length: {len(content)}\r\n\r\n"
-        writer.write(head.encode() + content)
-        answered, _, document = (await reader.read()).partition(b"\r\n\r\n")
-        if not answered.startswith(b"HTTP/1.1 200 "):
-            raise OSError(f"{method} {path}: {answered.splitlines()[:1]}")
-        parsed = json.loads(document)
-        if not isinstance(parsed, dict):
-            raise OSError(f"{method} {path}: no JSON object")
-        return parsed
-    finally:
-        writer.close()
+    async def _exchanged(self, put: Signals) -> dict[str, object] | None:
+        """What the AGV's signals are after these are set; None when it is switched off, or the world has ended."""
+        async with self._turn:  # the link knows one question at a time
+            try:
+                answer = await self._link.exchange(put)
+            except WorldEndedError:
+                self.ended.set()
+                return None
+        if answer.fault.get("kind") in ("silent", "offline"):
+            return None
+        wrong: dict[str, object] = answer.fault.get("fields", {})
+        return answer.read | wrong

@@ -72,7 +72,7 @@ NODE_TYPES = {
 async def live(
     name: str, port: int, mir_port: int, registry: MessageRegistry, connect: Callable[[str], Transport]
 ) -> None:
-    """Run the node `name` until it is cancelled, or the world ends, which serves at `port`, and its AGV at `mir_port`.
+    """Run the node `name` until it is cancelled, or the world ends, which serves at `port`; the AGV is at `mir_port`.
 
     `connect` joins the network as the node of the given name. Raises OSError when there is no world, and TransportError
     when the network refuses.

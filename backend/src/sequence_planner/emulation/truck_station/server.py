@@ -13,9 +13,8 @@ import json
 import time
 from dataclasses import dataclass, field
 
-from sequence_planner.emulation.truck_station.mir import MirServer
 from sequence_planner.emulation.truck_station.poses import PAIRS
-from sequence_planner.emulation.truck_station.signals import NODES, put, read
+from sequence_planner.emulation.truck_station.signals import COMPUTERS, put, read
 from sequence_planner.emulation.truck_station.world import World
 
 STEP = 0.01  # seconds of the world between two looks at it
@@ -41,11 +40,10 @@ class WorldServer:
         self._faults: dict[str, Fault] = {}
         self._frozen: dict[str, dict[str, object]] = {}
 
-    async def serve(self, port: int, mir_port: int) -> None:
-        """Serve until cancelled, and the AGV's own interface with it. Raises OSError when a port is taken."""
+    async def serve(self, port: int) -> None:
+        """Serve until cancelled. Raises OSError when the port is taken."""
         server = await asyncio.start_server(self.connected, "127.0.0.1", port, limit=LONGEST_LINE)
-        mir = await asyncio.start_server(MirServer(self.world).connected, "127.0.0.1", mir_port)
-        async with server, mir:
+        async with server:
             await self._live()
 
     async def _live(self) -> None:
@@ -74,7 +72,7 @@ class WorldServer:
     def answer(self, question: object) -> dict[str, object]:
         """Answer one document."""
         match question:
-            case {"node": str(node), "put": dict(signals)} if node in NODES:
+            case {"node": str(node), "put": dict(signals)} if node in COMPUTERS:
                 return self._exchanged(node, signals)
             case {"fault": {"node": str(node), "kind": str(kind), "seconds": float() | int() as seconds, **more}}:
                 fields = more.get("fields")
@@ -99,8 +97,8 @@ class WorldServer:
         return {"read": read(self.world, node), "fault": told}
 
     def _disturbed(self, node: str, kind: str, seconds: float, fields: dict[str, object]) -> dict[str, object]:
-        if node not in NODES or kind not in FAULTS:
-            return {"error": f"there are the nodes {', '.join(NODES)} and the faults {', '.join(FAULTS)}"}
+        if node not in COMPUTERS or kind not in FAULTS:
+            return {"error": f"there are the nodes {', '.join(COMPUTERS)} and the faults {', '.join(FAULTS)}"}
         self._faults[node] = Fault(kind, time.monotonic() + seconds, fields)
         return {"done": True}
 

@@ -8,7 +8,9 @@ from sequence_planner.emulation.truck_station.poses import POSES
 from sequence_planner.emulation.truck_station.world import World
 
 Signals = Mapping[str, object]
+# Those that speak ROS 2; the AGV `mir` speaks to the bridge `mircom` alone.
 NODES = ("tool_ecu", "rsp_ecu", "dock_ecu", "mircom", "rfidcam", "ur10", "scene", "watch")
+COMPUTERS = (*NODES, "mir")
 
 
 def put(world: World, node: str, signals: Signals) -> None:
@@ -103,6 +105,7 @@ _PUT: dict[str, Callable[[World, Signals], None]] = {
     "rsp_ecu": _put_effector,
     "dock_ecu": lambda world, signals: None,
     "mircom": _put_agv,
+    "mir": _put_agv,
     "rfidcam": _put_line,
     "ur10": _put_arm,
     "scene": _put_scene,
@@ -113,6 +116,7 @@ _READ: dict[str, Callable[[World], dict[str, object]]] = {
     "rsp_ecu": _read_effector,
     "dock_ecu": _read_dock,
     "mircom": lambda world: {"position": world.agv.position},
+    "mir": lambda world: {"position": world.agv.position},
     "rfidcam": lambda world: {"in_place": world.line.engine is not None, "tag": world.line.tag},
     "ur10": _read_arm,
     "scene": lambda world: {"attached": list(world.scene)},

@@ -1,4 +1,8 @@
-"""The order of work: the best of the dispatch rules' schedules, improved by search within a limit of work."""
+"""The order of work: the best of the dispatch rules' schedules, improved by search within a limit of work.
+
+Where there are very many orders that is done for those that come first (a rolling horizon): it is done anew as soon as
+something has changed, and nobody knows what will come before the last of a thousand orders is begun.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +11,14 @@ from dataclasses import replace
 from math import inf
 from typing import Final, TypeAlias
 
-from sequence_planner.mes.sequencing.dispatching import RULES, by_priority, dispatch
+from sequence_planner.mes.sequencing.dispatching import RULES, Rule, by_priority, dispatch, in_order, pack
 from sequence_planner.mes.sequencing.instance import TICK, Instance, Starts, cost, earliest_ends, instance, job_end
 from sequence_planner.mes.sequencing.waits import waits_among
 from sequence_planner.mes.sequencing.work import Schedule, Step, Work
 
 # What the solver takes for a second is two to five of a processor, and a busy machine must be in time too.
 EFFORT: Final = 0.1  # of the limit, by the solver's measure
+HORIZON: Final = 600  # operations that are searched; rules alone take a second for ten times as many
 
 Times: TypeAlias = dict[Step, tuple[float, float]]
 
@@ -24,17 +29,22 @@ def sequence(
     now: float,
     limit: float,
     remaining: Callable[[], float] = lambda: inf,
+    most: int = HORIZON,
 ) -> Schedule:
     """The order of work after at most about `limit` seconds. The same question has the same answer, unless the search
     ends before because no seconds on the wall are `remaining`.
 
     Of the jobs of one set in `exclusive` no two overlap: pairs, or larger groups. What counts is the tardiness of jobs
-    times their weights, then the time at which all is done, then when each job ends. Raises `ValueError` for works that
-    cannot be worked, see `instance`.
+    times their weights, then the time at which all is done, then when each job ends. Of more than `most` operations as
+    many are searched as come first, and the others follow by rule. Raises `ValueError` for works that cannot be worked,
+    see `instance`.
     """
     from sequence_planner.mes.sequencing.windows import improve  # noqa: PLC0415 - the solver takes a second to import
 
-    problem = instance(works, exclusive, now)
+    groups = [frozenset(each) for each in exclusive]
+    problem = instance(works, groups, now)
+    if len(problem.tasks) > most:
+        return _rolling(works, groups, problem, limit, remaining, most)
     best = min((dispatch(problem, rule) for rule in RULES), key=lambda starts: cost(problem, starts))
     found = improve(problem, best, EFFORT * limit, remaining)
     return replace(_told(works, problem, found.starts, found.bound), optimal=found.proven)
@@ -43,7 +53,50 @@ def sequence(
 def by_rule(works: Sequence[Work], exclusive: Iterable[Collection[str]], now: float, why: str) -> Schedule:
     """The order by priority, due time and storage, because of `why`. Raises `ValueError` as `sequence` does."""
     problem = instance(works, exclusive, now)
-    return replace(_told(works, problem, dispatch(problem, by_priority), 0), fallback=why)
+    many = len(problem.tasks) > HORIZON
+    starts = pack(problem, _in_rows(problem, by_priority)) if many else dispatch(problem, by_priority)
+    return replace(_told(works, problem, starts, 0), fallback=why, horizon=0)
+
+
+def _rolling(
+    works: Sequence[Work],
+    groups: Sequence[frozenset[str]],
+    problem: Instance,
+    limit: float,
+    remaining: Callable[[], float],
+    most: int,
+) -> Schedule:
+    """What comes first, by the best of the rules, searched by itself; what comes then follows as it was."""
+    best = min((pack(problem, _in_rows(problem, rule)) for rule in RULES), key=lambda starts: cost(problem, starts))
+    order = sorted(range(len(problem.jobs)), key=lambda job: _place(problem, best, job))
+    tasks, near = 0, list[int]()
+    for job in order:
+        tasks += len(problem.movable(job))
+        if near and tasks > most and not problem.jobs[job].begun:
+            break
+        near.append(job)
+    found = sequence([works[job] for job in sorted(near)], groups, problem.now, limit, remaining, len(problem.tasks))
+    number = {(problem.jobs[task.job].name, task.name): each for each, task in enumerate(problem.tasks)}
+    first = sorted(
+        (found.starts[step][0], number[step]) for step in found.starts if problem.tasks[number[step]].end is None
+    )
+    known = set(near)
+    rest = in_order(problem, best, [job for job in order if job not in known])
+    candidate = pack(problem, [*(task for _, task in first), *rest])
+    starts = min(candidate, best, key=lambda each: cost(problem, each))
+    return replace(_told(works, problem, starts, 0), horizon=len(near))
+
+
+def _in_rows(problem: Instance, rule: Rule) -> list[int]:
+    """The tasks that have not started, those of one job behind those of another: by rule, what has begun first."""
+    jobs = sorted(range(len(problem.jobs)), key=lambda job: (not problem.jobs[job].begun, rule(problem, job), job))
+    return [task for job in jobs for task in problem.movable(job)]
+
+
+def _place(problem: Instance, starts: Starts, job: int) -> tuple[int, int]:
+    """Where a job stands in a schedule; those that have begun come first."""
+    found = problem.jobs[job]
+    return -1 if found.begun else min((starts[task] for task in found.tasks), default=0), job
 
 
 def _told(works: Sequence[Work], problem: Instance, starts: Starts, bound: int) -> Schedule:
@@ -74,6 +127,7 @@ def _told(works: Sequence[Work], problem: Instance, starts: Starts, bound: int) 
         tardiness=cost(problem, starts)[0] * TICK,
         bound=max(bound, least) * TICK,
         optimal=False,
+        horizon=len(works),
     )
     return replace(schedule, waits=waits_among(works, schedule))
 

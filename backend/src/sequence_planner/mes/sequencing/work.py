@@ -49,9 +49,9 @@ class Schedule:
     (seconds since the epoch). `waits` says which operations of other jobs, on a common resource, each one waits for,
     and no more than is needed to say so; see `waits.waits_among` for those of some jobs. `late` has the seconds by
     which jobs are expected to miss their due time, `tardiness` is the sum of these times their weights, which nothing
-    brings below `bound`. It is `optimal` when there is proof that neither that sum nor, with it, the time at which all
-    is done can be less. `fallback` says why the order is only that of priority, due time and storage; empty if it is
-    not.
+    brings below `bound`. The first `horizon` jobs were searched, the others follow by rule. It is `optimal` when there
+    is proof that neither that sum nor, with it, the time at which all is done can be less. `fallback` says why the
+    order is only that of priority, due time and storage; empty if it is not.
     """
 
     jobs: list[str]
@@ -61,6 +61,7 @@ class Schedule:
     tardiness: float
     bound: float
     optimal: bool
+    horizon: int
     fallback: str = ""
 
 

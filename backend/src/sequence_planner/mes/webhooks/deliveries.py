@@ -16,6 +16,7 @@ from sequence_planner.actor import Actor
 from sequence_planner.identity.recording import record
 from sequence_planner.mes import events
 from sequence_planner.mes.events import JobEvent
+from sequence_planner.mes.times import iso
 from sequence_planner.mes.webhooks import webhook as webhooks
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES, WEBHOOKS
 
@@ -60,6 +61,7 @@ class DeadLetter(BaseModel):
     event: JobEvent
     attempts: int
     died: float
+    died_at = iso("died")
     trouble: str
 
 

@@ -1,4 +1,5 @@
-"""Where webhooks may go: to hosts on a list, by HTTPS, at addresses of the public network.
+"""Where webhooks may go: to hosts and networks on a list, by HTTPS; elsewhere than on the public network only where the
+list has the network.
 
 A name is resolved for each delivery, and the addresses that were found are judged and then connected to, so that what a
 name means cannot change in between (DNS rebinding).
@@ -8,12 +9,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from ipaddress import IPv4Address, IPv6Address, IPv6Network, ip_address
-from typing import Final
+from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network, ip_address, ip_network
+from typing import Final, TypeAlias
 from urllib.parse import urlsplit
 
 LONGEST_URL: Final = 2000  # characters
+Address: TypeAlias = IPv4Address | IPv6Address
+Network: TypeAlias = IPv4Network | IPv6Network
 _NAT64: Final = IPv6Network("64:ff9b::/96")
+_THIS_HOST: Final = IPv4Network("0.0.0.0/8")
 _STANDARD_PORTS: Final = {"https": 443, "http": 80}
 _VISIBLE: Final = frozenset(map(chr, range(0x21, 0x7F))) - frozenset('\\"<>^`{|}')
 
@@ -44,44 +48,70 @@ class Target:
 
 @dataclass(frozen=True)
 class Targets:
-    """The hosts that webhooks may go to, each with its port, in small letters and without brackets.
+    """The `hosts` that webhooks may go to, each with its port, in small letters and without brackets, and the
+    `networks`, in which they may go to every host, and the hosts of the list may be although they are private.
 
-    With `loopback` those of them that are this machine may be reached too, also by HTTP.
+    What is this machine, link-local (where clouds answer questions about themselves), multicast or reserved is sent to
+    only where the list has exactly that address. With `loopback` what is on the list may be this machine too, also by
+    HTTP.
     """
 
     hosts: frozenset[tuple[str, int]] = frozenset()
     loopback: bool = False
+    networks: tuple[Network, ...] = ()
 
     @property
     def written(self) -> list[str]:
-        """The list as `host_and_port` reads it."""
+        """The hosts as `host_and_port` reads them."""
         return sorted(f"[{host}]:{port}" if ":" in host else f"{host}:{port}" for host, port in self.hosts)
 
     def target(self, url: str) -> Target:
-        """What a URL names. Raises `TargetRefused` unless it may be sent to, whatever its address will be."""
+        """What a URL names. Raises `TargetRefused` unless it may be sent to if its address may."""
         target = _read(url)
-        if (target.host, target.port) not in self.hosts:
-            raise TargetRefused(
-                f"{target.host}:{target.port} is not on the list of hosts that webhooks may go to; whoever runs the "
-                "station puts it there with --webhook-host"
-            )
+        if (target.host, target.port) not in self.hosts and not self.networks:
+            raise TargetRefused(_not_listed(target))
         if target.scheme != "https" and not self.loopback:
             raise TargetRefused("only https:// is sent to")
         return target
 
     def judge(self, target: Target, addresses: Sequence[str]) -> None:
         """Raises `TargetRefused` when a target has no address, or one that may not be sent to."""
+        listed = (target.host, target.port) in self.hosts
         for each in addresses:
             address = ip_address(each)
-            if _is_loopback(address):
-                if not self.loopback:
-                    raise TargetRefused(f"{target.host} is this machine ({each}), which is not sent to")
-            elif not _is_public(address):
-                raise TargetRefused(f"{target.host} has an address that is not public ({each}), which is not sent to")
-            elif target.scheme != "https":
+            meant, here = _meant(address), _is_loopback(address)
+            exactly = (listed and _is_literal(target.host, address)) or _within(meant, self.networks, exactly=True)
+            if here and not (self.loopback or exactly):
+                raise TargetRefused(f"{target.host} is this machine ({each}), which is not sent to")
+            if not listed and not _within(meant, self.networks):
+                raise TargetRefused(f"{_not_listed(target)}, or its network ({each}) with --webhook-network")
+            if here or exactly:
+                pass
+            elif _is_special(meant):
+                raise TargetRefused(
+                    f"{target.host} has an address that is not public ({each}) and of a kind that is not sent to "
+                    "unless the list has exactly that address"
+                )
+            elif not _is_public(meant) and not _within(meant, self.networks):
+                raise TargetRefused(
+                    f"{target.host} has an address that is not public ({each}), in a network that is not on the list; "
+                    "whoever runs the station puts that there with --webhook-network"
+                )
+            if target.scheme != "https" and not here:
                 raise TargetRefused(f"{target.host} is not this machine ({each}): only https:// is sent to")
         if not addresses:
             raise TargetRefused(f"{target.host} has no address")
+
+
+def network(written: str) -> Network:
+    """What a network on the list means, as in `10.1.2.0/24`. Raises `TargetRefused`."""
+    try:
+        found = ip_network(written)
+    except ValueError:
+        raise TargetRefused(f"{written!r} is no network; write it as in 10.1.2.0/24") from None
+    if not found.prefixlen:
+        raise TargetRefused(f"{written} is every network there is; write those that are meant")
+    return found
 
 
 def host_and_port(written: str) -> tuple[str, int]:
@@ -113,7 +143,14 @@ def _read(url: str) -> Target:
     return Target(split.scheme, host, port or _STANDARD_PORTS[split.scheme], (split.path or "/") + query)
 
 
-def _meant(address: IPv4Address | IPv6Address) -> IPv4Address | IPv6Address:
+def _not_listed(target: Target) -> str:
+    return (
+        f"{target.host}:{target.port} is not on the list of hosts that webhooks may go to; whoever runs the "
+        "station puts it there with --webhook-host"
+    )
+
+
+def _meant(address: Address) -> Address:
     """The address of IPv4 that one of IPv6 stands for, if it does."""
     if isinstance(address, IPv4Address):
         return address
@@ -122,13 +159,30 @@ def _meant(address: IPv4Address | IPv6Address) -> IPv4Address | IPv6Address:
     return address.ipv4_mapped or address.sixtofour or (address.teredo[1] if address.teredo else address)
 
 
-def _is_loopback(address: IPv4Address | IPv6Address) -> bool:
+def _is_literal(host: str, address: Address) -> bool:
+    """Whether the host is written as this address."""
+    try:
+        return ip_address(host) == address
+    except ValueError:
+        return False
+
+
+def _within(address: Address, networks: Sequence[Network], *, exactly: bool = False) -> bool:
+    return any(address in each for each in networks if not exactly or each.num_addresses == 1)
+
+
+def _is_loopback(address: Address) -> bool:
     mapped = getattr(address, "ipv4_mapped", None) or address
     return bool(mapped.is_loopback)
 
 
-def _is_public(address: IPv4Address | IPv6Address) -> bool:
-    meant = _meant(address)
+def _is_special(meant: Address) -> bool:
+    """Whether it is no address of a host in a network, or one that must not be reached by mistake."""
+    odd = meant.is_loopback or meant.is_link_local or meant.is_multicast or meant.is_unspecified or meant.is_reserved
+    return odd or meant in _THIS_HOST
+
+
+def _is_public(meant: Address) -> bool:
     if isinstance(meant, IPv6Address) and meant.is_site_local:  # deprecated, and still private where it is used
         return False
-    return meant.is_global and not (meant.is_multicast or meant.is_reserved or meant.is_unspecified)
+    return meant.is_global

@@ -19,6 +19,7 @@ from sequence_planner.identity.tokens import is_id, new_id
 from sequence_planner.mes import events
 from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.refusal import OrderRefused
+from sequence_planner.mes.times import iso
 from sequence_planner.mes.webhooks.sealing import Seal
 from sequence_planner.mes.webhooks.signing import new_secret
 from sequence_planner.mes.webhooks.tables import WEBHOOK_DELIVERIES, WEBHOOKS
@@ -40,14 +41,17 @@ class Webhook(BaseModel):
     url: str
     kinds: tuple[EventKind, ...]
     created: float
+    created_at = iso("created")
     created_by: str
     position: int
     delivered: int
     last_delivered: float | None
+    last_delivered_at = iso("last_delivered", optional=True)
     waiting: int
     given_up: int
     failures: int
     held_until: float
+    held_until_at = iso("held_until")
     trouble: str | None
 
 

@@ -53,6 +53,9 @@ class DiscretiseStage:
         if name is None:
             return
         region = name if isinstance(name, str) and name in self.regions.names else None
+        if region is None and name != self.otherwise:
+            what = f"it is neither among the values of `{self.kind}` nor its `otherwise`"
+            raise NotInvertibleError(f"no number means {shown(name)} for `{self.variable}`: {what}")
         for numbers in self._tried(region, numbers_of(values.get(self.field.text), self.regions.axes)):
             if numbers is not None and self.regions.find(fitting := _of_type(numbers, self.field_type)) == region:
                 values[self.field.text] = _as_field(fitting, self.field_type)

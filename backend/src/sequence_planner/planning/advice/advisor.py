@@ -1,4 +1,4 @@
-"""The restart advisor: proven ways back to work, those of least effort first."""
+"""The restart advisor: proven ways back to work, what is done before what is only said."""
 
 from __future__ import annotations
 
@@ -128,9 +128,9 @@ class Advisor:
         self, consultation: Consultation, offers: list[Offer], here: Situation, budget: Budget, began: float
     ) -> Advice:
         reasons = None
-        if not offers and self._explain is not None and not budget.spent:
+        if all(offer.only_if_checked for offer in offers) and self._explain is not None and not budget.spent:
             reasons = self._explain(here.production(), budget)
-        ranked = tuple(sorted(offers, key=lambda offer: offer.effort.cost))
+        ranked = tuple(sorted(offers, key=lambda offer: offer.rank))
         return Advice(ranked, reasons, not consultation.undecided, time.monotonic() - began)
 
     def _situation(self, request: AdviceRequest | ErrandRequest) -> Situation:

@@ -57,7 +57,7 @@ class Consultation:
         self.helped = False  # by an offer that reaches all goals, and does more than say so
         self.here = here
         self.prover = station.prover
-        self.making = Making(station.prover, here, tuple(goal.name for goal in violated))
+        self.making = Making(station.prover, here, violated)
         self._violated = violated
         self.budget = budget
         self._ways = station.ways

@@ -3,13 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from itertools import pairwise
 
-from sequence_planner.automaton.state_set import StateSet
-from sequence_planner.automaton.structure import Ability, Automaton, State, target
+from sequence_planner.automaton.structure import Ability, target
 from sequence_planner.automaton.tick import start_guard_holds, writes
 from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.syntax import TRUE, Expression, conjunction
+from sequence_planner.expressions.syntax import TRUE, Expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.advice.conjoining import all_equal
@@ -31,7 +29,8 @@ Find = Callable[[Task], Finding]
 class Errand(Immutable):
     """`ticks` of restart mode that reach `goal` and walk as `walk` says, to the situation `end`.
 
-    `rest` is a plan from there, if it is one.
+    One `into_safe` begins outside the safe states, and has not come to its end before it is inside, whatever else it is
+    for. `rest` is a plan from there, if it is one.
     """
 
     ticks: tuple[PlanTick, ...]
@@ -39,6 +38,7 @@ class Errand(Immutable):
     walk: Walk
     end: Situation
     rest: Plan | None = None
+    into_safe: bool = False
 
 
 class Errands:
@@ -73,13 +73,14 @@ class Errands:
         state = walk.stops[cut].state
         outputs = {target(action) for ability in abilities for action in ability.start_actions}
         written = {name: value for name in sorted(outputs) if (value := state[name]) is not None}
-        errand = self.to(here, self._done(abilities, written))
+        done = self._done(abilities, written)
+        errand = self.to(here, done)
         if errand is not None:
             yield errand
         # What is done for that alone may end elsewhere; the beginning of the plan itself does not.
         ticks = (*plan.ticks[:cut], replace(plan.ticks[cut], starts=()))
         rest = (replace(plan.ticks[cut], effects=()), *plan.ticks[cut + 1 :])
-        whole = self._errand(here, ticks, self._reached(here, ticks))
+        whole = self._errand(here, ticks, done)
         if whole is not None and (errand is None or whole.ticks != errand.ticks):
             yield replace(whole, rest=replace(plan, ticks=rest))
 
@@ -104,21 +105,16 @@ class Errands:
         # The goal of an errand is looked at after step 3.
         ticks = (*way.ticks, PlanTick((), ())) if way.ticks[-1].starts else way.ticks
         errand = self._errand(here, ticks, TRUE)
-        return None if errand is None else self._guarded(here, errand)
+        return None if errand is None else replace(errand, into_safe=True)
 
     def joined(self, here: Situation, first: Errand, second: Errand) -> Errand | None:
         """One errand that does one after the other."""
         both = self._errand(here, (*first.ticks, *second.ticks), second.goal)
-        return None if both is None else replace(self._guarded(here, both), rest=second.rest)
+        return None if both is None else replace(both, rest=second.rest, into_safe=first.into_safe)
 
     def _early(self, task: Task, plan: Plan) -> Plan:
         """Somebody watches an errand, and waits for it."""
         return self._prover.tightened(task, plan, self._budget.part(_TIGHTENING)) if plan.starts else plan
-
-    def _guarded(self, here: Situation, errand: Errand) -> Errand:
-        """A way back has not come to its end before it is in the safe states, whatever else it is for."""
-        inside = implicant(self._automaton, self._prover.supervisor.safe, here.state, errand.end.state)
-        return replace(errand, goal=inside if errand.goal == TRUE else conjunction(errand.goal, inside))
 
     def _errand(self, here: Situation, ticks: tuple[PlanTick, ...], goal: Expression) -> Errand | None:
         if not ticks:
@@ -136,16 +132,6 @@ class Errands:
         running = (ability.flag("executing") for ability in abilities)
         return self._all_of([*written.items(), *((name, False) for name in running)])
 
-    def _reached(self, here: Situation, ticks: Sequence[PlanTick]) -> Expression:
-        """All that changes on the way is as it is at its end."""
-        walk = self._walk(here, ticks)
-        if walk is None:
-            return TRUE
-        states = (here.state, *(stop.state for stop in walk.stops))
-        changed = [n for n in self._automaton.variables if any(a[n] != b[n] for a, b in pairwise(states))]
-        known = [(name, value) for name in changed if (value := walk.end.state[name]) is not None]
-        return self._all_of(known)
-
     def _all_of(self, values: Iterable[tuple[str, Value]]) -> Expression:
         return all_equal(self._automaton, values)
 
@@ -155,16 +141,6 @@ class Errands:
         stops = range(last, len(walk.stops))
         done = (number for number in stops if not any(walk.stops[number].state[flag] for flag in flags))
         return next(done, len(walk.stops) - 1)
-
-
-def implicant(automaton: Automaton, safe: StateSet, before: State, state: State) -> Expression:
-    """Few values of `state` that put every state that has them into the set; rather those that `before` had not."""
-    kept: dict[str, Value | None] = {name: state[name] for name in safe.names}
-    for name in sorted(safe.names, key=lambda name: before[name] != state[name]):
-        without = {**kept, name: None}
-        if safe.includes(without):
-            kept = without
-    return all_equal(automaton, [(name, value) for name, value in kept.items() if value is not None])
 
 
 def _absent(here: Situation, ability: Ability) -> bool:

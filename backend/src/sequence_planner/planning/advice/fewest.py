@@ -44,7 +44,7 @@ def _way(acts: Acts) -> _Way:
 class FewestActs:
     """Looks for offers by acts, in the order of their number. Corrections alone, acts at devices alone and both
     together, each with and without a resource that comes back, are looked for until some are found; those that only
-    say what the goals ask for do not count.
+    say that work is done do not count.
     """
 
     def __init__(
@@ -130,7 +130,7 @@ class FewestActs:
     def _offer(self, each: _Changed, plan: Plan | None) -> Offer:
         self._found.append(frozenset(each.acts))
         offer = self._consultation.making.offer(each.kind, each.after, plan, each.acts)
-        if not offer.effort.restates:
+        if not offer.only_if_checked:
             self._consultation.helped = True
             self._number[each.way] += 1
             if self._number[each.way] >= self._most:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.structure import Kind, State
+from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.evaluation import holds
+from sequence_planner.planning.advice.claims import claimed
 from sequence_planner.planning.advice.errands import Errand
 from sequence_planner.planning.advice.offer import (
     Change,
@@ -19,17 +21,19 @@ from sequence_planner.planning.advice.options import Act, ActKind
 from sequence_planner.planning.advice.proving import Prover
 from sequence_planner.planning.advice.situation import Situation
 from sequence_planner.planning.advice.stalling import changes_something
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plan import Goal, Plan, PlanTick
 
 
 class Making:
     """Makes offers for a station that is in the situation `here`; `violated` goals are reached only after a reset."""
 
-    def __init__(self, prover: Prover, here: Situation, violated: tuple[str, ...] = ()) -> None:
+    def __init__(self, prover: Prover, here: Situation, violated: Goals = ()) -> None:
         self._prover = prover
         self._automaton = prover.automaton
         self._here = here
-        self._violated = violated
+        self._violated = tuple(goal.name for goal in violated)
+        self._goals = (*here.goals, *violated)
 
     def offer(
         self,
@@ -67,7 +71,6 @@ class Making:
             left_out=len(given_up),
             breaks=len(breaks),
             unsupervised=unsupervised,
-            restates=self.restates(end, corrections) if errand is None else False,
         )
         return Offer(
             kind=kind,
@@ -88,15 +91,21 @@ class Making:
             then=then,
             goals=() if then is None else tuple(name for name in reached if name not in given_up),
             left_out=tuple(given_up),
+            claims=self.claims(corrections),
+            into_safe=errand is not None and errand.into_safe,
         )
 
     def restarts(self, ticks: Iterable[PlanTick]) -> bool:
         """Whether restart abilities start."""
         return any(self._automaton.abilities[name].restart for tick in ticks for name in tick.starts)
 
-    def restates(self, end: Situation, corrections: Iterable[Change]) -> bool:
-        """Whether the corrections say no more than what the goals ask for."""
-        return bool(self._here.goals) and not end.goals and any(True for _ in corrections)
+    def claims(self, corrections: Iterable[Change]) -> tuple[str, ...]:
+        """The goals that the corrections alone bring nearer."""
+        values = {change.name: change.new for change in corrections}
+        if not values:
+            return ()
+        after = synchronise(self._automaton, {**self._here.state, **values})
+        return claimed(self._automaton, self._goals, self._here.state, after)
 
     def at_rest(self, end: Situation) -> bool:
         """Whether it is a safe rest state in which no device has still to follow what it was told."""

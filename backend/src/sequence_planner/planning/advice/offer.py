@@ -18,7 +18,6 @@ WEIGHTS = {
     "physical": 60.0,  # something that a person does at a device
     "returns": 90.0,  # a resource that a person brings back, or an ability put back into service
     "starts": 2.0,  # a start in restart mode, which a person has confirmed and watches
-    "restates": 120.0,  # estimates that say no more than what the goals ask for: seldom the truth
     "unsupervised": 60.0,  # starts outside the safe states
     "breaks": 300.0,  # a specification that is violated on the way
     "left_out": 600.0,  # a goal that is given up
@@ -57,7 +56,6 @@ class Effort(Immutable):
     left_out: int = 0
     breaks: int = 0
     unsupervised: bool = False
-    restates: bool = False
 
     @property
     def cost(self) -> float:
@@ -74,7 +72,9 @@ class Offer(Immutable):
     safe states if it is `unsupervised`, until its `goal` holds; `end` is the state then. From there `then` is a plan
     without restart abilities for `goals`; it is None only where that was not proven for an errand that was asked for.
     `breaks` are specifications that the errand violates on its way although they were not violated before; `at_rest`
-    says that it ends in one of the station's safe rest states, with devices that are where they were told to be.
+    says that it ends in one of the station's safe rest states, with devices that are where they were told to be. The
+    corrections alone would have the goals that it `claims` reached, or nearer: that is for somebody to say who has
+    checked it. One `into_safe` begins outside the safe states, and is not at its end before it is inside.
     """
 
     kind: OfferKind
@@ -95,10 +95,27 @@ class Offer(Immutable):
     then: Plan | None = None
     goals: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
+    claims: tuple[str, ...] = ()
+    into_safe: bool = False
+
+    @property
+    def only_if_checked(self) -> bool:
+        """Whether it says that work is done which nobody has done."""
+        return bool(self.claims)
+
+    @property
+    def rank(self) -> tuple[bool, int, float]:
+        """What comes first is least: what devices or people do before what is only said, then what takes less.
+
+        What says that work is done comes last, whatever it takes.
+        """
+        acts = bool(self.errand or self.physical or self.online or self.in_service)
+        said = 0 if not self.corrections else 1 if acts else 2
+        return self.only_if_checked, said, self.effort.cost
 
 
 class Advice(Immutable):
-    """Offers, that of least effort first; `reasons` where there is none.
+    """Offers, in the order of their rank; `reasons` where there is none but what somebody has to have checked.
 
     Where it is `complete`, nothing of what is looked for was left undecided for want of time.
     """

@@ -12,7 +12,7 @@ from sequence_planner.automaton.structure import Automaton, Effect, Kind, State,
 from sequence_planner.automaton.tick import effect_writes, writes
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import Constant, Variable
-from sequence_planner.expressions.types import Value
+from sequence_planner.expressions.types import Value, contains
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.advice.situation import Situation
 
@@ -146,9 +146,14 @@ class Options:
         """What an effect on nothing but `names`, or a hand, may have brought about while nobody heard of it."""
         for effect, changed in self._effects:
             written = writes(effect.actions, state) if changed <= names else None
-            if written is not None and any(state[name] != value for name, value in written.items()):
+            if written is None or not all(self._can_be(name, value) for name, value in written.items()):
+                continue  # its guard, of which nobody knows whether it held, would have excluded that
+            if any(state[name] != value for name, value in written.items()):
                 follows = any(isinstance(action.value, Variable) for action in effect.actions)
                 yield written, _EXPECTED if follows else _CAN_BE
+
+    def _can_be(self, name: str, value: Value) -> bool:
+        return contains(self._automaton.variables[name].type, value)
 
     def _is_of(self, name: str, resource: str) -> bool:
         return self._automaton.variables[name].resource == resource

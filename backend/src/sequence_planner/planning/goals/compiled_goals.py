@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.compiled.functions import Compiler, Predicate, Truth
+from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.syntax import TRUE, Expression
 from sequence_planner.immutable import Immutable
@@ -32,10 +33,14 @@ class _CompiledGoal(Immutable):
 
 
 class CompiledGoals:
-    """Compiles each goal when it is first met. A goal keeps its number while predicate and formula stay the same."""
+    """Compiles each goal when it is first met. A goal keeps its number while predicate and formula stay the same.
 
-    def __init__(self, names: Iterable[str]) -> None:
+    No goal is reached but in a state `within` that set.
+    """
+
+    def __init__(self, names: Iterable[str], within: StateSet | None = None) -> None:
         self._compiler = Compiler(names)
+        self._within = within
         self._compiled: list[_CompiledGoal] = []
         self._numbers: dict[str, int] = {}
 
@@ -86,8 +91,12 @@ class CompiledGoals:
                 return number
         self._numbers[goal.name] = len(self._compiled)
         formula = None if goal.local == TRUE else self._formula(goal.local)
-        self._compiled.append(_CompiledGoal(goal, self._compiler.predicates([goal.predicate])[0], formula))
+        self._compiled.append(_CompiledGoal(goal, self._predicate(goal.predicate), formula))
         return self._numbers[goal.name]
+
+    def _predicate(self, written: Expression) -> Predicate:
+        (holds,), within = self._compiler.predicates([written]), self._within
+        return holds if within is None else lambda state: holds(state) and within.includes(state)
 
     def _formula(self, local: Expression) -> _Formula:
         monitor = monitor_of(local)

@@ -6,10 +6,11 @@ followed from the one before. So a look ahead mostly ends after a few ticks, at 
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterable, Sequence
 
 from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
-from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import State
 from sequence_planner.planning.goals.compiled_goals import CompiledGoals, Progress
 from sequence_planner.planning.plan import Circumstances, Goal, PlanTick, goals_of
@@ -25,16 +26,20 @@ _Key = tuple[Values, Values, Progress, tuple[str, ...], frozenset[str]]
 
 
 class Lookahead:
-    """Looks ahead of runs of one automaton under one supervisor. Runs that are handed over stay as they are."""
+    """Looks ahead of runs of one automaton under one supervisor. Runs that are handed over stay as they are.
 
-    def __init__(self, compiled: CompiledTick, supervisor: Supervisor) -> None:
+    With a set `within`, goals are reached in its states alone.
+    """
+
+    def __init__(self, compiled: CompiledTick, supervisor: Supervisor, within: StateSet | None = None) -> None:
         self._compiled = compiled
         self._supervisor = supervisor
-        self._goals = CompiledGoals(compiled.names)
+        self._goals = CompiledGoals(compiled.names, within)
         self._goals.progress(goals_of(compiled.automaton, compiled.automaton.operations))  # not first in some tick
         self._most = max(_REMEMBERED // max(len(compiled.names), 1), LOOKAHEAD)
         self._known: dict[_Key, int] = {}  # how many ticks the goals take from there, eagerly; or that they never come
         self._exact: dict[tuple[_Key, tuple[PlanTick, ...]], bool] = {}
+        self._written: dict[tuple[_Key, tuple[PlanTick, ...]], bool] = {}
         self.face(Circumstances())
 
     def face(self, circumstances: Circumstances) -> None:
@@ -42,6 +47,7 @@ class Lookahead:
         self._moments = Moments(self._compiled, self._supervisor, self._goals, circumstances)
         self._known.clear()
         self._exact.clear()
+        self._written.clear()
 
     def length(self, run: CompiledRun, published: State, goals: Iterable[Goal], order: Sequence[str]) -> int | None:
         """In how many ticks `order`, each start taken now or later, reaches `goals` when all that can happen happens.
@@ -100,6 +106,38 @@ class Lookahead:
         if self._moments.everything(before):
             return False
         return self.exactly(after, published, goals, starts_now(order, ticks), ticks)
+
+    def as_written(
+        self, run: CompiledRun, published: State, goals: Iterable[Goal], order: Sequence[str], ticks: Sequence[PlanTick]
+    ) -> bool:
+        """Whether `order` reaches `goals` when what `ticks` have happens in its turn, unless it has happened already.
+
+        A start that has to wait comes as soon as it may. So a plan that somebody has seen and taken is carried out as
+        it was written, whatever else happens meanwhile: by people who take their time, and by devices beside it.
+        """
+        present = self._moments.present(run, published, goals)
+        key = (_key(present, tuple(order)), tuple(ticks))
+        if key not in self._written:
+            if len(self._written) > self._most:
+                self._written.clear()
+            self._written[key] = self._comes_about(present.forked(), order, ticks)
+        return self._written[key]
+
+    def _comes_about(self, moment: Moment, order: Sequence[str], ticks: Sequence[PlanTick]) -> bool:
+        pending, later = list(starts_now(order, ticks)), deque(ticks)
+        while moment.progress:
+            while pending and (after := self._moments.after_start(moment, pending[0])) is not None:
+                moment = after
+                del pending[0]
+            if not later:
+                return not moment.progress
+            tick = later.popleft()
+            settled = self._moments.after_tick(moment, self._moments.possible(moment.run, tick.effects))
+            if settled is None:
+                return False
+            moment = settled
+            pending += tick.starts
+        return True
 
     def _search(self, present: Moment, order: tuple[str, ...]) -> int:
         """Depth-first over starting the first of the order now, or waiting a tick.

@@ -98,6 +98,15 @@ class Moments:
                 together |= written
         return together
 
+    def possible(self, run: CompiledRun, effects: Iterable[str]) -> Writes:
+        """What those of `effects` write that can happen now, earlier ones first."""
+        together: Writes = {}
+        for name in effects:
+            written = None if name in self._absent else run.effect(name)
+            if written and all(together.get(variable, value) == value for variable, value in written.items()):
+                together |= written
+        return together
+
     def together(self, run: CompiledRun, effects: Iterable[str]) -> Writes | None:
         """What all of `effects` write now, or None if one cannot happen or two are incompatible."""
         together: Writes = {}

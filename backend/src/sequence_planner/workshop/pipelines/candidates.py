@@ -20,6 +20,8 @@ from sequence_planner.pipelines.stages.values import domain, is_numeric, is_text
 DEEPEST = 3  # messages within messages
 MOST_SUBJECTS = 12  # fields that are tried for a kind of stage
 MOST_POINTS = 40  # values that are written out
+# Kinds that give a variable that is there, and those that give a field of a message.
+GIVING_VARIABLES, GIVING_FIELDS = ("rename", "map"), ("rename", "constant", "undiscretise", "map")
 
 
 @dataclass(frozen=True)
@@ -79,16 +81,20 @@ def _leaves(fields: RecordType, above: str = "", depth: int = 0) -> Iterator[tup
 
 def candidates(kind: str, spot: Spot) -> list[Candidate]:
     """Stages of a kind that could stand there, the likeliest first; where the record suggests none, one about any
-    field, so that the builder can say why not. There is none of `python` without a function that could be called.
+    field, so that the builder can say why not. There is none of `python` without a function that could be called, and
+    none that gives something where nothing is left to be given.
     """
     found = list(_MAKERS[kind](spot))
-    return found or ([] if kind == "python" else list(_anything(kind, spot)))
+    giving = GIVING_VARIABLES if spot.is_incoming else GIVING_FIELDS
+    if found or kind == "python" or (kind in giving and not spot.open):
+        return found
+    return list(_anything(kind, spot))
 
 
 def _anything(kind: str, spot: Spot) -> Iterator[Candidate]:
     """A stage of a kind about any field, where no field suggests one."""
     name = next((path for path, _ in spot.leaves), "field")
-    target = next(iter(spot.open), "x")
+    target = next(iter(spot.open), "")
     forms: dict[str, object] = {
         "rename": {name: target} if spot.is_incoming else {target: name},
         "constant": {target: 0},
@@ -291,7 +297,7 @@ def _override(spot: Spot) -> Iterator[Candidate]:
         bounds: dict[str, object] | None = None
         if isinstance(type_, RealType):
             bounds = {"between": [0.0, 1.0]}
-        elif values := _values(type_):
+        elif not isinstance(type_, ListType) and (values := _values(type_)):
             bounds = {"in": values[:MOST_POINTS]}
         if bounds is not None:
             yield Candidate({"override": {"name": spot.name(path), "fields": {path: bounds}, "expires": 60}})

@@ -57,24 +57,23 @@ def _spot(graph: Graph, view: DraftPipelineView, fields: RecordType, wanted: Map
     own = f"{view.resource}."
     names = frozenset(name.removeprefix(own) for name in sketch.automaton.variables if name.startswith(own))
     document = sketch.written.resources[view.resource]
+    enumerations = {str(name): tuple(map(str, values)) for name, values in sketch.station.station.enumerations.items()}
+    values = frozenset(value for each in enumerations.values() for value in each)
     if view.role == "outgoing":
         done = {end.field for end in view.ends}
         still = dict(sorted(wanted.items(), key=lambda each: each[0] in done))
-        taken = names
+        taken = names | values
     else:
         fed = {name.removeprefix(own) for name in sketch.built.pipelines.feeds if name.startswith(own)}
         still = {name: type_ for name, type_ in wanted.items() if name not in fed}
-        taken = names | frozenset(map(str, document.abilities)) | KEYWORDS
-    enumerations = {str(name): tuple(map(str, values)) for name, values in sketch.station.station.enumerations.items()}
+        taken = names | values | frozenset(map(str, document.abilities)) | KEYWORDS
     return Spot(view.role != "outgoing", fields, wanted, still, taken, enumerations, sketch.station.folder)
 
 
 def _offer(kind: str, spot: Spot, index: int, view: DraftPipelineView, trying: Trying) -> StageOfferView:
     reason: str | None = None
     if not (tried := candidates(kind, spot)[:MOST_TRIED]):
-        reason = (
-            f"no file in the folder `{FOLDER}` on the server has a function whose parameters are fields of this record"
-        )
+        reason = _nothing_left(kind, spot)
     for candidate in tried:
         why = trying.with_stage(index, candidate.stage, candidate.declares)
         if why is None:
@@ -82,6 +81,17 @@ def _offer(kind: str, spot: Spot, index: int, view: DraftPipelineView, trying: T
             return StageOfferView(kind=kind, fits=True, reason=None, stage=_json(candidate.stage), edits=edits)
         reason = reason or why
     return StageOfferView(kind=kind, fits=False, reason=reason, stage=None, edits=[])
+
+
+def _nothing_left(kind: str, spot: Spot) -> str:
+    """Why no stage of a kind can even be tried."""
+    if kind == "python":
+        return (
+            f"no file in the folder `{FOLDER}` on the server has a function whose parameters are fields of this record"
+        )
+    if spot.is_incoming:
+        return "every variable of the resource is given already: declare one first that this can give"
+    return "every field of the message is given already"
 
 
 def _edits(view: DraftPipelineView, index: int, candidate: Candidate) -> list[EntryEdit]:

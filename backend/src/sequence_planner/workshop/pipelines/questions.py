@@ -83,11 +83,13 @@ PipelineAnswer = DraftPipelinesView | FitsView | PreviewView | RunsView | Record
 @dataclass(frozen=True)
 class Asked:
     """A question about the draft after change `number`: `changed` are files that are others since the last one, and
-    `running` such of the model that runs; none is a file that is gone. `stages` is the model with the Python stages.
+    `running` such of the model that runs; none is a file that is gone. `stages` is the model with the Python stages. A
+    question that is not read yet is a `Preview`. Unless it is `as_json` the answer stays a view.
     """
 
     number: int
     changed: Changed
     running: Changed
     stages: Path
-    question: PipelineQuestion
+    question: PipelineQuestion | bytes
+    as_json: bool

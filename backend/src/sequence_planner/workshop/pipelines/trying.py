@@ -17,6 +17,7 @@ from sequence_planner.model.flow_documents import FlowDocument
 from sequence_planner.model.loading import Station
 from sequence_planner.model.source import SourceText
 from sequence_planner.model.stage_documents import StageDocument
+from sequence_planner.model.validation import complaint
 from sequence_planner.pipelines.building import build_what_is_sound
 from sequence_planner.pipelines.inference import variables_inferred
 from sequence_planner.workshop.pipelines.graph import Graph
@@ -60,7 +61,7 @@ class Trying:
         try:
             document = StageDocument.model_validate(_placed(stage))
         except ValidationError as error:
-            return "; ".join(each["msg"].removeprefix("Value error, ") for each in error.errors())
+            return complaint(error, StageDocument)
         return self._why_not(self._inserted(index, document), declares)
 
     def with_sources(self, source: object) -> str | None:
@@ -71,7 +72,7 @@ class Trying:
         try:
             read = FlowDocument.model_validate({_text("from"): _placed(source)})
         except ValidationError as error:
-            return "; ".join(each["msg"].removeprefix("Value error, ") for each in error.errors())
+            return complaint(error, FlowDocument)
         flows[key] = flows[key].model_copy(update={"source": read.source})
         return self._why_not(self.document.model_copy(update={"flows": flows}), {})
 

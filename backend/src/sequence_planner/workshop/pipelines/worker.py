@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import contextlib
-from functools import cached_property
+from functools import cached_property, partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 
 from sequence_planner.collection import collection_put_off
-from sequence_planner.model.paths import EditError
-from sequence_planner.workshop.asking import Changed
+from sequence_planner.workshop.asking import Changed, answered
+from sequence_planner.workshop.bodies import read_body
 from sequence_planner.workshop.files import STAGES
 from sequence_planner.workshop.pipelines.fitting import fits
 from sequence_planner.workshop.pipelines.graph import Graph
@@ -67,23 +67,29 @@ class Pipelines:
         self._draft = Version(folder / "draft")
         self._running = Version(folder / "running")
 
+    def told(self, asked: Asked) -> PipelineAnswer | tuple[PipelineAnswer]:
+        """What is answered, in brackets where it is to stay a view. Raises as `answer` does."""
+        found = self.answer(asked)
+        return found if asked.as_json else (found,)
+
     def answer(self, asked: Asked) -> PipelineAnswer:
-        """What is answered. Raises `EditError` for what is not there."""
+        """What is answered. Raises `EditError` for what is not there, and `BodyError`."""
         self._draft.take(asked.changed, asked.stages)
         self._running.take(asked.running, asked.stages)
         graph, number = self._draft.graph, asked.number
-        match asked.question:
+        question = read_body(Preview, asked.question) if isinstance(asked.question, bytes) else asked.question
+        match question:
             case Everything():
                 return self._everything(number)
-            case Fitting() as question:
+            case Fitting():
                 return fits(number, graph, question)
-            case Preview() as question:
+            case Preview():
                 return preview(number, graph, self._draft.files, self._draft.reader, question)
-            case Examples() as question:
+            case Examples():
                 return run_examples(number, graph, question)
-            case Trial() as question:
+            case Trial():
                 return run_trial(number, graph, question)
-            case Recording() as question:
+            case Recording():
                 return recorded(graph, question)
 
     def _everything(self, number: int) -> DraftPipelinesView:
@@ -100,13 +106,9 @@ class Pipelines:
 
 
 def answering(connection: Connection, folder: Path) -> None:
-    """Answer questions until nobody is there any more; a text says why there is no answer."""
+    """Answer questions until nobody is there any more."""
     pipelines = Pipelines(folder)
     with contextlib.suppress(EOFError, OSError):
         while True:
             asked: Asked = connection.recv()
-            try:
-                answer: PipelineAnswer | str = pipelines.answer(asked)
-            except EditError as error:
-                answer = str(error)
-            connection.send(answer)
+            connection.send(answered(partial(pipelines.told, asked)))

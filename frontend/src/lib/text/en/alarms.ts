@@ -6,13 +6,14 @@ export const alarms = {
 	priorityOf: { high: 'High priority', medium: 'Medium priority', low: 'Low priority' },
 	state: {
 		unacknowledged: 'not acknowledged',
-		returned: 'over, not acknowledged',
+		returned: 'not acknowledged',
 		acknowledged: 'acknowledged',
 		shelved: 'shelved',
 		'out-of-service': 'out of service'
 	},
 	lasts: (duration: string): string => `for ${duration}`,
-	lasted: (duration: string, end: string): string => `lasted ${duration}, until ${end}`,
+	lasted: (duration: string): string => `lasted ${duration}`,
+	overSince: (when: string): string => `Over since ${when}`,
 	since: (when: string): string => `since ${when}`,
 	came: (times: number): string => `came ${times} times`,
 	by: (name: string): string => `by ${name}`,

@@ -74,7 +74,8 @@ export const check = {
 		'forbids-nothing': 'A specification that forbids nothing',
 		'empty-local-specification': 'A formula that reads no variable',
 		'not-finished': 'Not computed in time',
-		'too-many-states': 'Too many states to know'
+		'too-many-states': 'Too many states to know',
+		'more': 'More findings than are shown'
 	} as Readonly<Record<string, string>>,
 
 	trace: {

@@ -17,6 +17,9 @@ export const common = {
 	notLive: 'Not live: wait until the station is heard again.',
 	more: (n: number): string => `${n} more`,
 	language: 'Language',
+	theme: (theme: string): string => `Theme: ${theme}`,
+	themes: { auto: 'auto', light: 'light', dark: 'dark' },
+	themeMeans: 'Theme: auto, light or dark',
 	/** How spans of time are said; what is before `justNow` are units. */
 	time: {
 		ms: (n: number): string => `${n} ms`,

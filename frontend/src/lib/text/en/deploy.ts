@@ -151,12 +151,13 @@ export const deploy = {
 			saved: 'The draft is saved as a revision.',
 			other: 'It is another one than what runs.',
 			checked: 'It is checked, without errors and with a supervisor.',
-			standing: 'The station is paused or held, and nothing is carried out.',
+			standing: 'Production stands: the station is paused or held, and no plan of a person is on its way.',
 			control: 'You have control.',
-			fits: 'The station’s state is safe in the new model, and what runs is the same there.'
+			fits: 'The station’s state is safe in the new model, and what still runs is the same there.'
 		},
 		differs: 'See what differs',
-		errand: 'Something is carried out: stop it on Restart, or wait until it has ended.',
+		stillRuns: 'What was begun still runs and may finish:',
+		errand: 'A plan of a person is on its way: stop it on Restart, or wait until it has ended.',
 		toRestart: 'To Restart',
 		fit: {
 			later: 'It is looked at once the draft is checked.',
@@ -164,7 +165,7 @@ export const deploy = {
 			again: 'Look again',
 			moved: 'The station or the draft has moved since.',
 			violated: 'In its present state it would violate',
-			underWay: 'This runs now, and is another one there. Wait until it has finished:',
+			underWay: 'Of what still runs this is another one in the new model. Wait until it has finished:',
 			noRest: 'From its present state nothing could come to rest there.',
 			ways: 'Ways into the safe states:',
 			noWay: 'No way into the safe states is known. Bring the devices to another state, or change the model.',
@@ -180,7 +181,12 @@ export const deploy = {
 		to: (before: string, after: string): string => `${before} → ${after}`,
 		begins: (value: string): string => `begins as ${value}`,
 		was: (value: string): string => `was ${value}`,
-		means: 'The controller begins anew with this model. What was believed comes back as far as it fits, nothing is sent to devices, and a person decides on outputs and starts production.',
+		means: 'The controller restarts with this model. What was believed comes back as far as it fits, nothing is sent to devices, and a person starts production. You keep control. If the model cannot be started, the one before comes back.',
+		simulation: {
+			title: 'Emulated devices',
+			keep: 'They go on as they stand.',
+			reset: 'Reset the simulation: devices, outputs and estimates begin as the model says.'
+		},
 		sure: (name: string): string => `I want “${name}” to take the place of what runs.`,
 		confirm: 'Confirm that you want it.',
 		missingStill: (n: number): string => `${count(n, 'thing is', 'things are')} missing.`,
@@ -197,8 +203,10 @@ export const deploy = {
 			runs: 'The station runs it'
 		},
 		is: { done: 'done', now: 'now', later: 'to come' },
+		titleUndone: (name: string): string => `“${name}” could not be started`,
 		late: 'It takes longer than usual. What the server prints says why.',
-		next: 'Nothing is sent to devices yet: on Operate a person decides on outputs and starts production.',
+		next: 'Nothing is sent to devices yet: start production on Operate.',
+		undone: 'The model before is back, and the draft is as you deployed it: change it and deploy it again, or start production as before.',
 		close: 'Put away'
 	}
 };

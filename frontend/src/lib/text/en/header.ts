@@ -52,12 +52,14 @@ export const header = {
 	pause: 'Pause',
 	hold: 'Hold',
 	holdMeans: 'Pause, and call off what runs',
+	notRecorded: 'Stopped. The journal does not have it yet; the station keeps it until then.',
 	goOn: 'Continue',
 	start: 'Start production',
 	takeControlFirst: 'Take control first',
 	lookOn: (role: string): string => `You look on as ${role}; an operator acts.`,
 	alarms: (n: number): string => (n === 1 ? '1 alarm' : `${n} alarms`),
 	noAlarms: 'no alarms',
+	alarmsOver: (n: number): string => `${n} over, not acknowledged`,
 	notAcknowledged: (n: number): string => `${n} not acknowledged`,
 	liveAgo: (age: string): string => `live ${age} ago`,
 	notLive: 'not live',
@@ -93,8 +95,5 @@ export const header = {
 		paused: 'nothing is started in this mode',
 		production: 'nothing is started before production is'
 	},
-	theme: (theme: string): string => `Theme: ${theme}`,
-	themes: { auto: 'auto', light: 'light', dark: 'dark' },
-	themeMeans: 'Theme: auto, light or dark',
 	release: 'Release'
 };

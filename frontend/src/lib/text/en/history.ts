@@ -56,7 +56,7 @@ export const history = {
 			mode: 'modes',
 			plan: 'plans',
 			work: 'starts and ends',
-			hand: 'corrections and forces',
+			hand: 'corrections, forces and what was moved by hand',
 			alarm: 'alarms',
 			controller: 'starts of the controller',
 			every: 'every record'
@@ -94,6 +94,13 @@ export const history = {
 		confirmed: 'Confirmed',
 		forced: 'Forced',
 		released: 'Force released',
+		moved: 'Moved by hand, or by nothing the model knows',
+		movedOn: 'The station went on after it',
+		wentOn: {
+			executes: (ability: string): string => `“${ability}” is under way again`,
+			finished: (ability: string): string => `“${ability}” counts as finished`,
+			started: (ability: string): string => `“${ability}” was started`
+		} as Readonly<Record<string, (ability: string) => string>>,
 		errand: 'Plan of a person taken',
 		errandStopped: 'Plan of a person stopped',
 		byOrder: 'Work by order',

@@ -13,6 +13,7 @@ export const operate = {
 		noTask: 'Nothing to do',
 		noTaskKnown: 'Nothing when last heard',
 		noAlarm: 'None',
+		alarmsOver: (n: number): string => `${n} over`,
 		nothing: 'Nothing',
 		more: (n: number): string => `and ${n} more`
 	},
@@ -20,6 +21,7 @@ export const operate = {
 		title: 'Plan',
 		asTable: 'as table',
 		lanes: 'Plan as lanes',
+		later: (n: number): string => `${n === 1 ? '1 step' : `${n} steps`} later than what is drawn: see the table.`,
 		steps: 'Steps of the plan',
 		timeShown: 'Time shown',
 		seconds: (n: number): string => (n < 60 ? `${n} s` : `${n / 60} min`),

@@ -38,6 +38,7 @@ export const restart = {
 		start: 'Start production.',
 		physical: 'Do what the first way back asks of a person.',
 		take: 'Take a way back.',
+		check: 'Check the product: what is left to propose only says what is true of it.',
 		leave: 'Leave restart mode: the station can go on as it is.',
 		continue: 'Continue.',
 		stuck: 'No way back is known: see why, and put right what is in the way.',
@@ -110,7 +111,7 @@ export const restart = {
 
 	ways: {
 		title: 'Ways back',
-		about: 'Each proven from the state as it was when it was asked for; the least effort first.',
+		about: 'Each proven from the state as it was when it was asked for; what devices or people do before what is only said, then the least effort first.',
 		asked: (revision: number): string => `Asked at state ${revision}.`,
 		looking: 'Looking.',
 		again: 'The station has moved since: looking again.',
@@ -124,6 +125,11 @@ export const restart = {
 		incomplete: 'There was too little time to look for everything: there may be other ways.',
 		none: 'There is no way back from this state.',
 		noneFound: 'No way back was found in the time there is; that there is none is not proven.',
+		noneToDo: 'Nothing that devices or people could do from here is known to lead back.',
+		ifChecked: 'Only if you have checked',
+		ifCheckedMeaning: 'These would say of the product that work is done. Nobody has done it as far as the station knows: take one only if you have seen that it is so.',
+		onlyIf: (claims: string): string => `Only if you have checked: ${claims}`,
+		claims: (titles: string): string => `It would count as done, or nearer to it: ${titles}.`,
 		kinds: {
 			replan: 'goes on by itself',
 			restart: 'in restart mode',
@@ -170,6 +176,8 @@ export const restart = {
 		errand: 'What is carried out',
 		nothing: 'Nothing is started: the devices do it by themselves.',
 		until: 'until',
+		safe: 'the station is back in its safe states',
+		and: 'and',
 		then: (goals: string): string => `Then, in automatic mode, for ${goals}`,
 		thenPlain: 'Then, in automatic mode',
 		unknown: 'What the station does afterwards was not looked for, or not found.',

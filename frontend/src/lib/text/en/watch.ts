@@ -11,11 +11,27 @@ export const watch = {
 	movesNext: 'Moves next:',
 	moreAfter: (n: number): string => `${n} more after this`,
 	waits: (duration: string): string => `waits ${duration}`,
+	/** Instead of what moves next, where nothing does. */
+	nothingMoves: 'Nothing moves yet. Done is recorded.',
+	/** Why nothing starts by itself. */
+	standing: {
+		preparing: 'Getting ready',
+		waiting: 'Production is not started',
+		held: 'Held: keep clear',
+		restart: 'Restart: keep clear',
+		paused: 'Paused',
+		stopped: 'Stopped: help is needed'
+	},
+	silent: (titles: string): string => `No contact: ${titles}`,
 	problem: 'Problem',
+	/** What a person says is in the way, with one touch. */
+	wrong: 'What’s wrong?',
+	wrongs: { missing: 'Part missing', damaged: 'Damaged', tool: 'Tool', other: 'Other' },
+	back: 'Back',
 	solved: 'Solved',
 	told: 'The station is told.',
 	problemOf: (name: string): string => `${name} has a problem with it`,
-	why: 'Why? (if you like)',
+	why: 'More about it (if you like)',
 	whyTitle: (task: string): string => `What keeps you from “${task}”?`,
 	whyMeans: 'It raises an alarm, so that somebody comes. Nothing is stopped by it, and the task stays.',
 	tell: 'Tell the station',

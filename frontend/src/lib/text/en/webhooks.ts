@@ -1,6 +1,6 @@
-/** Webhooks: other systems that are told what becomes of orders. */
+/** Webhooks: other systems that are told what becomes of orders and of the station. */
 export const webhooks = {
-	about: 'A webhook tells another system of each event of orders: at least once, signed, and only at hosts that the station was started with.',
+	about: 'A webhook tells another system of each event of orders and of the station: at least once, signed, and only where the list below allows it.',
 	table: 'Who is told',
 	none: 'Nobody is told.',
 	name: 'Name',
@@ -25,7 +25,15 @@ export const webhooks = {
 	removed: (name: string): string => `The webhook ${name} is deleted.`,
 	newTitle: 'A new webhook',
 	url: 'Where events are sent to',
-	urlHint: 'An address that begins with https://, at a host that the station was started with (--webhook-host).',
+	urlHint: 'An address that begins with https://, at a host or in a network of the list above.',
+	allowed: 'Where events may be sent to',
+	hosts: 'Hosts',
+	noHost: 'none',
+	networks: 'Networks of the plant',
+	noNetwork: 'none: private addresses are not sent to',
+	thisMachine: 'This machine',
+	loopback: 'where it is on the list, also without https',
+	allowedHint: 'Whoever runs the station sets this with --webhook-host and --webhook-network, or in its configuration file, and starts it again.',
 	make: 'Make',
 	wasMade: (name: string): string => `The webhook ${name} was made. Keep its secret now: it is not shown again.`,
 	secret: 'Secret with which deliveries are signed',

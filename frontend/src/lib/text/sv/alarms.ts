@@ -7,13 +7,14 @@ export const alarms: Text['alarms'] = {
 	priorityOf: { high: 'Hög prioritet', medium: 'Medelhög prioritet', low: 'Låg prioritet' },
 	state: {
 		unacknowledged: 'inte kvitterat',
-		returned: 'över, inte kvitterat',
+		returned: 'inte kvitterat',
 		acknowledged: 'kvitterat',
 		shelved: 'lagt åt sidan',
 		'out-of-service': 'ur drift'
 	},
 	lasts: (duration) => `i ${duration}`,
-	lasted: (duration, end) => `varade ${duration}, till ${end}`,
+	lasted: (duration) => `varade ${duration}`,
+	overSince: (when) => `Över sedan ${when}`,
 	since: (when) => `sedan ${when}`,
 	came: (times) => `kom ${times} gånger`,
 	by: (name) => `av ${name}`,

@@ -73,7 +73,8 @@ export const check: Text['check'] = {
 		'forbids-nothing': 'En specifikation som inte förbjuder något',
 		'empty-local-specification': 'En formel som inte läser någon variabel',
 		'not-finished': 'Hann inte beräknas',
-		'too-many-states': 'För många tillstånd för att veta'
+		'too-many-states': 'För många tillstånd för att veta',
+		'more': 'Fler fynd än som visas'
 	},
 
 	trace: {

@@ -18,6 +18,9 @@ export const common: Text['common'] = {
 	notLive: 'Inte direkt: vänta tills stationen hörs igen.',
 	more: (n) => `${n} till`,
 	language: 'Språk',
+	theme: (theme) => `Tema: ${theme}`,
+	themes: { auto: 'auto', light: 'ljust', dark: 'mörkt' },
+	themeMeans: 'Tema: auto, ljust eller mörkt',
 	time: {
 		ms: (n) => `${n} ms`,
 		s: (n) => `${String(n).replace('.', ',')} s`,

@@ -151,12 +151,13 @@ export const deploy: Text['deploy'] = {
 			saved: 'Utkastet är sparat som revision.',
 			other: 'Det är ett annat än det som körs.',
 			checked: 'Det är granskat, utan fel och med övervakare.',
-			standing: 'Stationen är pausad eller stannad, och inget utförs.',
+			standing: 'Produktionen står: stationen är pausad eller stannad, och ingen plan av en person är på väg.',
 			control: 'Du har kontrollen.',
-			fits: 'Stationens tillstånd är säkert i den nya modellen, och det som pågår är detsamma där.'
+			fits: 'Stationens tillstånd är säkert i den nya modellen, och det som ännu pågår är detsamma där.'
 		},
 		differs: 'Se vad som skiljer',
-		errand: 'Något utförs: stoppa det på Omstart, eller vänta tills det är klart.',
+		stillRuns: 'Det som började pågår ännu och får bli klart:',
+		errand: 'En plan av en person är på väg: stoppa det på Omstart, eller vänta tills det är klart.',
 		toRestart: 'Till Omstart',
 		fit: {
 			later: 'Det undersöks när utkastet är granskat.',
@@ -164,7 +165,7 @@ export const deploy: Text['deploy'] = {
 			again: 'Undersök igen',
 			moved: 'Stationen eller utkastet har ändrats sedan dess.',
 			violated: 'I sitt nuvarande tillstånd skulle den bryta mot',
-			underWay: 'Detta pågår nu och är ett annat där. Vänta tills det är klart:',
+			underWay: 'Av det som ännu pågår är detta ett annat i den nya modellen. Vänta tills det är klart:',
 			noRest: 'Från det nuvarande tillståndet skulle inget kunna komma till vila där.',
 			ways: 'Vägar in i de säkra tillstånden:',
 			noWay: 'Ingen väg in i de säkra tillstånden är känd. För enheterna till ett annat tillstånd, eller ändra modellen.',
@@ -180,7 +181,12 @@ export const deploy: Text['deploy'] = {
 		to: (before, after) => `${before} → ${after}`,
 		begins: (value) => `börjar som ${value}`,
 		was: (value) => `var ${value}`,
-		means: 'Styrningen börjar om med denna modell. Det som antogs kommer tillbaka så långt det passar, inget sänds till enheter, och en person bestämmer om utgångar och startar produktionen.',
+		means: 'Styrningen startar om med denna modell. Det som antogs kommer tillbaka så långt det passar, inget sänds till enheter, och en person startar produktionen. Du behåller kontrollen. Om modellen inte kan startas kommer den tidigare tillbaka.',
+		simulation: {
+			title: 'Emulerade enheter',
+			keep: 'De fortsätter som de står.',
+			reset: 'Återställ simuleringen: enheter, utgångar och antaganden börjar som modellen säger.'
+		},
 		sure: (name) => `Jag vill att ”${name}” tar platsen för det som körs.`,
 		confirm: 'Bekräfta att du vill det.',
 		missingStill: (n) => `${count(n, 'sak', 'saker')} saknas.`,
@@ -197,8 +203,10 @@ export const deploy: Text['deploy'] = {
 			runs: 'Stationen kör den'
 		},
 		is: { done: 'klart', now: 'nu', later: 'återstår' },
+		titleUndone: (name) => `”${name}” kunde inte startas`,
 		late: 'Det tar längre tid än vanligt. Vad servern skriver ut säger varför.',
-		next: 'Inget sänds till enheter än: på Drift bestämmer en person om utgångar och startar produktionen.',
+		next: 'Inget sänds till enheter än: starta produktionen på Drift.',
+		undone: 'Den tidigare modellen är tillbaka, och utkastet är som du driftsatte det: ändra det och driftsätt igen, eller starta produktionen som förut.',
 		close: 'Lägg undan'
 	}
 };

@@ -48,12 +48,14 @@ export const header: Text['header'] = {
 	pause: 'Pausa',
 	hold: 'Stanna',
 	holdMeans: 'Pausa, och avbryt det som pågår',
+	notRecorded: 'Stoppad. Journalen har det inte än; stationen behåller det så länge.',
 	goOn: 'Fortsätt',
 	start: 'Starta produktionen',
 	takeControlFirst: 'Ta kontrollen först',
 	lookOn: (role) => `Du ser på som ${role}; en operatör agerar.`,
 	alarms: (n) => `${n} larm`,
 	noAlarms: 'inga larm',
+	alarmsOver: (n) => `${n} över, inte kvitterade`,
 	notAcknowledged: (n) => `${n} okvitterade`,
 	liveAgo: (age) => `direkt för ${age} sedan`,
 	notLive: 'inte direkt',
@@ -87,8 +89,5 @@ export const header: Text['header'] = {
 		paused: 'inget startas i detta läge',
 		production: 'inget startas innan produktionen är startad'
 	},
-	theme: (theme) => `Tema: ${theme}`,
-	themes: { auto: 'auto', light: 'ljust', dark: 'mörkt' },
-	themeMeans: 'Tema: auto, ljust eller mörkt',
 	release: 'Släpp'
 };

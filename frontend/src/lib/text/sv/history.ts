@@ -56,7 +56,7 @@ export const history: Text['history'] = {
 			mode: 'lägen',
 			plan: 'planer',
 			work: 'starter och slut',
-			hand: 'rättelser och tvingade värden',
+			hand: 'rättelser, tvingade värden och vad som flyttats för hand',
 			alarm: 'larm',
 			controller: 'styrningens starter',
 			every: 'varje post'
@@ -94,6 +94,13 @@ export const history: Text['history'] = {
 		confirmed: 'Bekräftat',
 		forced: 'Tvingat',
 		released: 'Tvång hävt',
+		moved: 'Flyttat för hand, eller av något som modellen inte känner',
+		movedOn: 'Stationen fortsatte efter det',
+		wentOn: {
+			executes: (ability) => `”${ability}” pågår igen`,
+			finished: (ability) => `”${ability}” räknas som klar`,
+			started: (ability) => `”${ability}” startades`
+		},
 		errand: 'En människas plan antogs',
 		errandStopped: 'En människas plan stoppades',
 		byOrder: 'Arbete på order',

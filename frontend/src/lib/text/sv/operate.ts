@@ -14,6 +14,7 @@ export const operate: Text['operate'] = {
 		noTask: 'Inget att göra',
 		noTaskKnown: 'Inget när stationen senast hördes',
 		noAlarm: 'Inga',
+		alarmsOver: (n) => `${n} över`,
 		nothing: 'Inget',
 		more: (n) => `och ${n} till`
 	},
@@ -21,6 +22,7 @@ export const operate: Text['operate'] = {
 		title: 'Plan',
 		asTable: 'som tabell',
 		lanes: 'Planen som banor',
+		later: (n) => `${n} steg senare än vad som ritas: se tabellen.`,
 		steps: 'Planens steg',
 		timeShown: 'Visad tid',
 		seconds: (n) => (n < 60 ? `${n} s` : `${n / 60} min`),

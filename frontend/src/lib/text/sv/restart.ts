@@ -36,6 +36,7 @@ export const restart: Text['restart'] = {
 		start: 'Starta produktionen.',
 		physical: 'Gör det som den första vägen begär av en människa.',
 		take: 'Välj en väg tillbaka.',
+		check: 'Kontrollera produkten: det som återstår att föreslå säger bara vad som gäller för den.',
 		leave: 'Lämna omstartsläget: stationen kan fortsätta som den är.',
 		continue: 'Fortsätt.',
 		stuck: 'Ingen väg tillbaka är känd: se varför, och åtgärda det som hindrar.',
@@ -108,7 +109,7 @@ export const restart: Text['restart'] = {
 
 	ways: {
 		title: 'Vägar tillbaka',
-		about: 'Var och en bevisad från tillståndet när den efterfrågades; den minst krävande först.',
+		about: 'Var och en bevisad från tillståndet när den efterfrågades; det som enheter eller människor gör före det som bara sägs, sedan det minst krävande först.',
 		asked: (revision) => `Efterfrågat vid tillstånd ${revision}.`,
 		looking: 'Söker.',
 		again: 'Stationen har ändrats sedan dess: söker igen.',
@@ -122,6 +123,11 @@ export const restart: Text['restart'] = {
 		incomplete: 'Tiden räckte inte till att söka allt: det kan finnas andra vägar.',
 		none: 'Det finns ingen väg tillbaka från detta tillstånd.',
 		noneFound: 'Ingen väg tillbaka hittades på den tid som finns; att ingen finns är inte bevisat.',
+		noneToDo: 'Inget som enheter eller människor kan göra härifrån är känt att leda tillbaka.',
+		ifChecked: 'Bara om du har kontrollerat',
+		ifCheckedMeaning: 'Dessa säger om produkten att arbete är gjort. Såvitt stationen vet har ingen gjort det: välj ett bara om du har sett att det är så.',
+		onlyIf: (claims) => `Bara om du har kontrollerat: ${claims}`,
+		claims: (titles) => `Det räknas då som gjort, eller närmare det: ${titles}.`,
 		kinds: {
 			replan: 'fortsätter själv',
 			restart: 'i omstartsläge',
@@ -168,6 +174,8 @@ export const restart: Text['restart'] = {
 		errand: 'Vad som utförs',
 		nothing: 'Inget startas: enheterna gör det själva.',
 		until: 'tills',
+		safe: 'stationen är tillbaka i sina säkra tillstånd',
+		and: 'och',
 		then: (goals) => `Sedan, i automatik, för ${goals}`,
 		thenPlain: 'Sedan, i automatik',
 		unknown: 'Vad stationen gör därefter söktes inte, eller hittades inte.',

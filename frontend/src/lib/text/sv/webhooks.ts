@@ -1,7 +1,7 @@
 import type { Text } from '../text.svelte.ts';
 
 export const webhooks: Text['webhooks'] = {
-	about: 'En webhook berättar för ett annat system om varje händelse med order: minst en gång, signerat och bara hos värdar som stationen startades med.',
+	about: 'En webhook berättar för ett annat system om varje händelse med order och med stationen: minst en gång, signerat och bara dit listan nedan tillåter.',
 	table: 'Vilka som får veta',
 	none: 'Ingen får veta något.',
 	name: 'Namn',
@@ -26,7 +26,15 @@ export const webhooks: Text['webhooks'] = {
 	removed: (name) => `Webhooken ${name} är borttagen.`,
 	newTitle: 'En ny webhook',
 	url: 'Dit händelser skickas',
-	urlHint: 'En adress som börjar med https://, hos en värd som stationen startades med (--webhook-host).',
+	urlHint: 'En adress som börjar med https://, hos en värd eller i ett nätverk på listan ovan.',
+	allowed: 'Vart händelser får skickas',
+	hosts: 'Värdar',
+	noHost: 'inga',
+	networks: 'Fabrikens nätverk',
+	noNetwork: 'inga: till privata adresser skickas inget',
+	thisMachine: 'Den här maskinen',
+	loopback: 'där den står på listan, även utan https',
+	allowedHint: 'Den som driver stationen ställer in detta med --webhook-host och --webhook-network, eller i dess konfigurationsfil, och startar den igen.',
 	make: 'Skapa',
 	wasMade: (name) => `Webhooken ${name} har skapats. Spara hemligheten nu: den visas inte igen.`,
 	secret: 'Hemlighet som leveranser signeras med',

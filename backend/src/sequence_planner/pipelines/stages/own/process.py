@@ -13,11 +13,10 @@ import threading
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 
 import structlog
-
-from sequence_planner.secret_variables import environment
 
 LOG = structlog.get_logger(__name__)
 
@@ -27,6 +26,8 @@ LONGEST_LINE = 500
 MOST_ANSWERED = 1_000_000  # characters
 _PROGRAM = Path(__file__).with_name("program.py")
 _CHUNK = 65_536
+_PASSED = frozenset({"LANG", "TZ", "LD_LIBRARY_PATH", "PATH", "PYTHONPATH", "PYTHONHOME", "VIRTUAL_ENV"})
+_PASSED_STARTS = ("LC_", "OMP_", "OPENBLAS_")
 
 
 class OwnStageError(Exception):
@@ -58,7 +59,7 @@ class FunctionProcess:
         command = [sys.executable, "-B", "-P", str(_PROGRAM), str(function.folder), str(function.path), function.name]
         pipe = subprocess.PIPE
         self._process = subprocess.Popen(
-            command, stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0, start_new_session=True, env=environment()
+            command, stdin=pipe, stdout=pipe, stderr=pipe, bufsize=0, start_new_session=True, env=_environment()
         )
         self._requests, self._answers, self._prints = (
             stream.fileno()
@@ -73,7 +74,7 @@ class FunctionProcess:
     def load(self) -> None:
         """Wait until the file has been loaded. Raises `OwnStageError` if it cannot be."""
         try:
-            self._exchange(b"", STARTING)
+            note_unconfined(self._exchange(b"", STARTING).get("without"))
         except OwnStageError as error:
             raise OwnStageError(f"cannot be loaded: {error}") from None
 
@@ -152,3 +153,19 @@ class FunctionProcess:
             LOG.info("a stage printed", stage=str(self._function), line=line[:LONGEST_LINE])
         if len(lines) > MOST_LINES:
             LOG.info("a stage printed more", stage=str(self._function), lines=len(lines) - MOST_LINES)
+
+
+def _environment() -> dict[str, str]:
+    """What Python and its libraries go by, and nothing that tells of the station."""
+    return {name: value for name, value in os.environ.items() if name in _PASSED or name.startswith(_PASSED_STARTS)}
+
+
+def note_unconfined(without: object) -> None:
+    """Say once in this process from what the system does not keep stages."""
+    if isinstance(without, list) and without:
+        _note_once(", ".join(map(str, without)))
+
+
+@cache
+def _note_once(without: str) -> None:
+    LOG.warning("this system cannot keep Python stages from all that they have no use for", open_to_them=without)

@@ -1,8 +1,9 @@
 """The process of one function: requests come in on standard input, answers go out where standard output was.
 
-It is run as a file and imports nothing of the package, so that it starts fast and a station's own modules cannot be
-taken for ours. Whatever the function prints goes to standard error, which the other side writes to the log. The process
-ends with its standard input, whatever the function does then.
+It is run as a file and imports nothing of the package but what confines it, so that it starts fast and a station's own
+modules cannot be taken for ours. It is confined before anything of the station's is loaded. Whatever the function
+prints goes to standard error, which the other side writes to the log. The process ends with its standard input,
+whatever the function does then.
 """
 
 from __future__ import annotations
@@ -18,6 +19,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import BinaryIO
 
+from sequence_planner.pipelines.stages.own.confinement import confine
+
+CONFINED = "a stage reads files of its folder alone, writes none, and has neither network nor other programs"
 Function = Callable[..., object]
 
 
@@ -26,15 +30,16 @@ def main() -> None:
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)
     requests: queue.SimpleQueue[bytes] = queue.SimpleQueue()
-    threading.Thread(target=_read, args=(sys.stdin.buffer, requests), daemon=True).start()
     folder, file, name = sys.argv[1:]
     sys.path.insert(0, folder)
+    without = confine()
+    threading.Thread(target=_read, args=(sys.stdin.buffer, requests), daemon=True).start()
     try:
         function = _load(Path(file), name)
     except BaseException as error:
         _say(answers, {"failed": _reason(error)})
         os._exit(1)
-    _say(answers, {"ready": True})
+    _say(answers, {"ready": True, "without": without})
     while True:
         _say(answers, _answer(function, json.loads(requests.get())))
 
@@ -74,7 +79,14 @@ def _plain(value: object) -> object:
 
 def _reason(error: BaseException) -> str:
     traceback.print_exception(error)
-    return f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    reason = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    return f"{reason} ({CONFINED})" if _is_kept_out(error) else reason
+
+
+def _is_kept_out(error: BaseException | None) -> bool:
+    while error is not None and not isinstance(error, PermissionError):
+        error = error.__cause__ or error.__context__
+    return error is not None
 
 
 def _say(answers: BinaryIO, word: dict[str, object]) -> None:

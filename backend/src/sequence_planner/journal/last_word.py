@@ -1,0 +1,141 @@
+"""The last word of a station: a small file on its own machine with what was asked for last and is not in the journal.
+
+A command is answered when the journal has what it did, or else once it is written down here: so a stop that was
+accepted lasts, though the database is away, or the controller is killed in the same moment. The file belongs to one
+controller at a time, which holds a lock on it: who has the lock knows that the one before has ended, and all that it
+has answered.
+
+It has two places of fixed size, which are written by turns: one of them is always whole, and no full disk keeps the
+other from being written. Nothing is ever cleared in it. A word counts until the journal has gone past the record that
+it speaks of, or a later life of a controller has begun (see `ending`).
+"""
+
+from __future__ import annotations
+
+import errno
+import fcntl
+import hashlib
+import os
+import re
+import zlib
+from pathlib import Path
+from typing import Final
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from sequence_planner.journal.chain import Position
+from sequence_planner.journal.entry import Entry
+from sequence_planner.storage.address import PostgresqlServer, SqliteFile
+from sequence_planner.storage.error import StorageError
+from sequence_planner.storage.location import state_folder
+
+_PLACE: Final = 16 * 1024  # bytes
+_LONGEST: Final = 3000  # characters of a word, of up to four bytes
+_HEAD: Final = 8  # hexadecimal digits of the checksum
+
+
+class Word(BaseModel):
+    """A command that was carried out at `time`: the run had `number` records then, and the station was in `mode`."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    number: int
+    mode: str
+    time: float
+    entry: Entry
+
+
+class Life(BaseModel):
+    """The life of a controller, told by the record with which it begins. `epoch` is that of the lease that it held."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+    turn: int
+    number: int
+    hash: str
+    epoch: int | None = None
+    word: Word | None = None
+
+
+def last_word_file(place: SqliteFile | PostgresqlServer, standby: str | None = None) -> Path:
+    """Where it is: beside the file of SQLite; for PostgreSQL in this user's state folder, one for each `standby`."""
+    if isinstance(place, SqliteFile):
+        return place.path.with_name(f"{place.path.name}-last-word")
+    mark = hashlib.sha256(str(place).encode()).hexdigest()[:8]
+    name = "" if standby is None else "-" + re.sub(r"[^\w.-]", "_", standby)
+    return state_folder() / f"last-word-{mark}{name}"
+
+
+class LastWord:
+    """The file at `path`, and what it says of earlier lives. Used from one thread at a time."""
+
+    def __init__(self, path: Path, descriptor: int) -> None:
+        self.path = path
+        self._descriptor = descriptor
+        self.lives = tuple(life for place in (0, 1) if (life := self._read(place)) is not None)
+        self._life: Life | None = None
+
+    @classmethod
+    def open(cls, path: Path) -> LastWord:
+        """Take it. Raises `StorageError` when it cannot be written to, or another controller has it."""
+        try:
+            path.parent.mkdir(mode=0o700, parents=True, exist_ok=True)
+            descriptor = os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        except OSError as error:
+            raise StorageError(f"{path}, the last word of the station, cannot be opened: {error.strerror}") from error
+        try:
+            # Of this process alone: what it forks does not hold the lock when it has ended.
+            fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            os.posix_fallocate(descriptor, 0, 2 * _PLACE)
+            os.fsync(descriptor)
+            _sync_folder(path.parent)
+            return cls(path, descriptor)
+        except OSError as error:
+            os.close(descriptor)
+            if error.errno in (errno.EACCES, errno.EAGAIN):
+                text = f"another controller of this station runs already (it holds {path}): end one of the two"
+                raise StorageError(text) from error
+            raise StorageError(f"{path}, the last word of the station, cannot be written: {error.strerror}") from error
+
+    def begin(self, begun: Position, epoch: int | None) -> None:
+        """A life begins, of which `begun` is the first record, whether that is durable yet or not. Raises `OSError`."""
+        self._write(Life(turn=0, number=begun.number, hash=begun.hash, epoch=epoch))
+
+    def say(self, word: Word) -> None:
+        """Write a word down; it is on the disk when this returns. Raises `OSError`."""
+        assert self._life is not None, "a life begins before anything is said in it"
+        if len(word.model_dump_json()) > _LONGEST:  # that it was asked for matters more than all that was said with it
+            word = word.model_copy(update={"entry": word.entry.model_copy(update={"details": {}})})
+        self._write(self._life.model_copy(update={"word": word}))
+
+    def close(self) -> None:
+        """Let go of it."""
+        os.close(self._descriptor)
+
+    def _write(self, life: Life) -> None:
+        turn = 1 + max((each.turn for each in (*self.lives, self._life) if each is not None), default=0)
+        life = life.model_copy(update={"turn": turn})
+        text = life.model_dump_json().encode()
+        data = b"%08x" % zlib.crc32(text) + text + b"\n"
+        assert len(data) <= _PLACE, "an entry without its details is shorter"
+        self._life = life  # also where it cannot be written: the next turn is another one
+        os.pwrite(self._descriptor, data, turn % 2 * _PLACE)
+        os.fsync(self._descriptor)
+
+    def _read(self, place: int) -> Life | None:
+        """What is whole at a place."""
+        head, _, _ = os.pread(self._descriptor, _PLACE, place * _PLACE).partition(b"\n")
+        checksum, text = head[:_HEAD], head[_HEAD:]
+        if checksum != b"%08x" % zlib.crc32(text):
+            return None
+        try:
+            return Life.model_validate_json(text)
+        except ValidationError:  # of another version
+            return None
+
+
+def _sync_folder(folder: Path) -> None:
+    """Let the file's name be on the disk, too."""
+    descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

@@ -1,0 +1,196 @@
+"""Takes from the process of a stage what a stage does not need, for ever: files, network, other processes, memory.
+
+Landlock lets it read what Python is made of and the station's folder `stages`, and write nothing. A filter of system
+calls (seccomp) leaves it no sockets, no programs to start, and no way to other processes or to the rights of files.
+Both are the kernel's: docs.kernel.org/userspace-api/landlock.html and .../seccomp_filter.html. Nothing outside the
+standard library is imported, as this runs before anything of the station's is loaded.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import errno
+import os
+import platform
+import resource
+import stat
+import struct
+import sys
+import sysconfig
+from collections.abc import Iterable
+from pathlib import Path
+
+from sequence_planner.pipelines.stages.own.system_calls import CLONE, CLONE3, FORBIDDEN, PRLIMIT64, TGKILL
+
+MOST_MEMORY = 4 * 1024**3  # bytes of addresses
+MOST_FILES = 256
+# Beside what Python looks for modules in: libraries, what NumPy and others look at, and what is nowhere else.
+_READ = (
+    "/lib",
+    "/lib64",
+    "/usr/lib",
+    "/usr/lib64",
+    "/usr/local/lib",
+    "/usr/share/zoneinfo",
+    "/etc/ld.so.cache",
+    "/etc/localtime",
+    "/proc/self",
+    "/proc/cpuinfo",
+    "/proc/meminfo",
+    "/sys/devices/system/cpu",
+    "/dev/urandom",
+    "/dev/zero",
+)
+_WRITTEN = "/dev/null"
+_MACHINES = {"x86_64": (0, 0xC000003E), "aarch64": (1, 0xC00000B7)}  # column of the numbers, AUDIT_ARCH
+
+_CREATE_RULESET, _ADD_RULE, _RESTRICT_SELF = 444, 445, 446
+_WRITE_FILE, _READ_FILE, _READ_DIR = 1 << 1, 1 << 2, 1 << 3
+_FS_RIGHTS = {1: 13, 2: 14, 3: 15, 4: 15}  # how many rights to files each version knows; later ones 16
+_TCP = 0b11  # to bind and to connect
+_SCOPES = 0b11  # abstract sockets and signals
+_PR_SET_NO_NEW_PRIVS, _PR_GET_SECCOMP, _PR_SET_SECCOMP = 38, 21, 22
+
+
+FILES, CALLS = "files", "the network and other processes"
+
+
+def missing() -> list[str]:
+    """From what of all this system cannot keep a stage."""
+    found = [] if _landlock_version() > 0 else [FILES]
+    if sys.platform != "linux" or platform.machine() not in _MACHINES or _prctl(_PR_GET_SECCOMP) < 0:
+        found.append(CALLS)
+    return found
+
+
+def confine() -> list[str]:
+    """Confine this process, which has one thread so far; from what the system cannot keep it."""
+    for limit, most in (
+        (resource.RLIMIT_AS, MOST_MEMORY),
+        (resource.RLIMIT_NOFILE, MOST_FILES),
+        (resource.RLIMIT_FSIZE, 0),
+        (resource.RLIMIT_CORE, 0),
+    ):
+        hard = resource.getrlimit(limit)[1]
+        resource.setrlimit(limit, (most, most) if hard == resource.RLIM_INFINITY else (min(most, hard),) * 2)
+    found = missing()
+    if sys.platform == "linux":
+        _prctl(_PR_SET_NO_NEW_PRIVS, 1)
+    for part, work in ((FILES, _confine_files), (CALLS, _confine_calls)):
+        try:
+            if part not in found:
+                work()
+        except OSError:  # a container may forbid it though the kernel offers it
+            found.append(part)
+    return found
+
+
+def _libc() -> ctypes.CDLL:
+    return ctypes.CDLL(None, use_errno=True)
+
+
+def _prctl(option: int, *arguments: int | ctypes.Structure) -> int:
+    given = [ctypes.c_ulong(each) if isinstance(each, int) else ctypes.byref(each) for each in (*arguments, 0, 0, 0, 0)]
+    return int(_libc().prctl(ctypes.c_int(option), *given[:4]))
+
+
+def _called(number: int, *arguments: object) -> int:
+    result = int(_libc().syscall(ctypes.c_long(number), *arguments))
+    if result < 0:
+        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))
+    return result
+
+
+def _landlock_version() -> int:
+    """Zero where there is no Landlock."""
+    try:
+        return _called(_CREATE_RULESET, None, ctypes.c_size_t(0), ctypes.c_uint32(1)) if sys.platform == "linux" else 0
+    except OSError:
+        return 0
+
+
+def _confine_files() -> None:
+    version = _landlock_version()
+    rights = (1 << _FS_RIGHTS.get(version, 16)) - 1
+    attributes = struct.pack("=QQQ", rights, _TCP, _SCOPES)[: 8 if version < 4 else 16 if version < 6 else 24]
+    ruleset = _called(_CREATE_RULESET, attributes, ctypes.c_size_t(len(attributes)), ctypes.c_uint32(0))
+    try:
+        for path in _readable():
+            _allow(ruleset, path, _READ_FILE | _READ_DIR)
+        _allow(ruleset, _WRITTEN, _READ_FILE | _WRITE_FILE)
+        _called(_RESTRICT_SELF, ctypes.c_int(ruleset), ctypes.c_uint32(0))
+    finally:
+        os.close(ruleset)
+
+
+def _readable() -> Iterable[str]:
+    libraries = os.environ.get("LD_LIBRARY_PATH", "").split(os.pathsep)
+    return dict.fromkeys([*sys.path, *sysconfig.get_paths().values(), *_READ, *libraries])
+
+
+def _allow(ruleset: int, path: str, rights: int) -> None:
+    """Allow it what is at `path`, if there is anything."""
+    if not Path(path).is_absolute():
+        return
+    try:
+        place = os.open(path, os.O_PATH | os.O_CLOEXEC)
+    except OSError:
+        return
+    try:
+        if not stat.S_ISDIR(os.fstat(place).st_mode):
+            rights &= ~_READ_DIR
+        rule = struct.pack("=Qi", rights, place)
+        _called(_ADD_RULE, ctypes.c_int(ruleset), ctypes.c_int(1), rule, ctypes.c_uint32(0))
+    finally:
+        os.close(place)
+
+
+# Instructions of the filter, which is a program of the classic BPF.
+_LOAD, _IF_EQUAL, _IF_AT_LEAST, _IF_ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
+_NUMBER, _ARCHITECTURE, _FIRST, _FIRST_HIGH = 0, 4, 16, 20  # where in `struct seccomp_data`
+_ALLOW, _KILL, _ERROR = 0x7FFF0000, 0x80000000, 0x00050000
+_CLONE_THREAD = 0x00010000
+_OTHER_NUMBERS = 0x40000000  # those of x32
+
+
+def _confine_calls() -> None:
+    column, architecture = _MACHINES[platform.machine()]
+    refuse = (_RETURN, 0, 0, _ERROR | errno.EPERM)
+    program: list[tuple[int, int, int, int]] = [
+        (_LOAD, 0, 0, _ARCHITECTURE),
+        (_IF_EQUAL, 1, 0, architecture),
+        (_RETURN, 0, 0, _KILL),
+        (_LOAD, 0, 0, _NUMBER),
+        (_IF_AT_LEAST, 0, 1, _OTHER_NUMBERS),
+        refuse,
+    ]
+    for numbers in FORBIDDEN.values():
+        if (number := numbers[column]) is not None:
+            program += [(_IF_EQUAL, 0, 1, number), refuse]
+    # Without it the C library makes its threads by the older call, whose flags can be looked at.
+    program += [(_IF_EQUAL, 0, 1, CLONE3[column]), (_RETURN, 0, 0, _ERROR | errno.ENOSYS)]
+    program += [
+        (_IF_EQUAL, 0, 4, CLONE[column]),
+        (_LOAD, 0, 0, _FIRST),
+        (_IF_ANY_BIT, 0, 1, _CLONE_THREAD),
+        (_RETURN, 0, 0, _ALLOW),
+        refuse,
+    ]
+    for number, own in ((TGKILL[column], (os.getpid(),)), (PRLIMIT64[column], (0, os.getpid()))):
+        program += [
+            (_IF_EQUAL, 0, 3 + len(own), number),
+            (_LOAD, 0, 0, _FIRST),
+            *((_IF_EQUAL, len(own) - at, 0, each) for at, each in enumerate(own)),
+            refuse,
+            (_RETURN, 0, 0, _ALLOW),
+        ]
+    program.append((_RETURN, 0, 0, _ALLOW))
+    written = b"".join(struct.pack("=HBBI", *each) for each in program)
+    buffer = ctypes.create_string_buffer(written, len(written))
+
+    class Program(ctypes.Structure):
+        _fields_ = [("length", ctypes.c_ushort), ("filter", ctypes.c_void_p)]
+
+    whole = Program(len(program), ctypes.addressof(buffer))
+    if _prctl(_PR_SET_SECCOMP, 2, whole) != 0:
+        raise OSError(ctypes.get_errno(), os.strerror(ctypes.get_errno()))

@@ -1,0 +1,92 @@
+"""`check` keeps to its deadline and its memory, whatever the model is, and says what was left."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from checking.large import write_large_station
+from cli.commands import TRUCK, as_json, command
+from sequence_planner.analysis.process import SynthesisEndedError, telling
+from sequence_planner.cli.analysing import Limits, checked
+from sequence_planner.cli.loading import load_model
+from sequence_planner.memory_limit import MemoryLimitError, memory_limit
+
+COUNTS = """
+  made: {type: 0..200}
+  wanted: {type: 0..200, initial: 10}
+"""
+JOB = """
+  job_{number}:
+    enabled: pose == out and not run_{number} and made < wanted
+    start: {{do: [run_{number} := true]}}
+    executing: run_{number} and not done_{number} and made < wanted
+    finish: {{when: run_{number} and done_{number} and made < wanted and made < 199, do: [made := made + {number}]}}
+    effects:
+      does: {{kind: executing, when: run_{number} and not done_{number}, do: [done_{number} := true]}}
+"""
+
+
+def growing() -> Iterator[int]:
+    """Take ever more memory."""
+    kept = []
+    while True:
+        kept.append(bytearray(16 << 20))
+        yield len(kept)
+
+
+def test_the_deadline_is_that_of_everything_and_what_is_left_is_said() -> None:
+    model = load_model(TRUCK)
+    found = checked(model.automaton, model.connections, Limits(deadline=0.001))
+    assert found.unfinished is not None
+    assert found.unfinished.startswith(
+        "the safe states and finishes that conflict could not be computed within 0.001 s"
+    )
+
+
+def test_a_question_that_is_too_hard_ends_with_the_deadline(tmp_path: Path) -> None:
+    """Counters over hundreds of values, which several finishes write: a solver would think about them for minutes."""
+    station = write_large_station(tmp_path / "large", robots=6)
+    for file in (station / "resources").glob("*.yaml"):
+        text = file.read_text(encoding="utf-8")
+        text = text.replace("  cycles: {type: 0..3}\n", f"  cycles: {{type: 0..3}}{COUNTS.rstrip()}\n")
+        text = text.replace("output:\n", "  done_1: {type: bool}\n  done_2: {type: bool}\noutput:\n")
+        text = text.replace(
+            "  grip: {type: bool}\n", "  grip: {type: bool}\n  run_1: {type: bool}\n  run_2: {type: bool}\n"
+        )
+        jobs = "".join(JOB.format(number=number) for number in (1, 2)).replace("\n\n", "\n")
+        file.write_text(text.rstrip("\n") + jobs, encoding="utf-8")
+    model = load_model(station)
+    began = time.monotonic()
+    found = checked(model.automaton, model.connections, Limits(deadline=5.0))
+    assert time.monotonic() - began < 30.0  # killed, whatever it was at
+    assert found.suspicious or found.unfinished
+
+
+def test_a_process_that_takes_too_much_memory_is_ended_and_says_so() -> None:
+    async def scenario() -> None:
+        async with telling(0.25, growing) as words:
+            async for _ in words:
+                await asyncio.sleep(0.005)
+
+    with pytest.raises(SynthesisEndedError, match=r"more than 0\.25 GB of memory: allow more with --memory"):
+        asyncio.run(scenario())
+
+
+def test_the_limit_is_a_setting() -> None:
+    assert memory_limit({}) == 2.0
+    assert memory_limit({"SEQUENCE_PLANNER_MEMORY": "0.5"}) == 0.5
+    for wrong in ("much", "0", "-1", "nan"):
+        with pytest.raises(MemoryLimitError, match=r"write how many GB, 0\.25 to 1024"):
+            memory_limit({"SEQUENCE_PLANNER_MEMORY": wrong})
+    code, _, err = command("check", TRUCK, "--memory", "0")
+    assert (code, "--memory" in err) == (2, True)
+
+
+def test_what_is_kept_of_a_model_leaves_the_checks_to_be_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert as_json("check", TRUCK) == as_json("check", TRUCK)

@@ -1,0 +1,78 @@
+"""A fault is one alarm that begins with its cause: what follows is a part of it, and what waits for it is named."""
+
+from __future__ import annotations
+
+from control.alarming.scene import Told, alarms_of
+from control.faulty import FaultyRig
+from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
+from sequence_planner.control.feeds import Feeds
+from sequence_planner.control.moment import Moment
+from sequence_planner.emulation.faults import Clear, Fault, FaultKind
+
+ROBOT_IS_STILL = "still:robot"
+
+
+class Watched(FaultyRig):
+    """The station with its alarms, which are looked after as a controller does."""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.told = Told()
+        self.feeds = Feeds(self.station.pipelines, self.station.registry)
+        self.alarms = alarms_of(self.execution, self.station, self.told, feeds=self.feeds)
+
+    def tick(self) -> None:
+        super().tick()
+        for name, feed in self.feeds.expected.items():
+            feed.last = self._heard.get(name)
+        self.alarms.note(self.ticks[-1])
+        self.alarms.look(None, Moment(self.now, self.now))
+
+    @property
+    def shown(self) -> dict[str, AlarmView]:
+        return self.alarms.current(None, Moment(self.now, self.now))
+
+
+def stuck() -> Watched:
+    """The robot goes down to a placed pair with the tool turning, and stops there."""
+    rig = Watched()
+    rig.start_production()
+    down = "robot.move_to_position(bolt_pair_3)"
+    assert rig.run(120, until=lambda: down in rig.started)
+    assert rig.run(2, until=lambda: rig.value("robot.pose") == "unknown")
+    rig.faulty.begin(Fault(FaultKind.STUCK, "robot"), rig.now)
+    return rig
+
+
+def test_a_robot_that_is_stuck_is_one_alarm_of_the_robot() -> None:
+    rig = stuck()
+    rig.run(60)
+    lasting = {key: alarm for key, alarm in rig.shown.items() if alarm.ended is None}
+    assert lasting.keys() == {ROBOT_IS_STILL}
+    alarm = lasting[ROBOT_IS_STILL]
+    assert alarm.text.startswith(
+        "Robot UR10 does not do what it should: it still says robot.moving, robot.pose == unknown"
+    )
+    assert "“Tighten bolt pair 3”" in alarm.consequence
+    assert "Move to bolt pair 3 has not finished within 30 s" in alarm.parts
+    assert alarm.priority is Priority.HIGH, "it led outside the safe states"
+    assert any("outside its safe states" in part for part in alarm.parts)
+
+
+def test_why_the_state_is_unsafe_is_told_as_soon_as_it_can_be_known() -> None:
+    rig = stuck()
+    rig.run(10)
+    assert rig.shown.keys() == {ROBOT_IS_STILL}
+    came = [key for key, event in rig.told.events if event == "came"]
+    assert came[-1] == ROBOT_IS_STILL and len(came) <= 2, came
+
+
+def test_once_it_is_over_it_reads_so() -> None:
+    rig = stuck()
+    rig.run(45)
+    rig.faulty.clear(Clear())
+    rig.run(30)
+    (alarm,) = (alarm for alarm in rig.shown.values() if alarm.state is AlarmState.RETURNED)
+    assert alarm.text.startswith("Robot UR10 did not do what it should")
+    assert any(part == "Move to bolt pair 3 did not finish within 30 s" for part in alarm.parts)
+    assert not any(" has not " in part for part in alarm.parts)

@@ -1,0 +1,86 @@
+"""The rules that every proposal after a fault keeps, so that a person can trust what is proposed first."""
+
+from __future__ import annotations
+
+import random
+from collections import Counter
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+from planning.advice.single_faults import Moment, asked, drawn, main_job
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton, Kind
+from sequence_planner.automaton.tick import synchronise
+from sequence_planner.control.offer_showing import offer_title
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.printing import print_value
+from sequence_planner.immutable import replace
+from sequence_planner.planning.advice.advisor import Advisor
+from sequence_planner.planning.advice.offer import Offer
+from sequence_planner.planning.advice.request import AdviceRequest
+from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.station import prepare_station
+from sequence_planner.synthesis.supervision import synthesise
+
+MODELS = Path(__file__).parents[4] / "models"
+STATIONS = sorted(path.parent.name for path in MODELS.glob("*/station.yaml"))
+ONLY_IF = "Only if you have checked: "
+
+
+@dataclass(frozen=True)
+class Tried:
+    """A station with its warm advisor, and the moments of its main job."""
+
+    automaton: Automaton
+    supervisor: Supervisor
+    advisor: Advisor
+    moments: list[Moment]
+
+
+@cache
+def station(name: str) -> Tried:
+    """A station of the models."""
+    automaton = prepare_station(MODELS / name).automaton
+    supervisor = synthesise(automaton)
+    return Tried(automaton, supervisor, Advisor(automaton, supervisor), main_job(automaton, supervisor))
+
+
+def after_a_fault(name: str, seed: str, deadline: float) -> Counter[str]:
+    """One fault at a moment of the main job; somebody may have answered for some estimates.
+
+    AssertionError where a proposal breaks a rule.
+    """
+    chance = random.Random(seed)
+    tried = station(name)
+    automaton, advisor = tried.automaton, tried.advisor
+    moment, fault = drawn(automaton, tried.moments, chance)
+    request = asked(automaton, moment, fault)
+    estimates = automaton.names(Kind.ESTIMATED)
+    answers = frozenset(chance.sample(estimates, chance.randint(0, min(2, len(estimates)))))
+    request = replace(request, fixed=answers, deadline=deadline)
+    advice = advisor.advise(request)
+    for offer in advice.offers:
+        keeps_the_rules(automaton, request, offer)
+    kinds = [_place(offer) for offer in advice.offers]
+    assert kinds == sorted(kinds), kinds
+    first = "nothing" if not advice.offers else "only if checked" if kinds[0][0] else str(advice.offers[0].kind)
+    return Counter({f"{name}: first {first}": 1, "proposals": len(kinds), f"after: {fault.kind}": 1})
+
+
+def keeps_the_rules(automaton: Automaton, request: AdviceRequest, offer: Offer) -> None:
+    """What is said of the product contradicts nobody, is named, and is marked where it says that work is done."""
+    values = {change.name: change.new for change in offer.corrections}
+    assert not values.keys() & request.fixed, "somebody has answered otherwise"
+    title = offer_title(automaton, offer)
+    assert all(f"{name} is {print_value(value)}" in title.replace(" to ", " is ") for name, value in values.items())
+    after = synchronise(automaton, {**request.state, **values})
+    reached = [g.name for g in missing(request.goals, request.state) if holds(g.predicate, after)]
+    assert set(reached) <= set(offer.claims)
+    assert offer.only_if_checked == bool(offer.claims) == title.startswith(ONLY_IF)
+    assert not offer.only_if_checked or offer.corrections
+
+
+def _place(offer: Offer) -> tuple[bool, int]:
+    done = offer.errand or offer.physical or offer.online or offer.in_service
+    return offer.only_if_checked, 0 if not offer.corrections else 1 if done else 2

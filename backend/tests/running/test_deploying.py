@@ -1,0 +1,188 @@
+"""Deployments over REST upon a station that runs as real processes with emulated devices."""
+
+from __future__ import annotations
+
+import asyncio
+import shutil
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from running.stations import eventually, finished, foreign_node, free_port
+from running.workshops import NEVER_GIVEN, ROBOT, SINGLE_BOLT, STATION, EditedStation, edited
+from sequence_planner.launcher import UNUSABLE
+from sequence_planner.ros.transport import QualityOfService
+
+TITLED = (STATION, "title: A single bolt", "title: Another title")
+OTHER_TOPIC = (ROBOT, "/robot/state:", "/robot/other_state:")
+LOOSE = (STATION, "bolt: {type: bolt_state", "bolt: {type: bolt_stat")
+
+
+def title(station: EditedStation) -> str:
+    return str(station.station()["station"]["title"])
+
+
+def deployed(station: EditedStation, *replacements: tuple[str, str, str], name: str, **more: object) -> str:
+    """Change the draft and deploy it; the id of the revision. What becomes of it is still to be seen."""
+    station.change(*replacements)
+    assert [each for each in station.checked()["findings"] if each["severity"] == "error"] == []
+    revision = station.save(name)
+    answer = station.deploy(revision, **more)
+    assert answer.status_code == 204, answer.text
+    return revision
+
+
+def alarms(station: EditedStation) -> dict[str, str]:
+    return {key: each["text"] for key, each in station.get("alarms").items()}
+
+
+def test_a_revision_that_cannot_be_emulated_is_found_and_not_deployed(tmp_path: Path) -> None:
+    with edited(tmp_path, "--emulator") as station:
+        eventually(station.up)
+        station.control()
+        station.change(NEVER_GIVEN)
+        (finding,) = [each for each in station.checked()["findings"] if each["severity"] == "error"]
+        assert (finding["file"], finding["line"]) == (ROBOT, 10)
+        assert "nowhere" in finding["message"]
+        refused = station.deploy(station.save("Nowhere"))
+        assert (refused.status_code, refused.json()["type"]) == (409, "/problems/not-checked")
+        assert station.up()
+
+
+@contextmanager
+def somebody_on(topic: str, type_name: str) -> Iterator[None]:
+    """Another device that reports on a topic, on the station's network."""
+    over, there = threading.Event(), threading.Event()
+
+    async def speak() -> None:
+        async with foreign_node(SINGLE_BOLT / "messages") as (transport, _):
+            transport.advertise(topic, type_name, QualityOfService.RELIABLE)
+            there.set()
+            await asyncio.to_thread(over.wait)
+
+    speaking = threading.Thread(target=lambda: asyncio.run(speak()))
+    speaking.start()
+    there.wait()
+    try:
+        yield
+    finally:
+        over.set()
+        speaking.join()
+
+
+def test_a_start_that_fails_brings_the_model_before_back(tmp_path: Path) -> None:
+    """What only the network shows: beside a real device none is emulated."""
+    with edited(tmp_path, "--emulator") as station:
+        eventually(station.up)
+        station.control()
+        before = (station.model / ROBOT).read_text()
+        with somebody_on("/robot/other_state", "bolt_msgs/msg/RobotState"):
+            revision = deployed(station, OTHER_TOPIC, name="Other topic")
+            outcome = station.outcome(revision)
+        assert (outcome["state"], outcome["name"]) == ("undone", "Other topic")
+        assert "the emulated devices would fight with it" in outcome["why"]
+        assert (station.model / ROBOT).read_text() == before
+        assert station.station()["control"] is not None
+        eventually(lambda: "could not be started, and the model before is back" in alarms(station)["deployment-undone"])
+        entries = station.asked("GET", "audit?limit=20")
+        assert "undo-deployment" in str(entries)
+        assert station.asked("GET", "model")["files"][ROBOT]["state"] == "changed", "what was deployed is lost"
+        assert station.get("production", "station") == "waiting"
+        # Nobody is in the way any more.
+        assert station.deploy(revision).status_code == 204
+        eventually(lambda: station.outcome(revision)["state"] == "runs")
+        station.asked("POST", "production/start", {})
+        eventually(lambda: "deployment-undone" not in alarms(station))
+
+
+def test_a_model_that_was_broken_while_nothing_ran_is_repaired_on_its_page(tmp_path: Path) -> None:
+    with edited(tmp_path, "--emulator") as station:
+        eventually(station.up)
+        station.asked("GET", "model")
+        model = station.model
+    path, whole, broken = LOOSE
+    (model / path).write_text((model / path).read_text().replace(whole, broken))
+    with edited(tmp_path, "--emulator", model=model) as station:
+        seen = station.station()
+        assert seen["production"] == "preparing"
+        assert list(alarms(station)) == ["model-unusable"]
+        assert "bolt_stat" in alarms(station)["model-unusable"]
+        (finding,) = station.get("analysis")["findings"]
+        assert (finding["file"].rpartition("/")[2], finding["severity"]) == (path, "error")
+        refused = station.browser.put("mode", json={"mode": "paused"})
+        assert (refused.status_code, refused.json()["type"]) == (409, "/problems/model-unusable")
+        revision = deployed(station, (path, broken, whole), name="Repaired")
+        assert station.outcome(revision)["state"] == "runs"
+        eventually(station.up)
+        assert title(station) == "A single bolt"
+
+
+def test_a_broken_model_that_nobody_has_edited_is_an_error_of_the_command_line(tmp_path: Path) -> None:
+    model = tmp_path / "broken"
+    shutil.copytree(SINGLE_BOLT, model)
+    path, whole, broken = LOOSE
+    (model / path).write_text((model / path).read_text().replace(whole, broken))
+    refused = finished("run", str(model), "--port", str(free_port()), "--emulator")
+    assert refused.returncode == UNUSABLE
+    assert "bolt_stat" in refused.stderr
+
+
+def test_a_model_that_cannot_be_emulated_runs_without_and_is_repaired_on_its_page(tmp_path: Path) -> None:
+    model = tmp_path / "single_bolt"
+    shutil.copytree(SINGLE_BOLT, model)
+    path, before, after = NEVER_GIVEN
+    (model / path).write_text((model / path).read_text().replace(before, after))
+    with edited(tmp_path, "--emulator", model=model) as station:
+        eventually(station.up)
+        eventually(lambda: "not-emulated" in alarms(station))
+        assert "nowhere" in alarms(station)["not-emulated"]
+        station.control()
+        revision = deployed(station, (path, after, before), name="Repaired")
+        assert station.outcome(revision)["state"] == "runs"
+        eventually(lambda: station.value("robot.pose") == "home")
+        assert "not-emulated" not in alarms(station)
+
+
+def moved(station: EditedStation) -> None:
+    """The robot stands above the bolt, for production is started, and paused."""
+    station.control()
+    station.asked("PUT", "mode", {"mode": "paused"})
+    station.asked("POST", "production/start", {})
+    station.asked("POST", "trials", {"ability": "robot.move_to(above)", "reason": "to try it"})
+    eventually(lambda: station.value("robot.pose") == "above")
+    eventually(lambda: station.get("errand", "station") is None)
+
+
+def test_emulated_devices_go_on_as_they_stand_or_begin_anew_with_the_station(tmp_path: Path) -> None:
+    with edited(tmp_path, "--emulator", "--emulator-speed", "5") as station:
+        eventually(station.up)
+        moved(station)
+        session = station.get("control", "station")["session"]
+        revision = deployed(station, TITLED, name="Titled")
+        assert station.outcome(revision)["state"] == "runs"
+        eventually(lambda: station.value("robot.pose") == "above")
+        assert title(station) == "Another title"
+        assert station.value("robot.target_pose") == "above"
+        assert station.get("control", "station")["session"] == session
+        assert station.get("undecided", "station") == {}
+        station.asked("POST", "production/start", {})
+
+        again = (STATION, TITLED[2], TITLED[1])
+        revision = deployed(station, again, name="As at first", simulation="reset")
+        assert station.outcome(revision)["state"] == "runs"
+        eventually(lambda: station.value("robot.pose") == "home")
+        assert station.value("robot.target_pose") == "home"
+        seen = station.station()
+        assert (seen["undecided"], seen["unconfirmed"], seen["control"]["session"]) == ({}, False, session)
+        station.asked("POST", "production/start", {})
+
+
+def test_real_devices_cannot_be_reset(tmp_path: Path) -> None:
+    with edited(tmp_path) as station:
+        eventually(station.up)
+        station.control()
+        station.change(TITLED)
+        station.checked()
+        refused = station.deploy(station.save("Titled"), simulation="reset")
+        assert (refused.status_code, refused.json()["type"]) == (409, "/problems/not-emulated")

@@ -1,0 +1,90 @@
+"""Who goes on by itself after a takeover, and who does not."""
+
+from __future__ import annotations
+
+import asyncio
+from contextlib import closing
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Literal, cast
+
+import pytest
+
+from sequence_planner.actor import SYSTEM
+from sequence_planner.control.commands import Command, SetMode, StartProduction
+from sequence_planner.control.controller import Controller
+from sequence_planner.control.execution import Execution
+from sequence_planner.control.moment import Moment
+from sequence_planner.control.process import _follows
+from sequence_planner.control.recording import Recording
+from sequence_planner.control.starting import go_on
+from sequence_planner.control.view import Mode, Production
+from sequence_planner.journal.ending import Ending
+from sequence_planner.journal.last_word import Life
+from sequence_planner.standby.keeper import Keeper
+from sequence_planner.station import prepare_station
+from sequence_planner.storage.database import Database
+from sequence_planner.synthesis.supervision import synthesise
+
+STATION = Path(__file__).parents[3] / "models" / "single_bolt"
+
+
+class Taking:
+    """A station that has taken over: a real execution and its record; its devices and its network are told."""
+
+    def __init__(self, database: Database) -> None:
+        automaton = prepare_station(STATION).automaton
+        self.run = Execution(automaton, synthesise(automaton))
+        self.recording = Recording(database, lambda why: None)
+        self.rivals = {"topic": "the station that died is still seen"}
+        heard: Any = SimpleNamespace(blind=False)
+        network = SimpleNamespace(rivals=self.rivals)
+        self._controller: Any = SimpleNamespace(execution=heard, undecided=(), devices=SimpleNamespace(network=network))
+
+    @property
+    def controller(self) -> Controller:
+        execution = self._controller.execution
+        execution.production, execution.mode = self.run.production, self.run.mode
+        return cast(Controller, self._controller)
+
+    async def handle(self, command: Command) -> bool:
+        await self.recording.carry_out(command, dict, self._act)
+        return True
+
+    async def _act(self, command: Command) -> None:
+        if isinstance(command, StartProduction):
+            self.run.start_production()
+        elif isinstance(command, SetMode):
+            self.run.change_mode(Mode(command.mode), "Anna", Moment.now())
+        _ = self.controller
+
+
+@pytest.mark.parametrize("mode", [None, Mode.PAUSED, Mode.HOLD])
+def test_production_goes_on_by_itself_unless_somebody_has_stopped_the_station_meanwhile(
+    tmp_path: Path, mode: Literal[Mode.PAUSED, Mode.HOLD] | None
+) -> None:
+    async def scenario(database: Database) -> Production:
+        station = Taking(database)
+        going = asyncio.create_task(go_on(station.controller, station.handle, "press-a", look_every=0.01))
+        await asyncio.sleep(0.05)
+        if mode is not None:
+            await station.handle(SetMode(actor=SYSTEM, mode=mode))
+        station.rivals.clear()  # nobody else is seen any more
+        await asyncio.wait_for(going, 20.0)
+        await station.recording.close()
+        return station.run.production
+
+    with closing(Database.open(f"sqlite:///{tmp_path}/station.sqlite")) as database:
+        database.upgrade()
+        expected = Production.STARTED if mode is None else Production.WAITING
+        assert asyncio.run(scenario(database)) is expected
+
+
+@pytest.mark.parametrize(
+    ("before", "now", "follows"), [(1, 2, True), (1, 3, False), (None, 2, False), (1, None, False)]
+)
+def test_what_a_station_knows_of_its_own_last_life_counts_only_where_nobody_commanded_since(
+    before: int | None, now: int | None, follows: bool
+) -> None:
+    ended = Ending(True, life=Life(turn=1, number=1, hash="0" * 64, epoch=before))
+    assert _follows(ended, cast(Keeper, SimpleNamespace(epoch=now))) is follows

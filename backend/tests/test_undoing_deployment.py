@@ -1,0 +1,163 @@
+"""A deployment that fails to start gives way to the model before, to the byte, and never at the cost of a model."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
+
+import pytest
+
+from sequence_planner import deployment_under_way
+from sequence_planner.control.deploying import LastDeployment
+from sequence_planner.control.known import Known
+from sequence_planner.control.view import ControlView
+from sequence_planner.deployment_folder import NAME, DeploymentFolder, DeploymentNote
+from sequence_planner.deployment_under_way import LONGEST_START, UnderWay
+from sequence_planner.lifeline import DEPLOYED, OVERTAKEN
+from sequence_planner.workshop.files import put_in_place, read_contents, read_files
+
+if TYPE_CHECKING:
+    from sequence_planner.launcher import Part
+
+MODEL = Path(__file__).parents[2] / "models" / "single_bolt"
+NOTE = DeploymentNote(revision="1" * 40, name="Repaired", by="anna", time=1.0)
+
+
+class Controller:
+    """The launcher's view of a process: how it has ended, and what was done to it."""
+
+    def __init__(self) -> None:
+        self.ended: int | None = None
+        self.done: list[str] = []
+
+    def stop(self) -> None:
+        self.done.append("stop")
+
+    def spawn(self, *more: str) -> None:
+        self.done.append("spawn")
+
+
+class Now:
+    def __init__(self) -> None:
+        self.seconds = 1000.0
+
+    def monotonic(self) -> float:
+        return self.seconds
+
+
+@pytest.fixture
+def model(tmp_path: Path) -> Path:
+    return Path(shutil.copytree(MODEL, tmp_path / "model"))
+
+
+@pytest.fixture
+def beside(tmp_path: Path) -> Path:
+    made = tmp_path / "beside"
+    made.mkdir()
+    return made
+
+
+@pytest.fixture
+def now(monkeypatch: pytest.MonkeyPatch) -> Now:
+    clock = Now()
+    monkeypatch.setattr(deployment_under_way, "time", clock)
+    return clock
+
+
+def begun(model: Path, beside: Path, controller: Controller) -> UnderWay:
+    """What watches over a deployment whose files are in place."""
+    DeploymentFolder(beside).begin(NOTE, read_contents(model))
+    put_in_place({**read_files(model), "station.yaml": "title: new\n"}, model)
+    watch = UnderWay(model, beside, cast("Part", controller), None)
+    controller.ended = DEPLOYED
+    watch.look()
+    controller.ended = None
+    return watch
+
+
+def test_files_come_back_to_the_byte_though_they_are_no_text(model: Path, beside: Path) -> None:
+    latin = "# Förare\r\n".encode("latin-1")
+    (model / "station.yaml").write_bytes(b"\xef\xbb\xbf" + (model / "station.yaml").read_bytes() + latin)
+    name, *_ = sorted(path.name for path in (model / "resources").iterdir())
+    crlf = b"\xef\xbb\xbf" + (model / "resources" / name).read_bytes().replace(b"\n", b"\r\n")
+    (model / "resources" / name).write_bytes(crlf)
+    before, folder = read_contents(model), DeploymentFolder(beside)
+    folder.begin(NOTE, before)
+    put_in_place({"station.yaml": "title: new\n", "resources/another.yaml": "title: another\n"}, model)
+    assert read_contents(model) != before
+    folder.bring_back(model, "why")
+    assert read_contents(model) == before
+    note = folder.note()
+    assert note is not None
+    assert note.undone == "why"
+
+
+@pytest.mark.parametrize("lost", ["", "note.json", "before", "before/station.yaml"])
+def test_a_model_keeps_its_files_where_what_was_kept_has_vanished(model: Path, beside: Path, lost: str) -> None:
+    folder = DeploymentFolder(beside)
+    folder.begin(NOTE, read_contents(model))
+    put_in_place({**read_files(model), "station.yaml": "title: new\n"}, model)
+    there, gone = read_contents(model), beside / NAME / lost
+    shutil.rmtree(gone) if gone.is_dir() else gone.unlink()
+    with pytest.raises(FileNotFoundError):
+        folder.bring_back(model, "why")
+    assert read_contents(model) == there
+
+
+def test_a_model_that_had_no_files_has_none_again(tmp_path: Path, beside: Path) -> None:
+    empty, folder = tmp_path / "empty", DeploymentFolder(beside)
+    empty.mkdir()
+    folder.begin(NOTE, {})
+    put_in_place({"station.yaml": "title: new\n"}, empty)
+    folder.bring_back(empty, "why")
+    assert read_contents(empty) == {}
+
+
+def test_nothing_is_undone_once_the_folder_has_vanished(model: Path, beside: Path, now: Now) -> None:
+    controller = Controller()
+    watch, there = begun(model, beside, controller), read_contents(model)
+    DeploymentFolder(beside).remove()
+    watch.look()
+    now.seconds += LONGEST_START + 1
+    controller.ended = 1
+    watch.look()
+    assert (read_contents(model), controller.done) == (there, [])
+
+
+def test_one_that_is_overtaken_while_it_starts_gets_all_the_time_again(model: Path, beside: Path, now: Now) -> None:
+    controller = Controller()
+    watch = begun(model, beside, controller)
+    now.seconds += LONGEST_START + 1
+    controller.ended = OVERTAKEN
+    watch.look()
+    controller.ended = None
+    now.seconds += LONGEST_START - 1
+    watch.look()
+    assert controller.done == []
+    now.seconds += 2
+    watch.look()
+    assert controller.done == ["stop", "spawn"]
+    assert read_contents(model) == read_contents(MODEL)
+
+
+def test_only_its_own_deployment_is_forgotten(beside: Path) -> None:
+    folder = DeploymentFolder(beside)
+    folder.begin(NOTE.model_copy(update={"undone": "why"}), {})
+    last = LastDeployment(beside / "socket")
+    folder.begin(NOTE.model_copy(update={"revision": "2" * 40}), {})
+    last.forget()
+    assert folder.exists, "a newer one has begun"
+    folder.begin(NOTE.model_copy(update={"undone": "why"}), {})
+    last.forget()
+    assert not folder.exists
+
+
+def test_who_has_stood_by_for_another_begins_with_what_that_one_has_done(beside: Path) -> None:
+    control = ControlView(session="s", person="anna", name="Anna", since=1.0, taken_from=None)
+    DeploymentFolder(beside).begin(NOTE.model_copy(update={"reset": True, "control": control}), {})
+    last = LastDeployment(beside / "socket")
+    last.tell_that_it_stands_by()
+    assert DeploymentFolder(beside).runs
+    known = last.known(Known(left_out=("an estimate",)))
+    assert (known.left_out, known.control) == (("an estimate",), None)

@@ -1,0 +1,13 @@
+/** What somebody who is asked for something has to know of the station first. */
+import type { Standing } from '#lib/contract.ts';
+import { say } from '#lib/text/text.svelte.ts';
+
+/** Why nothing starts by itself, whatever is said of a task; empty where the station goes on. */
+export function whyItStands(standing: Standing): string {
+	return standing === 'working' || standing === 'silent' ? '' : say().watch.standing[standing];
+}
+
+/** What is not as it should be: why the station stands, or which devices it does not hear. */
+export function stateText(standing: Standing, silent: readonly string[]): string {
+	return whyItStands(standing) || (silent.length > 0 ? say().watch.silent(silent.join(', ')) : '');
+}
