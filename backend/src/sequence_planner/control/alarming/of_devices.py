@@ -97,10 +97,15 @@ class DeviceAlarms:
         return Cause(key, priority, f"{text} {titles}", consequence, action, past=f"{past} {titles}")
 
     def _is_early(self, feed: Feed, monotonic: float) -> bool:
-        """Whether a silence need not be one yet: as a station begins much is begun beside it."""
+        """Whether a silence need not be one yet: as a station begins much is begun beside it.
+
+        One that was heard, and whose node went or broke its promise, is known to be silent.
+        """
         if self._began is None or monotonic - self._began >= GRACE:
             return False
-        return feed.last is None or monotonic - feed.last < (feed.pipeline.deadline or 0.0) + STUMBLES
+        if feed.last is None:
+            return True
+        return not feed.abandoned and monotonic - feed.last < (feed.pipeline.deadline or 0.0) + STUMBLES
 
     def _silence(self, resource: str, feeds: Mapping[str, Feed], consequence: str, follows: str) -> Cause:
         past = [_silence_of(name, feed, name in self._feeds.topics, over=True) for name, feed in feeds.items()]
