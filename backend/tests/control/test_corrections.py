@@ -15,6 +15,7 @@ from sequence_planner.control.errand import Errand, ErrandKind
 from sequence_planner.control.restart_commands import ConfirmEstimates, UndoCorrection
 from sequence_planner.control.view import Mode
 from sequence_planner.expressions.types import Value
+from sequence_planner.immutable import replace
 from sequence_planner.planning.plan import Plan, PlanRequest
 
 from .corrected import WHY, Station, what_is_never_together
@@ -30,6 +31,14 @@ def in_restart(station: Station) -> Station:
     station.execution.start_production()
     station.execution.change_mode(Mode.RESTART, "Eva", station.now)
     return station
+
+
+def undo(station: Station) -> None:
+    """Adam takes the last correction back."""
+    last = station.corrections.last
+    assert last is not None
+    command = UndoCorrection(actor=ADAM, revision=last.revision, reason="that was another one")
+    station.corrections.carry_out(command, station.now)
 
 
 def refusal(act: Callable[[], object]) -> str:
@@ -132,6 +141,28 @@ def test_one_step_of_undo() -> None:
     assert station.corrections.last is None
     again = UndoCorrection(actor=ADAM, revision=shown.revision, reason="once more")
     assert refusal(lambda: station.corrections.carry_out(again, station.now)) == "nothing-to-undo"
+
+
+def test_an_undo_takes_the_answer_back_and_is_none_itself() -> None:
+    """Whoever takes a correction back has not looked at the station."""
+    other = "bolts[bolt_pair_1]"
+    station = in_restart(Station())
+    station.corrections.carry_out(ConfirmEstimates(actor=EVA, values={other: "empty"}, reason=WHY), station.now)
+    station.correct({BOLT: "placed", other: "tightened"})
+    assert station.execution.conduct.answers == {BOLT: "placed", other: "tightened"}
+    undo(station)
+    assert station.execution.conduct.answers == {other: "empty"}, "what was said before counts again"
+    assert station.beliefs.of(BOLT).unconfirmed_since == station.now.epoch
+    assert station.beliefs.of(other).unconfirmed_since is None
+
+
+def test_an_undo_brings_no_answer_back_that_counts_no_more() -> None:
+    station = in_restart(Station())
+    station.corrections.carry_out(ConfirmEstimates(actor=EVA, values={BOLT: "empty"}, reason=WHY), station.now)
+    station.correct({BOLT: "placed"})
+    station.execution.conduct = replace(station.execution.conduct, answers={})  # as work went on with it
+    undo(station)
+    assert not station.execution.conduct.answers
 
 
 def test_no_undo_of_another_correction_than_the_one_that_was_seen() -> None:

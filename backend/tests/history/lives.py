@@ -147,7 +147,8 @@ def _acts(choices: Choices, lived: Life) -> list[Callable[[], object]]:
         if names:
             name = choices.pick(names)
             value = choices.pick(station.variables[name].type.domain)
-            execution.correct({name: value}, "Eva", "as seen", lived.moment)
+            taken_back = frozenset({name}) if choices.chance(3) else frozenset[str]()
+            execution.correct({name: value}, "Eva", "as seen", lived.moment, taken_back)
 
     def force() -> None:
         name = choices.pick((*station.names(Kind.MEASURED), *station.names(Kind.OUTPUT)))

@@ -6,17 +6,24 @@ the estimate, or the estimate has got another value. What is proposed meanwhile 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Ability, Automaton, Kind, State, reads, target
 from sequence_planner.expressions.types import Value
 
 
-def answered(automaton: Automaton, before: Mapping[str, Value], said: Iterable[str], state: State) -> dict[str, Value]:
-    """The answers `before` and those that were `said` now, as they are in `state`."""
+def answered(
+    automaton: Automaton,
+    before: Mapping[str, Value],
+    said: Iterable[str],
+    state: State,
+    taken_back: Collection[str] = (),
+) -> dict[str, Value]:
+    """The answers `before` and those that were `said` now, as they are in `state`, without what was `taken_back`."""
     estimates = {name for name in said if automaton.variables[name].kind is Kind.ESTIMATED}
-    return {**before, **{name: value for name in sorted(estimates) if (value := state[name]) is not None}}
+    now = {name: value for name in sorted(estimates) if (value := state[name]) is not None}
+    return {name: value for name, value in {**before, **now}.items() if name not in taken_back}
 
 
 def still_to_rely_on(

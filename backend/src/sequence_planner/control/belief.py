@@ -62,9 +62,12 @@ class Beliefs:
         match heard.happening:
             case Ticked(now=now) if heard.outcome is not None:
                 self._ticked(heard, heard.outcome, now)
-            case Corrected(values=names, by=by, now=now) | Confirmed(names=names, by=by, now=now):
+            case Corrected(values=names, by=by, now=now, taken_back=unseen):
                 for name in self._estimates.intersection(names):
-                    self._beliefs[name] = BeliefView(writer=by, at=now.epoch, evidence=[], unconfirmed_since=None)
+                    self._beliefs[name] = _unmeasured(by, now) if name in unseen else _seen(by, now)
+            case Confirmed(names=names, by=by, now=now):
+                for name in self._estimates.intersection(names):
+                    self._beliefs[name] = _seen(by, now)
             case ModeChanged(by=by, now=now) | CalledOff(by=by, now=now):
                 for name in self._changed(heard):
                     self._beliefs[name] = _unmeasured(by, now)
@@ -140,8 +143,15 @@ def _taken(actions: Iterable[Assignment], names: frozenset[str], changed: frozen
     return (a for a in actions if target(a) in (names if a.condition is None else names & changed))
 
 
+def _seen(by: str, now: Moment) -> BeliefView:
+    """A person says so."""
+    return BeliefView(writer=by, at=now.epoch, evidence=[], unconfirmed_since=None)
+
+
 def _unmeasured(writer: str, now: Moment) -> BeliefView:
-    """Calling off writes what is expected of it, and nothing was measured that says so."""
+    """Calling off writes what is expected of it, and who takes a correction back what was there: nothing was measured
+    that says so.
+    """
     return BeliefView(writer=writer, at=now.epoch, evidence=[], unconfirmed_since=now.epoch)
 
 

@@ -44,6 +44,7 @@ class Corrections:
         self._previewing = Previewing(execution, adviser, beliefs, doubting)
         self._last: LastCorrectionView | None = None
         self._stayed = False  # what was corrected is so ever since
+        self._answered_before = frozenset[str]()  # what somebody had said of these before the last correction
         execution.listeners.append(self._hear)
 
     @property
@@ -88,6 +89,7 @@ class Corrections:
         execution = self._execution
         values = self._correctable(command)
         before = {name: now for name in values if (now := execution.state[name]) is not None}
+        self._answered_before = frozenset(execution.conduct.answers)
         execution.correct(values, command.actor.name, command.reason, moment)
         self._stayed = True
         self._last = LastCorrectionView(
@@ -111,7 +113,10 @@ class Corrections:
         if not self._stayed:
             detail = "Something that was corrected has got another value since. Look at the state and correct that."
             raise CommandRefused("state-moved", "The state has moved", detail)
-        self._execution.correct(last.before, command.actor.name, command.reason, moment)
+        # Who takes it back has seen nothing: what counts is what was said before, unless work has gone on since.
+        said = self._answered_before & self._execution.conduct.answers.keys()
+        taken_back = frozenset(last.before) - said
+        self._execution.correct(last.before, command.actor.name, command.reason, moment, taken_back)
         self._last = None
 
     def _confirm(self, command: ConfirmEstimates, moment: Moment) -> None:

@@ -134,8 +134,18 @@ class Execution(Course):
         self._change(service=service, done=done, tried=tried)
         self._tell(ServiceChanged(of, name, in_service, by, why, now), self.state)
 
-    def correct(self, values: Mapping[str, Value], by: str, why: str, now: Moment) -> None:
-        """Estimated variables have these values from now on; outputs too, before production is started."""
+    def correct(
+        self,
+        values: Mapping[str, Value],
+        by: str,
+        why: str,
+        now: Moment,
+        taken_back: frozenset[str] = frozenset(),
+    ) -> None:
+        """Estimated variables have these values from now on; outputs too, before production is started.
+
+        What was said of those in `taken_back` was taken back.
+        """
         before = self.state
         forces = self.conduct.forces
         real = {name: replace(force, real=values[name]) for name, force in forces.items() if name in values}
@@ -143,9 +153,9 @@ class Execution(Course):
         self._change(
             returned=self.conduct.returned - values.keys(),
             forces={**forces, **real} if real else forces,
-            answers=answered(self.automaton, self.conduct.answers, values, self.state),
+            answers=answered(self.automaton, self.conduct.answers, values, self.state, taken_back),
         )
-        self._tell(Corrected(values, by, why, now), before)
+        self._tell(Corrected(values, by, why, now, taken_back), before)
 
     def confirm(self, names: frozenset[str], by: str, now: Moment) -> None:
         """A person has seen that these estimates are as believed."""

@@ -94,12 +94,16 @@ class ServiceChanged(Immutable):
 
 
 class Corrected(Immutable):
-    """Estimated variables, and outputs before production is started, have these values from now on."""
+    """Estimated variables, and outputs before production is started, have these values from now on.
+
+    Where that takes back what was corrected nobody says anything of those in `taken_back` any more.
+    """
 
     values: Mapping[str, Value]
     by: str
     why: str
     now: Moment
+    taken_back: frozenset[str] = frozenset()
 
 
 class Confirmed(Immutable):

@@ -130,8 +130,8 @@ class Player:
                 execution.take_step()
             case ServiceChanged(of, name, in_service, by, why, now):
                 execution.set_service(of, name, in_service, by, why, now)
-            case Corrected(values, by, why, now):
-                execution.correct(values, by, why, now)
+            case Corrected(values, by, why, now, taken_back):
+                execution.correct(values, by, why, now, taken_back)
             case Confirmed(names, by, now):
                 execution.confirm(names, by, now)
             case Forced(name, value, until, by, why):

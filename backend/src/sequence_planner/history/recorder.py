@@ -179,8 +179,8 @@ def _seen(heard: Heard) -> frozenset[str]:
     match heard.happening:
         case Confirmed(names):
             return names
-        case Corrected(values):
-            return frozenset(values)
+        case Corrected(values, taken_back=taken_back):
+            return frozenset(values) - taken_back
     return frozenset()
 
 

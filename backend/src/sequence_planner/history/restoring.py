@@ -93,7 +93,7 @@ class _Known:
                 self._jobs[job] = document
         what = content.get("what", {})
         seen = what.get("names", ()) if record.kind == _CONFIRMED else what.get("values", {})
-        self._unconfirmed.difference_update(changes, seen)
+        self._unconfirmed.difference_update(changes, set(seen) - set(what.get("taken_back", ())))
 
     def restored(self, automaton: Automaton, now: Moment) -> Restored:
         left_out: list[str] = []
