@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -29,9 +29,14 @@ def worked(seconds: float, snapshot_every: int = 50) -> Iterator[tuple[Database,
 
 
 async def life(
-    database: Database, folder: Path, seconds: float, snapshot_every: int = 50, known: Beginning | None = None
+    database: Database,
+    folder: Path,
+    seconds: float,
+    snapshot_every: int = 50,
+    known: Beginning | None = None,
+    then: Callable[[Execution], None] = lambda execution: None,
 ) -> Execution:
-    """One life of a station: from `known` on, or from the beginning."""
+    """One life of a station: from `known` on, or from the beginning; `then` comes last."""
     station, supervisor, planner = ready(folder)
     execution = Execution(station.automaton, supervisor, known)
     writer = RunWriter(database, lambda: None)
@@ -41,5 +46,6 @@ async def life(
     RunRecorder(execution, writer.write, digest, known, lambda: simulated.now.epoch, snapshot_every)
     execution.start_production()
     simulated.run(seconds)
+    then(execution)
     await writer.close()
     return execution

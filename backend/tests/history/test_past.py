@@ -9,19 +9,23 @@ import os
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 from sqlalchemy import text
 
+from cli.commands import command
+from control.journalling import journal
 from control.rig import TRUCK_ENGINE, ready
 from history.journalled import NOW, life, worked
 from sequence_planner.automaton.structure import Kind, VariableDeclaration
 from sequence_planner.control.execution import Execution
+from sequence_planner.control.happenings import Confirmed
 from sequence_planner.control.moment import Moment
 from sequence_planner.expressions.types import EnumerationType
 from sequence_planner.history.branch import branch
-from sequence_planner.history.codec import BEGUN, SNAPSHOT
+from sequence_planner.history.codec import BEGUN, SNAPSHOT, kind_of
 from sequence_planner.history.error import HistoryError
 from sequence_planner.history.looking_back import looking_back
 from sequence_planner.history.model_digest import model_digest
@@ -33,6 +37,7 @@ from sequence_planner.immutable import replace
 from sequence_planner.journal import run_journal
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
+from sequence_planner.version import VERSION
 
 Worked = tuple[Database, Execution]
 STATION, SUPERVISOR, _ = ready(TRUCK_ENGINE)
@@ -120,6 +125,34 @@ def test_another_model_is_refused_in_words(past: Worked) -> None:
     with database.reading() as connection, pytest.raises(HistoryError, match="another model of the station") as refused:
         list(replay(connection, other, SUPERVISOR))
     assert refused.value.slug == "model-changed"
+
+
+def test_what_another_version_has_written_and_cannot_be_done_again_is_said_with_what_can() -> None:
+    """Version 0.1.0 did not remember what was confirmed, so its digests are others from there on."""
+    with journal() as database:
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("sequence_planner.history.recorder.VERSION", "0.1.0")
+            patch.setattr("sequence_planner.control.execution.answered", lambda *_: {})
+            confirm = partial(Execution.confirm, names=frozenset({"bolts[bolt_pair_1]"}), by="Eva", now=NOW)
+            asyncio.run(life(database, TRUCK_ENGINE, 3.0, then=confirm))
+        with database.reading() as connection:
+            confirmed = run_journal.before(connection, None, 1, {kind_of(Confirmed)})[0].number
+            known = beginning(connection, AUTOMATON, NOW)
+        assert known is not None
+        asyncio.run(life(database, TRUCK_ENGINE, 3.0, known=known.beginning))
+        with database.reading() as connection:
+            begun = run_journal.before(connection, None, 1, {BEGUN})[0].number
+        with pytest.raises(HistoryError) as refused:
+            replayed(database)
+        assert refused.value.slug == "other-version"
+        said = str(refused.value)
+        assert said.startswith(f"record {confirmed} (confirmed) ")
+        assert f"another version of the program, 0.1.0, and this is {VERSION}: that one replays it" in said
+        assert said.endswith(f"; this one goes on from record {begun}")
+        assert replayed(database, to=confirmed - 1), "what can be done again is"
+        assert replayed(database, from_=begun)[-1].difference is None
+        code, _, err = command("journal", "replay", TRUCK_ENGINE, "--database", f"sqlite:///{database.place}")
+        assert (code, "another version of the program, 0.1.0" in err) == (2, True)
 
 
 def test_the_digest_of_a_model_is_that_of_what_it_says() -> None:
@@ -235,8 +268,6 @@ def test_a_journal_that_cannot_be_read_says_so_and_what_to_do(content: str) -> N
 
 
 def test_nothing_comes_back_where_nothing_was() -> None:
-    from control.journalling import journal  # noqa: PLC0415
-
     with journal() as database, database.reading() as connection:
         assert beginning(connection, AUTOMATON, NOW) is None
         with pytest.raises(HistoryError, match="nothing has happened yet"):

@@ -2,6 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Final
+
+
+OTHER_VERSION: Final = "other-version"  # of the program has written it
+
 
 class HistoryError(Exception):
     """What is asked of the journal cannot be told; the text says why, and `slug` names the kind for machines."""

@@ -35,12 +35,13 @@ from sequence_planner.control.happenings import (
 )
 from sequence_planner.control.moment import Moment
 from sequence_planner.history.codec import BEGUN, KINDS, SNAPSHOT, TICKED, Codec, Senses, TickBook
-from sequence_planner.history.error import HistoryError
+from sequence_planner.history.error import OTHER_VERSION, HistoryError
 from sequence_planner.history.memory import Memory
 from sequence_planner.history.model_digest import model_digest
 from sequence_planner.history.shapes import UnreadableError
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.planning.plan import Contract
+from sequence_planner.version import VERSION
 
 _DEADLINE = 0.0  # of questions, which nobody answers here: the answers are in the journal
 
@@ -55,6 +56,7 @@ class Player:
         self._memory = Memory(automaton, self._codec)
         self._book = TickBook()
         self._execution: Execution | None = None
+        self._program = VERSION  # that has written the records
         self.now = Moment(0.0, 0.0)
         """When the last that has a time has happened."""
 
@@ -68,7 +70,8 @@ class Player:
     def play(self, record: RunRecord) -> str | None:
         """Do what a record says; how it then is not as the record says, None if it is.
 
-        Raises `HistoryError` for a record of another model, and for one that cannot be read.
+        Raises `HistoryError` for a record of another model, for one that cannot be read, and for one of another version
+        of the program that this one cannot do again.
         """
         if record.kind not in KINDS and record.kind not in (BEGUN, SNAPSHOT):
             return None
@@ -78,19 +81,28 @@ class Player:
                 self.now = Moment(*(now if isinstance(now, list) else (now["epoch"], now["monotonic"])))
             if record.kind in KINDS:
                 self._happen(self._happening(record.kind, content))
-            elif record.kind == BEGUN or self._execution is None:
-                self._begin(record, content)
             else:
-                self._execution.forget()
+                self._program = str(content.get("program", VERSION))
+                if record.kind == BEGUN or self._execution is None:
+                    self._begin(record, content)
+                else:
+                    self._execution.forget()
         except (ValueError, LookupError, TypeError, AttributeError) as error:
-            raise HistoryError(
-                "history-unreadable", f"record {record.number} cannot be read: {error or type(error).__name__}"
-            ) from error
-        expected, found = content.get("digest"), self._memory.digest(self.execution)
-        return None if found == expected else self._difference(record, content)
+            why = f"record {record.number} cannot be read: {error or type(error).__name__}"
+            if self._program != VERSION:
+                raise self._of_another_version(why) from error
+            raise HistoryError("history-unreadable", why) from error
+        if self._memory.digest(self.execution) == content.get("digest"):
+            return None
+        difference = self._difference(record, content)
+        if self._program != VERSION:
+            raise self._of_another_version(difference)
+        return difference
 
     def _begin(self, record: RunRecord, content: dict[str, Any]) -> None:
         if content.get("model") != self._model:
+            if self._program != VERSION:
+                raise self._of_another_version(f"record {record.number} has another digest of the model")
             raise HistoryError(
                 "model-changed",
                 f"record {record.number} was written with another model of the station, or another version of it: what "
@@ -152,6 +164,14 @@ class Player:
                 execution.command_job(job, act, by, why, now)
             case JobForgotten(job, by, now):
                 execution.forget_job(job, by, now)
+
+    def _of_another_version(self, why: str) -> HistoryError:
+        """What keeps a record from being done again that another version of the program has written."""
+        return HistoryError(
+            OTHER_VERSION,
+            f"{why}. It was written by another version of the program, {self._program}, and this is {VERSION}: "
+            "that one replays it, in a backup from before the update and with the model of that time",
+        )
 
     def _difference(self, record: RunRecord, content: dict[str, Any]) -> str:
         """In what the replayed execution is not as it was, as far as the record says how it was."""

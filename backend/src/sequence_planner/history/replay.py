@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
@@ -13,12 +14,15 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
 from sequence_planner.history.codec import BEGUN, SNAPSHOT
-from sequence_planner.history.error import HistoryError
+from sequence_planner.history.error import OTHER_VERSION, HistoryError
 from sequence_planner.history.player import Player
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.version import VERSION
 
 _PAGE: Final = 1000  # records read at once
+_FEW: Final = 20  # of those that say everything, which are long
+_WHOLE: Final = (BEGUN, SNAPSHOT)
 
 
 @dataclass(frozen=True)
@@ -40,7 +44,7 @@ def replay(
     """Replay the records from the last one that says everything and is not above `from_`, up to `to` or all there are.
 
     It ends with the first record that does not come to what it says. Raises `HistoryError` where the model is another
-    one, or a record cannot be read.
+    one, a record cannot be read, or was written by another version of the program and cannot be done again by this one.
     """
     player = Player(automaton, supervisor)
     number = _start(connection, from_) - 1
@@ -48,7 +52,10 @@ def replay(
         for record in page:
             if to is not None and record.number > to:
                 return
-            difference = player.play(record)
+            try:
+                difference = player.play(record)
+            except HistoryError as error:
+                raise _with_the_next(connection, record.number, error) from error
             yield Replayed(record, player.execution, player.now, difference)
             if difference is not None:
                 return
@@ -57,8 +64,24 @@ def replay(
 
 def _start(connection: Connection, number: int) -> int:
     """Where to begin. Raises `HistoryError` where there is nothing to begin with."""
-    whole = (BEGUN, SNAPSHOT)
-    found = run_journal.before(connection, number + 1, 1, whole) or run_journal.after(connection, 0, 1, whole)
+    found = run_journal.before(connection, number + 1, 1, _WHOLE) or run_journal.after(connection, 0, 1, _WHOLE)
     if not found:
         raise HistoryError("history-gone", "nothing has happened yet: the journal has no record of a run")
     return found[0].number
+
+
+def _with_the_next(connection: Connection, number: int, error: HistoryError) -> HistoryError:
+    """The same, and where this version of the program can begin again behind what another one has written."""
+    if error.slug != OTHER_VERSION:
+        return error
+    own = (each for each in _whole_after(connection, number) if json.loads(each.content).get("program") == VERSION)
+    first = next(own, None)
+    further = "nothing was written by this one yet" if first is None else f"this one goes on from record {first.number}"
+    return HistoryError(OTHER_VERSION, f"{error.detail}; {further}")
+
+
+def _whole_after(connection: Connection, number: int) -> Iterator[RunRecord]:
+    """Records behind `number` that say everything."""
+    while page := run_journal.after(connection, number, _FEW, _WHOLE):
+        yield from page
+        number = page[-1].number

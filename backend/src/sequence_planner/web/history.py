@@ -57,6 +57,7 @@ _REFUSALS = {
     "no-record": (404, "There is no such record"),
     "history-gone": (404, "That was cut off"),
     "model-changed": (409, "The model is another one"),
+    "other-version": (409, "Another version of the program has written it"),
     "history-differs": (409, "The run cannot be replayed"),
     "history-unreadable": (409, "The run cannot be replayed"),
     "not-estimated": (422, "This is no estimated variable"),
