@@ -21,6 +21,7 @@ import threading
 import time
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import UTC, datetime
 from pathlib import Path
 from socket import socket as ListeningSocket  # noqa: N812 - `socket` is the path of another one
 
@@ -32,6 +33,7 @@ from sequence_planner.control.unix_socket import LONGEST_PATH
 from sequence_planner.deployment_under_way import UnderWay
 from sequence_planner.emulation.standing import standing_file
 from sequence_planner.identity.openid.options import ProviderOptions
+from sequence_planner.journal.last_word import set_aside
 from sequence_planner.lifeline import (
     DEMONSTRATION_DATABASE,
     DEPLOYED,
@@ -286,6 +288,9 @@ def launch(request: Launch) -> int:
                 if request.hot_standby is not None and not isinstance(database.place, PostgresqlServer):
                     text = f"several stations cannot share {database.place}: --hot-standby takes PostgreSQL"
                     raise SettingsError(text)
+                if request.new and database.is_empty:
+                    for path, kept in set_aside(database.place, datetime.now(UTC)):
+                        _say(f"a new station begins: the last word of another one, {path}, is kept as {kept}")
                 database.upgrade(new=request.new)
             with contextlib.closing(bind(request.endpoint)) as listener:
                 return _Launcher(request, url, socket, listener, stop).run()

@@ -7,6 +7,7 @@ import resource
 import subprocess
 import sys
 from contextlib import closing
+from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -18,8 +19,9 @@ from sequence_planner.actor import SYSTEM
 from sequence_planner.journal.chain import Position
 from sequence_planner.journal.ending import Ending, ending
 from sequence_planner.journal.entry import LONGEST_REASON, Entry
-from sequence_planner.journal.last_word import LastWord, Word
+from sequence_planner.journal.last_word import LastWord, Word, last_word_file, set_aside
 from sequence_planner.journal.run_writer import RunWriter
+from sequence_planner.storage.address import PostgresqlServer, SqliteFile, address
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
 
@@ -115,6 +117,43 @@ def test_two_controllers_never_have_it_at_once(tmp_path: Path) -> None:
     subprocess.run([sys.executable, "-c", OTHER, path], check=True)
 
 
+def test_the_words_of_a_station_that_is_no_more_are_set_aside(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "home"))
+    when = datetime(2026, 1, 31, 12, tzinfo=UTC)
+    file, server = SqliteFile(tmp_path / "station.sqlite"), address("postgresql://press@db.example/press")
+    assert isinstance(server, PostgresqlServer)
+    said = [(file, last_word_file(file)), *((server, last_word_file(server, name)) for name in (None, "press-a"))]
+    other = last_word_file(SqliteFile(tmp_path / "other.sqlite"))
+    for path in (*(path for _, path in said), other):
+        with closing(LastWord.open(path)) as opened:
+            opened.begin(Position(1, "a"), None)
+            opened.say(word(5))
+    for place in (file, server):
+        moved = set_aside(place, when)
+        assert [path for path, _ in moved] == sorted(path for of, path in said if of == place)
+        for path, kept in moved:
+            assert kept.name == f"{path.name}-aside-20260131T120000"
+            assert not path.exists()
+            assert lives(kept)[0] == (1, 5), "it is kept as it was"
+        assert set_aside(place, when) == []
+    assert other.exists()
+
+
+def test_the_word_of_a_controller_that_runs_is_not_set_aside(tmp_path: Path) -> None:
+    file = SqliteFile(tmp_path / "station.sqlite")
+    with closing(LastWord.open(last_word_file(file))) as opened:
+        opened.begin(Position(1, "a"), None)
+        code = (
+            "from datetime import datetime; from pathlib import Path; "
+            "from sequence_planner.journal.last_word import set_aside; "
+            "from sequence_planner.storage.address import SqliteFile; "
+            f"set_aside(SqliteFile(Path({str(file.path)!r})), datetime.now())"
+        )
+        other = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
+        assert "another controller of this station runs already" in other.stderr
+    assert last_word_file(file).exists()
+
+
 def test_a_folder_that_cannot_be_written_to_is_told(tmp_path: Path) -> None:
     (tmp_path / "file").touch()
     with pytest.raises(StorageError, match=r"the last word of the station, cannot be opened"):
@@ -174,11 +213,30 @@ def test_no_stop_that_was_accepted_is_ever_unknown_and_what_is_recorded_is_certa
         station = _Station(Path(folder))
         assert station.ended() == Ending(True), "nothing was ever there"
         for away, stops, number in drawn:
+            unknown = not station.ended().is_certain
             stopped, durable = asyncio.run(station.live(away, stops, number))
             ended = station.ended()
             if stopped is not None and stopped > durable:
                 assert not ended.is_certain
                 assert ended.word is not None and ended.word.number == stopped
-                return  # what begins now begins at rest
-            assert ended.is_certain or away > number, "all that was accepted is recorded"
+            elif away <= number:
+                assert ended.is_certain, "all that was accepted is recorded, and it began at rest if it had to"
+            else:
+                assert not (unknown and ended.is_certain), "nothing was recorded of this life"
         station.database.close()
+
+
+def test_a_word_that_the_journal_never_comes_to_again_counts_once(tmp_path: Path) -> None:
+    """As after a backup was restored: the file knows of later records than the journal."""
+    station = _Station(tmp_path)
+    asyncio.run(station.live(0, [], 1))
+    with closing(LastWord.open(tmp_path / "last-word")) as opened:
+        opened.begin(Position(5000, "a"), None)
+        opened.say(word(5100))
+    ended = station.ended()
+    assert ended.word is not None and ended.word.number == 5100
+    for _ in range(3):
+        asyncio.run(station.live(0, [], 1))
+        ended = station.ended()
+        assert (ended.is_certain, ended.word) == (True, None)
+    station.database.close()

@@ -29,13 +29,15 @@ def ending(connection: Connection, lives: Sequence[Life], begun_kind: str) -> En
     life.
 
     A word counts as long as the journal does not reach as far as it, and no other life has begun since: that began
-    paused where it was not certain of this.
+    paused where it was not certain of this. So a word of records that a restored backup does not have counts once.
     """
     end, begun = run_journal.end(connection), run_journal.last(connection, begun_kind)
     number = START.number if end is None else end.number
     for life in sorted(lives, key=lambda each: each.turn, reverse=True):
         if life.word is not None and life.word.number > number and not _is_over(life, begun):
             return Ending(False, life.word, life if _has_begun(connection, life, number) else None)
+        if _has_begun(connection, life, number):
+            break  # with all that the lives before it had said
     for life in lives:
         if _has_begun(connection, life, number) and not _is_over(life, begun):
             return Ending(True, life=life)

@@ -12,12 +12,14 @@ it speaks of, or a later life of a controller has begun (see `ending`).
 
 from __future__ import annotations
 
+import contextlib
 import errno
 import fcntl
 import hashlib
 import os
 import re
 import zlib
+from datetime import datetime
 from pathlib import Path
 from typing import Final
 
@@ -32,6 +34,7 @@ from sequence_planner.storage.location import state_folder
 _PLACE: Final = 16 * 1024  # bytes
 _LONGEST: Final = 3000  # characters of a word, of up to four bytes
 _HEAD: Final = 8  # hexadecimal digits of the checksum
+_ASIDE: Final = re.compile(r"-aside-\d{8}T\d{6}$")
 
 
 class Word(BaseModel):
@@ -62,6 +65,34 @@ def last_word_file(place: SqliteFile | PostgresqlServer, standby: str | None = N
     mark = hashlib.sha256(str(place).encode()).hexdigest()[:8]
     name = "" if standby is None else "-" + re.sub(r"[^\w.-]", "_", standby)
     return state_folder() / f"last-word-{mark}{name}"
+
+
+def set_aside(place: SqliteFile | PostgresqlServer, when: datetime) -> list[tuple[Path, Path]]:
+    """Give the last words of a station that is no more other names, so that a new one with its database does not begin
+    with them: each file as it was called, and as it is called now.
+
+    Raises `StorageError` where a controller has one of them, or it cannot be renamed.
+    """
+    moved = []
+    for path in _left(place):
+        with contextlib.closing(LastWord.open(path)) as word:
+            if not word.lives:
+                continue
+            kept = path.with_name(f"{path.name}-aside-{when:%Y%m%dT%H%M%S}")
+            try:
+                path.rename(kept)
+            except OSError as error:
+                text = f"{path}, the last word of another station, cannot be set aside: {error.strerror}"
+                raise StorageError(text) from error
+            moved.append((path, kept))
+    return moved
+
+
+def _left(place: SqliteFile | PostgresqlServer) -> list[Path]:
+    """The last words of all stations that this user has run with a database."""
+    first = last_word_file(place)
+    found = [first] if isinstance(place, SqliteFile) else sorted(first.parent.glob(f"{first.name}*"))
+    return [path for path in found if path.is_file() and not _ASIDE.search(path.name)]
 
 
 class LastWord:

@@ -54,6 +54,12 @@ class Database:
             raise
         return database
 
+    @property
+    def is_empty(self) -> bool:
+        """Whether there are no tables yet."""
+        with self._told(everything=True), self.reading() as connection:
+            return upgrading.is_empty(connection)
+
     def upgrade(self, *, new: bool = False) -> None:
         """Bring the tables to what this version of the program uses; several processes may do so at once.
 
