@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import shutil
+import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, cast
+from typing import cast
 
 import pytest
 
@@ -14,11 +15,9 @@ from sequence_planner.control.known import Known
 from sequence_planner.control.view import ControlView
 from sequence_planner.deployment_folder import NAME, DeploymentFolder, DeploymentNote
 from sequence_planner.deployment_under_way import LONGEST_START, UnderWay
+from sequence_planner.launcher import Part
 from sequence_planner.lifeline import DEPLOYED, OVERTAKEN
 from sequence_planner.workshop.files import put_in_place, read_contents, read_files
-
-if TYPE_CHECKING:
-    from sequence_planner.launcher import Part
 
 MODEL = Path(__file__).parents[2] / "models" / "single_bolt"
 NOTE = DeploymentNote(revision="1" * 40, name="Repaired", by="anna", time=1.0)
@@ -69,25 +68,29 @@ def begun(model: Path, beside: Path, controller: Controller) -> UnderWay:
     """What watches over a deployment whose files are in place."""
     DeploymentFolder(beside).begin(NOTE, read_contents(model))
     put_in_place({**read_files(model), "station.yaml": "title: new\n"}, model)
-    watch = UnderWay(model, beside, cast("Part", controller), None)
+    watch = UnderWay(model, beside, cast(Part, controller), None)
     controller.ended = DEPLOYED
     watch.look()
     controller.ended = None
     return watch
 
 
-def test_files_come_back_to_the_byte_though_they_are_no_text(model: Path, beside: Path) -> None:
+def test_files_come_back_to_the_byte_and_with_their_modes_though_they_are_no_text(model: Path, beside: Path) -> None:
     latin = "# Förare\r\n".encode("latin-1")
     (model / "station.yaml").write_bytes(b"\xef\xbb\xbf" + (model / "station.yaml").read_bytes() + latin)
     name, *_ = sorted(path.name for path in (model / "resources").iterdir())
     crlf = b"\xef\xbb\xbf" + (model / "resources" / name).read_bytes().replace(b"\n", b"\r\n")
     (model / "resources" / name).write_bytes(crlf)
+    (model / "station.yaml").chmod(0o640)
+    (model / "resources" / name).chmod(0o600)
     before, folder = read_contents(model), DeploymentFolder(beside)
     folder.begin(NOTE, before)
     put_in_place({"station.yaml": "title: new\n", "resources/another.yaml": "title: another\n"}, model)
     assert read_contents(model) != before
     folder.bring_back(model, "why")
     assert read_contents(model) == before
+    assert (model / "station.yaml").stat().st_mode & 0o777 == 0o640
+    assert (model / "resources" / name).stat().st_mode & 0o777 == 0o600, "it was removed, and is as it was"
     note = folder.note()
     assert note is not None
     assert note.undone == "why"
@@ -139,6 +142,30 @@ def test_one_that_is_overtaken_while_it_starts_gets_all_the_time_again(model: Pa
     watch.look()
     assert controller.done == ["stop", "spawn"]
     assert read_contents(model) == read_contents(MODEL)
+
+
+def test_what_ends_between_two_looks_is_seen_by_who_watches_over_the_deployment_first(
+    model: Path, beside: Path
+) -> None:
+    """A controller that makes room just after the launcher has looked at the deployment."""
+    DeploymentFolder(beside).begin(NOTE, read_contents(model))
+    part = Part("controller", [sys.executable, "-c", f"raise SystemExit(input() and {DEPLOYED})"])
+    part.spawn()
+    watch, first = UnderWay(model, beside, part, None), part.process
+    assert first is not None and first.stdin is not None
+    part.look()
+    watch.look()
+    first.stdin.write(b"end\n")
+    first.stdin.flush()
+    first.wait()
+    assert part.look_after() == 0
+    assert (part.process, watch.was) == (first, False), "it is the next turn that sees it"
+    part.look()
+    watch.look()
+    assert part.look_after() == 0
+    assert watch.was
+    assert part.process not in (None, first)
+    part.end()
 
 
 def test_only_its_own_deployment_is_forgotten(beside: Path) -> None:

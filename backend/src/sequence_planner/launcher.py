@@ -126,6 +126,8 @@ class Part:
         if last_words is not None:
             self._environment = {**self._environment, LAST_WORDS_FILE: str(last_words)}
         self.process: subprocess.Popen[bytes] | None = None
+        self.ended: int | None = None
+        """The exit code of a process that was seen to have ended (`look`) and was not looked after yet."""
         self._command = command
         self._pause = FIRST_PAUSE
         self._due = 0.0  # on the clock of `time.monotonic`, as is `_begun`
@@ -140,7 +142,7 @@ class Part:
 
     def spawn(self, *more: str) -> None:
         """Start it; `more` arguments are for this time only."""
-        self.process = self._popen(*more)
+        self.process, self.ended = self._popen(*more), None
         self._begun = time.monotonic()
         self._spare_due = self._begun + SPARE_AFTER
 
@@ -156,10 +158,9 @@ class Part:
             pass_fds=self._inherited,
         )
 
-    @property
-    def ended(self) -> int | None:
-        """The exit code of a process that has ended and was not looked after yet."""
-        return None if self.process is None else self.process.poll()
+    def look(self) -> None:
+        """See whether it has ended. All that is done because of that goes by the same look, whenever it ends."""
+        self.ended = None if self.process is None else self.process.poll()
 
     def said(self, code: int) -> str:
         """Why it has ended: what it said last, if anything."""
@@ -173,7 +174,7 @@ class Part:
         if self.process is not None:
             self.process.terminate()
             _wait(self.process)
-        self.process = None
+        self.process = self.ended = None
 
     def look_after(self) -> int:
         """Start it again some time after it has died. The exit code when it could not be run from the first."""
@@ -182,7 +183,7 @@ class Part:
             if now >= self._due:
                 self.spawn(*self._told_again)
             return 0
-        code = self.process.poll()
+        code = self.ended
         if code is None:
             self._look_after_spare(now)
             return 0
@@ -239,7 +240,7 @@ class Part:
 
     def has_ended(self) -> int | None:
         """The exit code, once, of a process that is not started again."""
-        code = None if self.process is None else self.process.poll()
+        code = self.ended
         if code is not None:
             self._forget()
         return code
@@ -255,7 +256,7 @@ class Part:
     def _forget(self) -> None:
         if self.process is not None:
             _close(self.process)
-        self.process = None
+        self.process = self.ended = None
 
 
 def launch(request: Launch) -> int:
@@ -371,6 +372,8 @@ class _Launcher:
                 if told != (restarts := {each.name: each.restarts for each in (self._controller, self._server)}):
                     write_restarts(self._folder, restarts)
                     told = restarts
+                for each in (self._controller, self._server, self._emulator):
+                    each.look()
                 self._deployment.look()
                 code = self._notice_emulator() or self._controller.look_after() or self._server.look_after()
                 if code:

@@ -53,11 +53,17 @@ def _no_nohup() -> Iterator[None]:
     signal.signal(signal.SIGHUP, kept)
 
 
+def looked_after(watched: Part) -> int:
+    """A turn of the launcher."""
+    watched.look()
+    return watched.look_after()
+
+
 def starts(watched: Part, count: int) -> list[float]:
     """Look after the part until it has been started so many times; when that was."""
     seen: dict[int, float] = {}
     while len(seen) < count:
-        assert watched.look_after() == 0
+        assert looked_after(watched) == 0
         if watched.process is not None:
             seen.setdefault(watched.process.pid, time.monotonic())
         time.sleep(0.01)
@@ -109,7 +115,7 @@ def spared(monkeypatch: pytest.MonkeyPatch) -> tuple[Part, int, int]:
 
 def pair(watched: Part) -> tuple[int, int]:
     """The process of a part and its spare, as soon as it has one."""
-    eventually(lambda: watched.look_after() == 0 and watched.spare is not None)
+    eventually(lambda: looked_after(watched) == 0 and watched.spare is not None)
     assert watched.process is not None
     assert watched.spare is not None
     return watched.process.pid, watched.spare.pid
@@ -139,7 +145,7 @@ def test_a_spare_that_has_died_too_does_no_harm(monkeypatch: pytest.MonkeyPatch)
         os.kill(each, signal.SIGKILL)
     after = starts(watched, 1)
     assert after
-    eventually(lambda: watched.look_after() == 0 and watched.process is not None)
+    eventually(lambda: looked_after(watched) == 0 and watched.process is not None)
     assert watched.process is not None
     assert watched.process.pid not in (alive, spare)
     end(watched)
@@ -161,7 +167,7 @@ def test_what_cannot_run_as_asked_is_given_up_at_first_but_not_once_it_ran() -> 
     program = f"import time; time.sleep(0.1); raise SystemExit({UNUSABLE})"
     refusing = part(program)
     refusing.spawn()
-    eventually(lambda: refusing.look_after() == UNUSABLE)
+    eventually(lambda: looked_after(refusing) == UNUSABLE)
     refusing.end()
     running = part(program)
     running.spawn()

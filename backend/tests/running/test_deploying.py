@@ -94,6 +94,10 @@ def test_a_start_that_fails_brings_the_model_before_back(tmp_path: Path) -> None
         eventually(lambda: station.outcome(revision)["state"] == "runs")
         station.asked("POST", "production/start", {})
         eventually(lambda: "deployment-undone" not in alarms(station))
+        # Whoever puts the files of before there now, once it went well, has changed the model: nothing was undone.
+        (station.model / ROBOT).write_text(before)
+        assert station.asked("GET", f"model/files?path={ROBOT}")["files"][ROBOT]["text"] == before
+        assert station.asked("GET", "model")["files"][ROBOT]["state"] == "same"
 
 
 def test_a_model_that_was_broken_while_nothing_ran_is_repaired_on_its_page(tmp_path: Path) -> None:

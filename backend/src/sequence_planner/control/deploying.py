@@ -39,6 +39,7 @@ class Deploying:
         self._beside = socket.parent
         self._emulated = emulated
         self._in_place = asyncio.Event()
+        self._accepted: Deploy | None = None
 
     def check(self, command: Deploy) -> None:
         """Raises `CommandRefused` for what can never be done here."""
@@ -46,8 +47,25 @@ class Deploying:
             detail = "Only emulated devices can begin anew as the model says. Deploy without resetting the simulation."
             raise CommandRefused("not-emulated", "There are real devices", detail)
 
+    def refusal(self) -> CommandRefused | None:
+        """Why nothing but a stop is carried out any more, once a deployment was accepted; None else.
+
+        What was done now would be of the model before, and whoever asks for it means one or the other.
+        """
+        accepted = self._accepted
+        return None if accepted is None else under_way(accepted.name, accepted.actor.name)
+
     async def carry_out(self, command: Deploy, control: ControlView | None, now: float) -> None:
         """Put the files in place; `control` is who is in control. Raises `CommandRefused`; all is as it was then."""
+        self._accepted = command
+        try:
+            await self._put(command, control, now)
+        except BaseException:
+            self._accepted = None
+            raise
+        self._in_place.set()
+
+    async def _put(self, command: Deploy, control: ControlView | None, now: float) -> None:
         folder = DeploymentFolder(self._beside)
         note = DeploymentNote(
             revision=command.revision,
@@ -68,13 +86,21 @@ class Deploying:
             folder.remove()
             detail = f"The files of the model cannot be written: {error.strerror}. Look at who may write to its folder."
             raise CommandRefused("model-not-written", "The model cannot be written", detail) from error
-        self._in_place.set()
 
     async def end(self) -> None:
         """Wait until files are in place. Raises `DeployedError` then."""
         await self._in_place.wait()
         await asyncio.sleep(ANSWERED)
         raise DeployedError
+
+
+def under_way(name: str, by: str) -> CommandRefused:
+    """Why nothing is commanded while a deployment is under way."""
+    detail = (
+        f"{by} has deployed {name}, and the station begins anew with it. Nothing is published until it runs and "
+        "somebody starts production. Try again then."
+    )
+    return CommandRefused("deployment-under-way", "Another model is being started", detail, 503)
 
 
 def _put_in_place(files: Files, model: Path, before: Contents) -> None:
@@ -112,6 +138,11 @@ class LastDeployment:
             revision=note.revision, name=note.name, by=note.by, at=note.time, state=state, why=note.undone
         )
 
+    @property
+    def control(self) -> ControlView | None:
+        """Who is in control as this controller begins."""
+        return None if self._note is None or self._stood_by else self._note.control
+
     def known(self, known: Known) -> Known:
         """What is known as a controller begins after it."""
         if (note := self._note) is None:
@@ -119,7 +150,7 @@ class LastDeployment:
         known = replace(known, deployment=self.view())
         if self._stood_by:  # another station has commanded since, and the journal tells what that has done
             return known
-        known = replace(known, control=note.control)
+        known = replace(known, control=self.control)
         if not note.reset or note.undone is not None or known.beginning is None:
             return known
         values = known.beginning.as_the_model_says()
@@ -132,6 +163,11 @@ class LastDeployment:
             if not emulated or not self.starting or up.exists():
                 return
             await asyncio.sleep(LOOK_EVERY)
+
+    def refusal(self) -> CommandRefused | None:
+        """Why nothing can be commanded yet; None where that is not because of a deployment."""
+        note = self._note
+        return under_way(note.name, note.by) if note is not None and self.starting else None
 
     def tell_that_it_runs(self) -> None:
         """The station runs the new model. Raises `OSError`."""

@@ -16,7 +16,7 @@ from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.view import Mode
 from sequence_planner.history.codec import BEGUN, kind_of
-from sequence_planner.history.restoring import beginning
+from sequence_planner.history.restoring import beginning, last_mode
 from sequence_planner.immutable import replace as replaced
 from sequence_planner.journal.ending import Ending, ending
 from sequence_planner.journal.entry import described
@@ -54,14 +54,25 @@ def as_it_ended(known: Known, ended: Ending, before: str | None) -> Known:
     if ended.is_certain or known.beginning is None:
         return known
     word, mode = ended.word, known.beginning.mode
-    if word is not None:
-        mode = Mode.PAUSED if word.mode == Mode.AUTOMATIC else Mode(word.mode)
-    elif mode is not Mode.AUTOMATIC:
+    if word is None and mode is not Mode.AUTOMATIC:
         return known  # it is at rest anyway
-    else:
-        mode = Mode.PAUSED
     because = _not_in_journal(word) if word is not None else _unknown(before)
-    return replace(known, beginning=replaced(known.beginning, mode=mode), halted=because)
+    return replace(known, beginning=replaced(known.beginning, mode=_as_it_ended(mode, ended)), halted=because)
+
+
+def last_known_mode(database: Database, ended: Ending) -> Mode:
+    """The mode in which the station begins, as far as it is known before it is prepared. Raises `StorageError`."""
+    with database.reading() as connection:
+        return _as_it_ended(last_mode(connection) or Mode.AUTOMATIC, ended)
+
+
+def _as_it_ended(mode: Mode, ended: Ending) -> Mode:
+    """The mode after `mode`, which is what the journal knows."""
+    if ended.is_certain:
+        return mode
+    if ended.word is not None:
+        mode = Mode(ended.word.mode)
+    return Mode.PAUSED if mode is Mode.AUTOMATIC else mode
 
 
 def _not_in_journal(word: Word) -> str:

@@ -19,6 +19,7 @@ from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.view import (
+    ControlView,
     DeploymentView,
     Mode,
     PackML,
@@ -138,11 +139,14 @@ def preparing_view(
     standby: StandbyView | None = None,
     deployment: DeploymentView | None = None,
     *,
+    mode: Mode = Mode.AUTOMATIC,
+    control: ControlView | None = None,
     unusable: bool = False,
 ) -> StationView:
     """What is shown while the safe set is being computed; with `trouble`, there is none and the station is not run.
 
-    It is `unusable` where the model means nothing at all.
+    `mode` and `control` are those with which it begins, as far as they are known. It is `unusable` where the model
+    means nothing at all.
     """
     alarms = {}
     if trouble is not None:
@@ -184,7 +188,7 @@ def preparing_view(
         tick=0,
         time=now,
         revision=0,
-        mode=Mode.AUTOMATIC,
+        mode=mode,
         packml=PackML.RESETTING,
         standing=StationStanding.PREPARING,
         silent=[],
@@ -192,7 +196,7 @@ def preparing_view(
         production=Production.PREPARING,
         unconfirmed=False,
         undecided={},
-        control=None,
+        control=control,
         resources={},
         variables={},
         abilities={},

@@ -15,11 +15,11 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.collection import keep_everything
 from sequence_planner.control.asks import Ask
 from sequence_planner.control.command_lease import held_lease, standby_view, stands_by
-from sequence_planner.control.commands import Command
+from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.deploying import Deploying, LastDeployment
 from sequence_planner.control.known import Known
-from sequence_planner.control.last_life import as_it_ended, how_it_ended, what_is_known
+from sequence_planner.control.last_life import as_it_ended, how_it_ended, last_known_mode, what_is_known
 from sequence_planner.control.lasting import Lasting
 from sequence_planner.control.link import ControllerLink
 from sequence_planner.control.network_graph import network_steps
@@ -29,7 +29,7 @@ from sequence_planner.control.preparation import Preparation, Unusable, analyse,
 from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.recording import Recording
 from sequence_planner.control.starting import go_on, start_when_alone
-from sequence_planner.control.view import StationIdentity, StationView
+from sequence_planner.control.view import Mode, StationIdentity, StationView
 from sequence_planner.control.view_part import View
 from sequence_planner.emulation.possible import emulation_findings
 from sequence_planner.journal.ending import Ending
@@ -99,7 +99,8 @@ async def control(running: Running) -> None:
         kept.push_async_callback(recording.close)
         lasting = Lasting(last_word)
         kept.callback(lasting.close)
-        await _live(_Life(running, preparation, recording, database, command, last_word, lasting))
+        mode = Mode.AUTOMATIC if running.start else await asyncio.to_thread(last_known_mode, database, ended)
+        await _live(_Life(running, preparation, recording, database, command, last_word, lasting, mode))
 
 
 async def _live(life: _Life) -> None:
@@ -133,6 +134,7 @@ class _Life:
         keeper: Keeper | None,
         last_word: LastWord,
         lasting: Lasting,
+        begins_in: Mode,
     ) -> None:
         self.keeper = keeper
         self._running = running
@@ -142,6 +144,7 @@ class _Life:
         self._last_word, self._lasting = last_word, lasting
         self._deploying = Deploying(running.model, running.socket, running.emulated)
         self._deployment = LastDeployment(running.socket)
+        self._begins_in = begins_in
         self._link = ControllerLink(running.socket, self._handle, self._answer)
 
     async def run(self, living: asyncio.TaskGroup) -> None:
@@ -264,12 +267,14 @@ class _Life:
         # Who commands may stop the station though it cannot renew its lease: nothing is said to a device meanwhile.
         if keeper is not None and not keeper.held and (keeper.epoch is None or not command.harmless):
             raise stands_by(keeper)
+        if (refusal := self._deploying.refusal()) is not None and not command.harmless:
+            raise refusal
         if isinstance(command, Deploy):
             self._deploying.check(command)
         if preparation.controller is None or not preparation.controller.commands:
             # What has no supervisor does not run, so another model may take its place at once.
             if preparation.trouble is None or not isinstance(command, Deploy):
-                raise preparation.refusal()
+                raise self._refusal()
         else:
             await preparation.controller.command(command)
         if isinstance(command, Deploy):
@@ -289,8 +294,14 @@ class _Life:
     async def _answer(self, ask: Ask) -> View:
         """What is told only when somebody asks for it. Raises `CommandRefused`."""
         if self._preparation.controller is None:
-            raise self._preparation.refusal()
+            raise self._refusal()
         return await self._preparation.controller.answer(ask)
+
+    def _refusal(self) -> CommandRefused:
+        """Why nothing can be commanded or asked yet."""
+        trouble = self._preparation.trouble
+        deploying = self._deployment.refusal() if trouble is None else None
+        return deploying or self._preparation.refusal()
 
     def _seen(self, controller: Controller) -> StationView:
         standby = None if self.keeper is None else standby_view(self.keeper)
@@ -318,6 +329,8 @@ class _Life:
                 known.trouble,
                 standby,
                 self._deployment.view(),
+                mode=self._begins_in,
+                control=self._deployment.control,
                 unusable=known.unusable,
             )
             self._link.publish(view)

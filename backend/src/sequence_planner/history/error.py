@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Final
 
-
 OTHER_VERSION: Final = "other-version"  # of the program has written it
 
 

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, Final
 
@@ -43,30 +45,60 @@ def beginning(connection: Connection, automaton: Automaton, now: Moment) -> Rest
 
     Raises `StorageError` where a record cannot be read. One that is not as it was written is said, and believed.
     """
-    whole = run_journal.before(connection, None, 1, (BEGUN, SNAPSHOT))
-    if not whole:
+    whole = _last_whole(connection)
+    if whole is None:
         return None
-    number = whole[0].number
-    last = run_journal.get(connection, number - 1)
-    changed = [] if whole[0].is_whole((last or run_journal.begin(connection)).hash) else [number]
-    try:
-        known = _Known(whole[0])
-        while page := run_journal.after(connection, number, _PAGE):
-            for record, before in zip(page, [known.record, *page], strict=False):
-                if record.number != before.number + 1 or not record.is_whole(before.hash):
-                    changed.append(record.number)
-                known.take(record)
-            number = page[-1].number
+    with _readable(whole):
+        known, changed = _read(connection, whole)
         found = known.restored(automaton, now)
-    except (ValueError, LookupError, TypeError, AttributeError) as error:
-        raise StorageError(
-            f"the journal cannot be read from record {whole[0].number} on ({error!r}): see what `sequence-planner "
-            "journal --verify` finds, and start with a copy of the database, or with another one"
-        ) from error
     if not changed:
         return found
     text = f"record {changed[0]} of what happened is missing, or is not as it was written: verify the journal"
     return replace(found, left_out=(text, *found.left_out))
+
+
+def last_mode(connection: Connection) -> Mode | None:
+    """The mode in which the last life was last, whatever the model was; None if there was none.
+
+    Raises `StorageError` where a record cannot be read.
+    """
+    whole = _last_whole(connection)
+    if whole is None:
+        return None
+    with _readable(whole):
+        return _read(connection, whole)[0].mode
+
+
+def _last_whole(connection: Connection) -> RunRecord | None:
+    """The last record that says everything."""
+    return next(iter(run_journal.before(connection, None, 1, (BEGUN, SNAPSHOT))), None)
+
+
+@contextmanager
+def _readable(whole: RunRecord) -> Iterator[None]:
+    """What is wrong with records from `whole` on is raised as `StorageError`."""
+    try:
+        yield
+    except (ValueError, LookupError, TypeError, AttributeError) as error:
+        raise StorageError(
+            f"the journal cannot be read from record {whole.number} on ({error!r}): see what `sequence-planner "
+            "journal --verify` finds, and start with a copy of the database, or with another one"
+        ) from error
+
+
+def _read(connection: Connection, whole: RunRecord) -> tuple[_Known, list[int]]:
+    """What is known after the last record, and which records are not as they were written."""
+    number = whole.number
+    last = run_journal.get(connection, number - 1)
+    changed = [] if whole.is_whole((last or run_journal.begin(connection)).hash) else [number]
+    known = _Known(whole)
+    while page := run_journal.after(connection, number, _PAGE):
+        for record, before in zip(page, [known.record, *page], strict=False):
+            if record.number != before.number + 1 or not record.is_whole(before.hash):
+                changed.append(record.number)
+            known.take(record)
+        number = page[-1].number
+    return known, changed
 
 
 class _Known:
@@ -95,6 +127,10 @@ class _Known:
         seen = what.get("names", ()) if record.kind == _CONFIRMED else what.get("values", {})
         self._unconfirmed.difference_update(changes, set(seen) - set(what.get("taken_back", ())))
 
+    @property
+    def mode(self) -> Mode:
+        return Mode(self._found["mode"])
+
     def restored(self, automaton: Automaton, now: Moment) -> Restored:
         left_out: list[str] = []
         beginning = Beginning(
@@ -103,7 +139,7 @@ class _Known:
             self._service(automaton, left_out),
             self._done(automaton, left_out),
             now,
-            Mode(self._found["mode"]),
+            self.mode,
             bool(self._found["stepping"]),
             self.record.number,  # each change of the state is in a record of its own, so there were fewer
             self._restored_jobs(automaton, left_out, now),

@@ -194,6 +194,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
             running.append(asyncio.create_task(backup_desk.run()))
         if shop is not None:
             running.append(asyncio.create_task(shop.read_ahead()))
+            controller.listen(shop.hear)
         try:
             yield
         finally:

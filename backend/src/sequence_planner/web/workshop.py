@@ -15,6 +15,7 @@ from starlette.concurrency import run_in_threadpool
 from sequence_planner.actor import Actor
 from sequence_planner.control.definition_view import AutomatonView
 from sequence_planner.control.pipeline_view import RecordView
+from sequence_planner.control.view import DeploymentState, StationView
 from sequence_planner.model.paths import EditError
 from sequence_planner.start_needs import StartNeeds
 from sequence_planner.web.identity import IdentityOffice
@@ -70,7 +71,7 @@ class Workshop:
         self._encoded: str | None = None
         self._marks: tuple[Draft, dict[str, FileMark]] | None = None
         self._opening = asyncio.Lock()
-        self._deployed_over: Files | None = None  # the files before the last deployment
+        self._deployed_over: tuple[float, Files] | None = None  # when, and what: until it is seen what became of it
         self._tied: tuple[int, str] | None = None  # the number of a draft, and its graph
         self._tying = asyncio.Lock()
 
@@ -95,7 +96,7 @@ class Workshop:
         async with self._opening:
             files = await run_in_threadpool(self._files.read)
             draft = await self._identity.read(drafts.read)
-            if draft.number and draft.base != files and files == self._deployed_over:
+            if draft.number and draft.base != files and self._was_before_the_deployment(files):
                 # A deployment was undone. What was deployed stays in the draft, where it can be mended.
                 await self._identity.write(lambda connection: drafts.rebase(connection, files))
                 draft = replace(draft, base=files)
@@ -222,7 +223,20 @@ class Workshop:
 
     def note_deployment(self, draft: Draft) -> None:
         """The draft is about to be deployed."""
-        self._deployed_over = draft.base
+        self._deployed_over = self._identity.now(), draft.base
+
+    def hear(self, view: StationView) -> None:
+        """Take note of what the controller shows: whoever brings files back that were there before a deployment that
+        went well has changed the model, and nothing is undone by that.
+        """
+        deployment, deployed = view.deployment, self._deployed_over
+        if deployment is None or deployed is None or deployment.state is not DeploymentState.RUNS:
+            return
+        if deployment.at >= deployed[0]:  # not an earlier one
+            self._deployed_over = None
+
+    def _was_before_the_deployment(self, files: Files) -> bool:
+        return self._deployed_over is not None and self._deployed_over[1] == files
 
     async def restore(self, draft: Draft, files: Files, name: str, by: Actor) -> str:
         """Let the draft become these files, those of the revision `name`; JSON of a `FilesView` of what is other now.

@@ -9,11 +9,13 @@ import contextlib
 import os
 import re
 import shutil
+import stat
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
 from operator import itemgetter
 from pathlib import Path
+from typing import NamedTuple
 
 from sequence_planner.model.loading import DEFINITIONS, FILES
 from sequence_planner.model.paths import EditError
@@ -21,8 +23,17 @@ from sequence_planner.model.saving import BYTE_ORDER_MARK
 
 # Texts by their paths below the model's folder, such as `resources/robot.yaml`.
 Files = Mapping[str, str]
-# The same files byte by byte, those that are no text among them.
-Contents = Mapping[str, bytes]
+
+
+class Content(NamedTuple):
+    """A file byte by byte, and who may do what with it: the bits of its mode."""
+
+    data: bytes
+    mode: int
+
+
+# The same files as they are, those that are no text among them.
+Contents = Mapping[str, Content]
 
 LONGEST_FILE = 1_000_000  # characters
 MOST_FILES = 2_000
@@ -140,9 +151,12 @@ def put_in_place(files: Files, folder: Path) -> None:
         (folder / name).unlink(missing_ok=True)
 
 
-def read_contents(folder: Path) -> dict[str, bytes]:
-    """All that a deployment may write or remove of the model in `folder`, byte by byte. Raises `OSError`."""
-    return {name: Path(entry.path).read_bytes() for name, entry in sorted(_found(folder), key=itemgetter(0))}
+def read_contents(folder: Path) -> dict[str, Content]:
+    """All that a deployment may write or remove of the model in `folder`, as it is. Raises `OSError`."""
+    return {
+        name: Content(Path(entry.path).read_bytes(), stat.S_IMODE(entry.stat().st_mode))
+        for name, entry in sorted(_found(folder), key=itemgetter(0))
+    }
 
 
 def write_contents(contents: Contents, folder: Path) -> None:
@@ -151,20 +165,24 @@ def write_contents(contents: Contents, folder: Path) -> None:
     for name, content in contents.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
+        path.write_bytes(content.data)
+        path.chmod(content.mode)
 
 
 def restore_contents(contents: Contents, folder: Path) -> None:
-    """Let the model in `folder` consist of these files again, to the byte; see `put_in_place`. Raises `OSError`."""
+    """Let the model in `folder` consist of these files again, to the byte and with their modes; see `put_in_place`.
+    Raises `OSError`.
+    """
     now = read_contents(folder)
     for name, content in contents.items():
         if now.get(name) != content:
-            _put(folder / name, content)
+            _put(folder / name, content.data, content.mode)
     for name in now.keys() - contents.keys():
         (folder / name).unlink(missing_ok=True)
 
 
-def _put(path: Path, content: bytes) -> None:
+def _put(path: Path, content: bytes, mode: int | None = None) -> None:
+    """Write a file at once, with this mode, or with that which it has."""
     target = path.resolve()  # a link stays a link
     target.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
@@ -173,7 +191,9 @@ def _put(path: Path, content: bytes) -> None:
             file.write(content)
             file.flush()
             os.fsync(file.fileno())
-        Path(name).chmod(target.stat().st_mode & 0o777 if target.exists() else 0o644)
+        if mode is None:
+            mode = stat.S_IMODE(target.stat().st_mode) if target.exists() else 0o644
+        Path(name).chmod(mode)
         Path(name).replace(target)
     except BaseException:
         Path(name).unlink(missing_ok=True)

@@ -1,0 +1,87 @@
+"""A last word beside a journal that is not the one it was said of: a new station's, or that of a restored backup."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+from running.stations import eventually, finished, free_port, process
+from running.workshops import EditedStation, edited
+from sequence_planner.launcher import UNUSABLE
+from sequence_planner.storage.address import SqliteFile, address
+from sequence_planner.storage.location import default_url
+
+
+def works(station: EditedStation) -> None:
+    """A person lets it work."""
+    eventually(station.up)
+    station.control()
+    undecided = station.station()["undecided"]
+    if undecided:
+        values = {name: each["value"] for name, each in undecided.items()}
+        station.asked("PUT", "outputs", {"values": values, "reason": "as it was"})
+    station.asked("POST", "production/start", {})
+    station.asked("PUT", "mode", {"mode": "automatic"})
+    eventually(lambda: bool(station.get("tasks")))
+
+
+def paused_later(folder: Path, model: Path) -> None:
+    """It works on, and somebody pauses it."""
+    with edited(folder, "--emulator", model=model) as station:
+        works(station)
+        station.asked("PUT", "mode", {"mode": "paused"})
+
+
+def database_of(model: Path) -> Path:
+    """The file of its database."""
+    place = address(default_url(model))
+    assert isinstance(place, SqliteFile)
+    return place.path
+
+
+def gone(model: Path) -> Path:
+    """The file of its database, which is not there any more, and nothing that is part of it."""
+    file = database_of(model)
+    for part in (file, Path(f"{file}-wal"), Path(f"{file}-shm")):
+        part.unlink(missing_ok=True)
+    return file
+
+
+def begun(station: EditedStation) -> tuple[str, bool]:
+    """The mode in which it is once it is up, and whether it says that it began at rest."""
+    eventually(station.up)
+    return str(station.get("mode", "station")), "begins-at-rest" in station.get("alarms")
+
+
+def test_a_new_station_begins_without_the_last_word_of_the_one_before(tmp_path: Path) -> None:
+    with edited(tmp_path, "--emulator") as station:
+        model = station.model
+        works(station)
+        station.asked("PUT", "mode", {"mode": "paused"})
+    file = gone(model)
+    refused = finished("run", str(model), "--port", str(free_port()), "--emulator")
+    assert (refused.returncode, "run --new" in refused.stderr) == (UNUSABLE, True)
+    log = tmp_path / "new.log"
+    with process(log, "run", str(model), "--port", str(free_port()), "--emulator", "--new"):
+        eventually(lambda: "runs: open" in log.read_text())
+    (kept,) = file.parent.glob("*-last-word-aside-*")
+    assert f"is kept as {kept}" in log.read_text()
+    with edited(tmp_path, "--emulator", "--new", model=model) as station:
+        assert begun(station) == ("automatic", False)
+        assert list(file.parent.glob("*-aside-*")) == [kept], "it is new once"
+
+
+def test_a_restored_backup_begins_at_rest_once(tmp_path: Path) -> None:
+    with edited(tmp_path, "--emulator") as station:
+        model = station.model
+        works(station)
+    copy = tmp_path / "copy"
+    shutil.copy(database_of(model), copy)
+    paused_later(tmp_path, model)
+    shutil.copy(copy, gone(model))
+    with edited(tmp_path, "--emulator", model=model) as station:
+        assert begun(station) == ("paused", True)
+        works(station)
+    for _ in range(2):
+        with edited(tmp_path, "--emulator", model=model) as station:
+            assert begun(station) == ("automatic", False)
