@@ -20,6 +20,7 @@ from typing import Annotated, Final
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sqlalchemy.exc import ArgumentError
 
+from sequence_planner.complaints import complained
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.logs import FORMAT, LogFormat
 from sequence_planner.memory_limit import LEAST, MOST
@@ -180,7 +181,7 @@ def _wrong(document: Mapping[str, object], strict: bool) -> Iterator[tuple[str, 
             if each["type"] == "extra_forbidden":
                 yield name, f"there is no setting `{name}`{suggestion(name, Configuration.model_fields)}"
             else:
-                yield name, f"`{name}` is not as it must be: {each['msg']}"
+                yield name, f"`{name}` is not as it must be: {complained(each)}"
 
 
 def _line(text: str, name: str) -> int:

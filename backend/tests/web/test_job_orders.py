@@ -144,6 +144,13 @@ def test_the_key_is_needed(mes: httpx.Client) -> None:
     problem(mes.post(ORDERS, json=ENGINE, headers={"Idempotency-Key": ""}), 422, "invalid-request")
 
 
+def test_a_time_that_is_none_is_told_what_it_has_to_be(mes: httpx.Client) -> None:
+    answer = mes.post(ORDERS, json=ENGINE | {"due": "tomorrow"}, headers={"Idempotency-Key": "1"})
+    (told,) = problem(answer, 422, "invalid-request")["errors"]
+    assert told["field"] == "body.due"
+    assert told["expected"].startswith("this has to be a time: seconds since 1970-01-01 00:00 UTC")
+
+
 def test_an_id_is_used_once(mes: httpx.Client) -> None:
     store(mes, "4711", id="4711")
     again = {"Idempotency-Key": "another"}

@@ -149,8 +149,8 @@ async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: 
 
     The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
     production. Where it cannot be started with it the model before comes back: `deployment` in `GET /station` says what
-    has become of it. 409 `not-checked` while the check of the draft has not ended, `check-found-errors` with the first of
-    the errors and its place, `no-supervisor` where nothing of it could be started.
+    has become of it. 409 `not-checked` while the check of the draft has not ended, `check-found-errors` with the first
+    of the errors and its place, `no-supervisor` where nothing of it could be started.
     """
     draft = await _at(shop, body.number)
     known = await _known(shop, body.revision)

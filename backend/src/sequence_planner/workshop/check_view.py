@@ -60,7 +60,7 @@ class CheckView(View):
         and there is a supervisor.
         """
         if self.number == number and self.state is CheckState.FAILED:
-            why = f"The check of the draft could not be carried out: {self.doing}. Change the draft, then it is checked anew"
+            why = f"The draft could not be checked: {self.doing}. Change the draft, then it is checked anew"
             return Hindrance("not-checked", "The draft is not checked", why)
         if self.number != number or self.state is not CheckState.DONE:
             why = "The check of the draft has not ended yet. Try again when it has, as the page Check shows"
