@@ -9,6 +9,7 @@ from enum import StrEnum
 from sequence_planner.analysis.document import AnalysisDocument, FindingDocument
 from sequence_planner.checking.unmeetable import CANNOT_BE_MET
 from sequence_planner.control.view_part import View
+from sequence_planner.counting import counted
 
 MOST_FINDINGS = 500  # that are shown
 MORE = "more"  # the kind of the last of them where there are more
@@ -86,7 +87,8 @@ def listed(findings: Sequence[FindingDocument]) -> list[FindingDocument]:
         return list(findings)
     worst = sorted(findings, key=lambda finding: finding.severity != "error")
     shown, left = worst[:MOST_FINDINGS], worst[MOST_FINDINGS:]
-    message = f"there are {len(left)} more findings, which are not shown: mend those before this one first"
+    more = counted(len(left), "more finding is", "more findings are")
+    message = f"{more} not shown: mend those before this one first"
     return [*shown, left[0].model_copy(update={"kind": MORE, "message": message, "trace": None})]
 
 
