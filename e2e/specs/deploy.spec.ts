@@ -174,7 +174,9 @@ test('what is not checked, or would be illegal, is not deployed, and the page sa
 		number: await drafting.checked(),
 		reason: 'All the same'
 	});
-	expect(unchecked.body['type']).toContain('not-checked');
+	expect(unchecked.body['type']).toContain('check-found-errors');
+	// The page and the refusal say the same of the first error, with its place.
+	await expect(page.locator('[data-need="checked"]')).toContainText(String(unchecked.body['detail']));
 	await page.keyboard.press('Escape');
 	expect(complaints).toEqual([]);
 

@@ -20,6 +20,7 @@ from typing import Annotated, Final
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from sqlalchemy.exc import ArgumentError
 
+from sequence_planner.complaints import complained
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.logs import FORMAT, LogFormat
 from sequence_planner.memory_limit import LEAST, MOST
@@ -41,6 +42,7 @@ _PATHS: Final = (
     "backup_folder",
 )  # from the file's folder, where they are relative
 _SECRET: Final = "database"
+_OPTION: Final = re.compile(r"(?<![\w-])--([a-z]+(?:-[a-z]+)*)(?![\w-])")
 
 
 class Configuration(BaseModel):
@@ -103,9 +105,22 @@ class Told:
         except (ArgumentError, ValueError):
             return '"(cannot be read)"'
 
+    @property
+    def called(self) -> str:
+        """What whoever told it calls it."""
+        return self.where if self.where.startswith(PREFIX) else f"`{self.name}` ({self.where})"
+
 
 def configured(file: Path | None, environ: Mapping[str, str] = os.environ) -> dict[str, Told]:
     """All that is told, by name; the environment before the file. Raises `ConfigurationError`."""
+    found, wrong = read_configuration(file, environ)
+    if wrong:
+        raise ConfigurationError("\n".join(wrong))
+    return found
+
+
+def read_configuration(file: Path | None, environ: Mapping[str, str]) -> tuple[dict[str, Told], list[str]]:
+    """What is told so that it can be used, by name, and what is wrong. Raises `ConfigurationError` without a file."""
     found, wrong = dict[str, Told](), list[str]()
     for source in (_in_file(file) if file is not None else (), _in_environment(environ)):
         for each in source:
@@ -113,9 +128,18 @@ def configured(file: Path | None, environ: Mapping[str, str] = os.environ) -> di
                 found[each.name] = each
             else:
                 wrong.append(each)
-    if wrong:
-        raise ConfigurationError("\n".join(wrong))
-    return found
+    return found, wrong
+
+
+def options_in(text: str) -> list[str]:
+    """The settings that are named as options in `text`, such as `--private-key`."""
+    found = (each[1].replace("-", "_") for each in _OPTION.finditer(text))
+    return [name for name in found if name in Configuration.model_fields]
+
+
+def as_told(text: str, called: Mapping[str, str]) -> str:
+    """`text` in which each option is called what it was told as, where `called` says so."""
+    return _OPTION.sub(lambda each: called.get(each[1].replace("-", "_"), each[0]), text)
 
 
 def has_password(url: str) -> bool:
@@ -143,11 +167,12 @@ def _in_file(file: Path) -> Iterator[Told | str]:
         yield f"{file}: this is no TOML: {error}"
         return
     lines = {name: f"{file}:{_line(text, name)}" for name in document}
-    yield from (f"{lines[name]}: {why}" for name, why in _wrong(document, strict=True))
+    wrong = sorted(_wrong(document, strict=True), key=lambda each: _line(text, each[0]))
+    yield from (f"{lines[name]}: {why}" for name, why in wrong)
     if has_password(str(document.get(_SECRET, ""))) and stat.S_IMODE(file.stat().st_mode) & 0o077:
         yield f"{lines[_SECRET]}: others may read this file, and there is a password in it: chmod 600 {file}"
     for name, value in document.items():
-        if name in Configuration.model_fields:
+        if name in Configuration.model_fields and name not in dict(wrong):
             yield Told(
                 name, str(file.parent / value) if name in _PATHS and isinstance(value, str) else value, lines[name]
             )
@@ -180,7 +205,7 @@ def _wrong(document: Mapping[str, object], strict: bool) -> Iterator[tuple[str, 
             if each["type"] == "extra_forbidden":
                 yield name, f"there is no setting `{name}`{suggestion(name, Configuration.model_fields)}"
             else:
-                yield name, f"`{name}` is not as it must be: {each['msg']}"
+                yield name, f"`{name}` is not as it must be: {complained(each)}"
 
 
 def _line(text: str, name: str) -> int:

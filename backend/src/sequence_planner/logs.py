@@ -22,6 +22,8 @@ from typing import TextIO, cast
 import structlog
 from structlog.typing import EventDict, ExcInfo, Processor
 
+from sequence_planner.counting import counted
+
 FORMAT = "SEQUENCE_PLANNER_LOG_FORMAT"  # the variable of the environment that names the format, for all processes
 STANDARD_ERROR = 2
 MOST_WAITING = 10_000  # lines
@@ -70,7 +72,7 @@ class LineQueue:
             text = self._waiting.get()
             lost, self._lost = self._lost, 0
             if lost:
-                text += f"{lost} lines of the log were lost here\n"
+                text += f"{counted(lost, 'line of the log was', 'lines of the log were')} lost here\n"
             with contextlib.suppress(OSError):  # the reader is gone, or the disk is full
                 rest = text.encode(errors="replace")
                 while rest:  # not through `sys.stderr`: whoever waits in it holds up the interpreter's end

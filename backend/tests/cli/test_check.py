@@ -30,6 +30,17 @@ def test_warnings() -> None:
     )
 
 
+def test_one_of_each_is_told_as_one(tmp_path: Path) -> None:
+    (tmp_path / "resources").mkdir()
+    (tmp_path / "station.yaml").write_text("name: lamp\nestimated: {lit: {type: bool, initial: false}}\n")
+    ability = "  light:\n    start:\n      do: [lit := true]\n"
+    (tmp_path / "resources" / "lamp.yaml").write_text(f"abilities:\n{ability}")
+    (tmp_path / "operations.yaml").write_text("light:\n  precondition: not lit\n  goal: lit\n")
+    _, out, err = command("check", tmp_path)
+    assert err == ""
+    assert out.splitlines()[-1] == "lamp: 1 variable, 1 ability, 1 operation; the supervisor guards 0 abilities"
+
+
 def test_warnings_for_programs() -> None:
     code, document = as_json("check", EXAMPLE)
     assert code == 1
@@ -59,7 +70,7 @@ def test_unusable_input_for_programs(tmp_path: Path) -> None:
 def test_a_plain_automaton(tmp_path: Path) -> None:
     code, out, err = command("check", plain(tmp_path))
     assert (code, err) == (0, "")
-    assert out.startswith("two-users: 2 variables, 2 controllable and 1 uncontrollable transitions;")
+    assert out.startswith("two-users: 2 variables, 2 controllable and 1 uncontrollable transition;")
 
 
 def test_a_plain_automaton_that_is_none(tmp_path: Path) -> None:

@@ -162,7 +162,10 @@ def test_what_is_told_is_shown_without_passwords(tmp_path: Path, monkeypatch: py
     assert document["host"] == {"value": '"::"', "where": f"{file}:2"}
     code, out, err = command("configuration", "check", file)  # no server is there
     assert (code, out) == (2, "")
-    assert err.startswith(f"{file}:3: ")
+    without_https, without_name, without_server = err.splitlines()
+    assert without_https.startswith(f"{file}:2: cannot serve on :: without HTTPS")
+    assert without_name.startswith(f"{file}: use `name` with the host name")
+    assert without_server.startswith(f"{file}:3: ")
     assert "s3cret" not in err
 
 
@@ -178,7 +181,8 @@ def test_a_check_looks_whether_what_is_named_is_there_and_fit(tmp_path: Path) ->
     assert (code, out) == (2, "")
     assert err.splitlines() == [
         f"{file}:1: {tmp_path}/missing/station.yaml:1:1: a station is a folder with a station.yaml: there is none here",
-        f"{file}:2: {tmp_path}/press.pem cannot be read: No such file or directory; use --certificate",
+        f"{file}:2: {tmp_path}/press.pem cannot be read: No such file or directory; use `certificate`",
+        f"{file}:3: {tmp_path}/press.key cannot be read: No such file or directory; use `private_key`",
         f"{file}:4: {tmp_path}/url cannot be read: No such file or directory",
         f"{file}:5: {tmp_path}/empty is empty: write the secret there",
         f"{file}:6: {tmp_path}/backups cannot hold backups: there is no folder {tmp_path}/backups",
@@ -198,8 +202,39 @@ def test_a_check_of_a_database_makes_none(tmp_path: Path) -> None:
 def test_one_half_of_https_is_not_enough(tmp_path: Path) -> None:
     file = written(tmp_path, 'private_key = "press.key"\n')
     assert command("configuration", "check", file)[2] == (
-        f"{file}:1: `certificate` is missing beside it: HTTPS needs both\n"
+        f"{file}:1: `certificate` and `private_key` belong together: give both, or none\n"
     )
+
+
+def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
+    file = written(
+        tmp_path,
+        'hots = "::1"\nhost = "press"\nport = "high"\nname = ["a b", "press.example"]\ncertificate = "press.pem"\n',
+    )
+    code, out, err = command("configuration", "check", file)
+    assert (code, out) == (2, "")
+    assert err.splitlines() == [
+        f"{file}:1: there is no setting `hots`; did you mean `host`?",
+        f"{file}:3: `port` is not as it must be: Input should be a valid integer",
+        f"{file}:2: 'press' is no address; use `host` with localhost or one of this machine",
+        f"{file}:4: 'a b' is no name; use `name` with what people open, such as station.example:8443",
+        f"{file}:5: `certificate` and `private_key` belong together: give both, or none",
+    ]
+
+
+def test_run_calls_what_it_refuses_as_it_was_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    file = written(tmp_path, f'model = "{CELL}"\ncertificate = "press.pem"\n')
+    monkeypatch.setenv("SEQUENCE_PLANNER_PRIVATE_KEY", "press.key")
+    monkeypatch.setenv("SEQUENCE_PLANNER_HOST", "press")
+    host = ("--host", "elsewhere")
+    in_file, by_variable = f"`certificate` ({file}:2)", "SEQUENCE_PLANNER_PRIVATE_KEY"
+    unread = "cannot be read: No such file or directory; use"
+    files = f"{tmp_path}/press.pem {unread} {in_file}\npress.key {unread} {by_variable}\n"
+    by_host = "is no address; use {} with localhost or one of this machine\n"
+    told = f"'press' {by_host.format('SEQUENCE_PLANNER_HOST')}{files}"
+    typed = f"'elsewhere' {by_host.format('--host')}{files}"
+    assert command("run", "--configuration", file) == (2, "", told)
+    assert command("run", "--configuration", file, *host) == (2, "", typed)
 
 
 def test_the_version() -> None:

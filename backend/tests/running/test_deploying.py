@@ -46,7 +46,10 @@ def test_a_revision_that_cannot_be_emulated_is_found_and_not_deployed(tmp_path: 
         assert (finding["file"], finding["line"]) == (ROBOT, 10)
         assert "nowhere" in finding["message"]
         refused = station.deploy(station.save("Nowhere"))
-        assert (refused.status_code, refused.json()["type"]) == (409, "/problems/not-checked")
+        assert (refused.status_code, refused.json()["type"]) == (409, "/problems/check-found-errors")
+        assert f"{ROBOT}:10:{finding['column']}: " in refused.json()["detail"]
+        transfer = station.asked("GET", "model/transfer")
+        assert (transfer["legal"], f"{transfer['obstacle']}.") == (False, refused.json()["detail"])
         assert station.up()
 
 

@@ -165,4 +165,4 @@ def test_of_very_many_findings_the_first_are_shown(eva: httpx.Client) -> None:
     assert len(found) == 501
     assert found[-1]["kind"] == "more"
     assert found[-1]["severity"] == "error"
-    assert "more findings" in found[-1]["message"]
+    assert "more findings are not shown" in found[-1]["message"]

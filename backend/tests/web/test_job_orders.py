@@ -144,6 +144,13 @@ def test_the_key_is_needed(mes: httpx.Client) -> None:
     problem(mes.post(ORDERS, json=ENGINE, headers={"Idempotency-Key": ""}), 422, "invalid-request")
 
 
+def test_a_time_that_is_none_is_told_what_it_has_to_be(mes: httpx.Client) -> None:
+    answer = mes.post(ORDERS, json=ENGINE | {"due": "tomorrow"}, headers={"Idempotency-Key": "1"})
+    (told,) = problem(answer, 422, "invalid-request")["errors"]
+    assert told["field"] == "body.due"
+    assert told["expected"].startswith("this has to be a time: seconds since 1970-01-01 00:00 UTC")
+
+
 def test_an_id_is_used_once(mes: httpx.Client) -> None:
     store(mes, "4711", id="4711")
     again = {"Idempotency-Key": "another"}
@@ -280,3 +287,23 @@ def test_what_the_documentation_types_orders_an_engine(mes: httpx.Client, server
     printed = typed(lines, tmp_path, STATION=server.address, STATION_KEY=secret)
     assert '"outcome":"aborted"' in printed
     assert [kind for _, kind, _ in told(mes)] == ["job-order-stored", "job-order-aborted", "job-order-cleared"]
+
+
+def test_every_answer_says_what_the_order_waits_for_as_it_is_read_right_after(mes: httpx.Client) -> None:
+    def same(answer: httpx.Response, waits_for: list[str]) -> None:
+        assert answer.is_success, answer.text
+        read = mes.get(f"{ORDERS}/engine").json()
+        [listed] = mes.get(ORDERS).json()["job_orders"]
+        assert answer.json()["waits_for"] == read["waits_for"] == listed["waits_for"] == waits_for
+
+    freely = ["the station works freely"]
+    order = {**ENGINE, "id": "engine", "start": True}
+    same(mes.post(ORDERS, json=order, headers={"Idempotency-Key": "1"}), freely)
+    same(tell(mes, "engine", "RevokeStart"), [])
+    same(tell(mes, "engine", "Start"), freely)
+    later = ENGINE | {"earliest": "2126-01-15T06:00:00Z"}
+    same(
+        mes.put(f"{ORDERS}/engine", json=later, headers={"If-Match": "*"}),
+        [*freely, "not before 2126-01-15 06:00:00 UTC"],
+    )
+    same(tell(mes, "engine", "Abort"), [])

@@ -36,7 +36,7 @@ def test_a_model_is_found_fit_with_what_its_supervisor_adds(tmp_path: Path) -> N
     assert found[0].doing == "reading it"
     done = found[-1]
     assert (done.number, done.state, done.doing, done.findings) == (7, CheckState.DONE, "", [])
-    assert done.deployable
+    assert done.hindrance(done.number) is None
     assert done.summary is not None
     assert (done.summary.abilities, done.summary.operations) == (13, 8)
     assert done.analysis is not None
@@ -49,7 +49,14 @@ def test_errors_stand_at_their_places_in_the_files_of_the_model(tmp_path: Path) 
     assert (finding.severity, finding.file) == ("error", "operations.yaml")
     assert (finding.line, finding.column) != (1, 1)
     assert "did you mean `robot.tool_is_attached`" in finding.message
-    assert (done.state, done.summary, done.deployable) == (CheckState.DONE, None, False)
+    assert (done.state, done.summary) == (CheckState.DONE, None)
+    hindrance = done.hindrance(1)
+    assert hindrance is not None
+    assert hindrance.slug == "check-found-errors"
+    assert f"operations.yaml:{finding.line}:{finding.column}: {finding.message.rstrip('.')}" in hindrance.why
+    ahead = done.hindrance(2)
+    assert ahead is not None
+    assert ahead.slug == "not-checked"
 
 
 def test_what_cannot_be_met_is_shown_with_a_run_and_cannot_be_deployed(tmp_path: Path) -> None:
@@ -57,10 +64,13 @@ def test_what_cannot_be_met_is_shown_with_a_run_and_cannot_be_deployed(tmp_path:
         tmp_path,
         bolts(station=("nutrunner.set_tool_idle and", "nutrunner.set_tool_idle and nutrunner.run_tool_forward and")),
     )
-    assert not done.deployable
     assert done.analysis is not None
     assert done.analysis.supervised is False
     (finding,) = [each for each in done.findings if each.kind == "specification-cannot-be-met"]
+    hindrance = done.hindrance(done.number)
+    assert hindrance is not None
+    assert hindrance.slug == "no-supervisor"
+    assert finding.message.rstrip(".") in hindrance.why
     assert "`rest`" in finding.message
     assert finding.trace is not None
 
@@ -73,7 +83,7 @@ def test_an_initial_state_that_is_forbidden_is_an_error_at_the_specification(tmp
     (finding,) = done.findings
     assert (finding.severity, finding.file, finding.line) == ("error", "specifications.yaml", line)
     assert finding.message.startswith("`never_home` forbids the initial state, in which robot.pose == home:")
-    assert not done.deployable
+    assert done.hindrance(done.number) is not None
 
 
 def test_an_example_that_fails_is_an_error(tmp_path: Path) -> None:
@@ -92,7 +102,7 @@ def test_an_example_that_fails_is_an_error(tmp_path: Path) -> None:
 
 def test_an_empty_station_is_a_station(tmp_path: Path) -> None:
     done = last(tmp_path, {"station.yaml": "name: empty\n"})
-    assert done.deployable
+    assert done.hindrance(done.number) is None
     assert [each.severity for each in done.findings if each.severity == "error"] == []
 
 
@@ -149,9 +159,12 @@ def test_a_check_whose_process_is_killed_says_so(tmp_path: Path, monkeypatch: py
         os.kill(process.pid, signal.SIGKILL)
         failed = await desk.until(lambda view: view.state is CheckState.FAILED)
         assert "ended without an answer" in failed.doing
-        assert not failed.deployable
+        hindrance = failed.hindrance(failed.number)
+        assert hindrance is not None
+        assert hindrance.slug == "not-checked"
+        assert failed.doing in hindrance.why
         desk.desk.check(2, bolts())
-        assert (await desk.until(lambda view: view.state is CheckState.DONE)).deployable
+        assert (await desk.until(lambda view: view.state is CheckState.DONE)).hindrance(2) is None
 
     run(scenario, tmp_path, monkeypatch)
 

@@ -8,12 +8,14 @@ from sequence_planner.expressions.place import Place
 from sequence_planner.synthesis.minimal_conflict import Conflict, minimal_conflict
 from sequence_planner.synthesis.unmeetable import Unmeetable
 
+CANNOT_BE_MET = "specification-cannot-be-met"
+
 
 def unmeetable(automaton: Automaton, reason: Unmeetable, place: Place) -> ModelWarning:
     """The warning for an automaton without supervisor: `place` is that of the specifications."""
     conflict = minimal_conflict(automaton, reason.trace)
     message = f"{reason.message}. {_in_conflict(automaton, conflict)}"
-    return ModelWarning(place, "specification-cannot-be-met", message, reason.trace)
+    return ModelWarning(place, CANNOT_BE_MET, message, reason.trace)
 
 
 def _in_conflict(automaton: Automaton, conflict: Conflict) -> str:

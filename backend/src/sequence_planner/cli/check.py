@@ -14,6 +14,7 @@ from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, Limi
 from sequence_planner.cli.findings import finding_lines
 from sequence_planner.cli.loading import Model, load_model
 from sequence_planner.cli.options import FINDINGS, UNUSABLE, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
+from sequence_planner.counting import counted
 from sequence_planner.model.source import Finding, ModelError
 from sequence_planner.start_findings import start_findings
 from sequence_planner.start_needs import StartNeeds
@@ -119,16 +120,17 @@ def _guarded(checked: Checked) -> set[str] | None:
 
 def _summary_line(checked: Checked) -> str:
     automaton = checked.model.automaton
-    parts = f"{automaton.title}: {len(automaton.variables)} variables, "
+    parts = f"{automaton.title}: {counted(len(automaton.variables), 'variable')}, "
     if checked.model.station is None:
-        parts += f"{len(automaton.abilities)} controllable and {len(automaton.effects)} uncontrollable transitions"
-        what = "transitions"
+        uncontrollable = counted(len(automaton.effects), "uncontrollable transition")
+        parts += f"{len(automaton.abilities)} controllable and {uncontrollable}"
+        what = "transition", "transitions"
     else:
-        parts += f"{len(automaton.abilities)} abilities, {len(automaton.operations)} operations"
-        what = "abilities"
+        what = "ability", "abilities"
+        parts += f"{counted(len(automaton.abilities), *what)}, {counted(len(automaton.operations), 'operation')}"
     if checked.found.document.supervised is False:
         return f"{parts}; no supervisor"
     guarded = _guarded(checked)
     if guarded is None:
         return f"{parts}; the guards of the supervisor were not computed"
-    return f"{parts}; the supervisor guards {len(guarded)} {what}"
+    return f"{parts}; the supervisor guards {counted(len(guarded), *what)}"

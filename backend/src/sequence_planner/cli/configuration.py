@@ -9,7 +9,7 @@ import typer
 
 from sequence_planner.cli.options import AsJson, print_json, refuse
 from sequence_planner.cli.surroundings import unfit
-from sequence_planner.configuration import FILE, ConfigurationError, Told, configured
+from sequence_planner.configuration import FILE, ConfigurationError, configured, read_configuration
 from sequence_planner.pipelines.stages.own.confinement import missing
 
 configuration = typer.Typer(
@@ -26,8 +26,11 @@ def check(file: Annotated[Path, typer.Argument(metavar="FILE", help="The file.")
     """Say what is wrong in a file, with file and line, and whether what it names is there and fit: the model,
     certificates, secrets, the database. The environment is not looked at, and nothing is changed.
     """
-    told = _told(file, {})
-    if wrong := list(unfit(told)):
+    try:
+        told, wrong = read_configuration(file, {})
+    except ConfigurationError as error:
+        refuse(str(error))
+    if wrong := [*wrong, *unfit(told)]:
         refuse("\n".join(wrong))
     typer.echo(f"{file} can be used: {', '.join(told) or 'it tells nothing'}")
     if without := missing():
@@ -37,16 +40,12 @@ def check(file: Annotated[Path, typer.Argument(metavar="FILE", help="The file.")
 @configuration.command()
 def show(file: File = None, as_json: AsJson = False) -> None:
     """Print what is told, and where: by the file, and by variables, which come before it. Passwords are left out."""
-    told = _told(file, None)
+    try:
+        told = configured(file)
+    except ConfigurationError as error:
+        refuse(str(error))
     if as_json:
         print_json({name: {"value": each.shown, "where": each.where} for name, each in told.items()})
         return
     for name, each in told.items():
         typer.echo(f"{name} = {each.shown}  # {each.where}")
-
-
-def _told(file: Path | None, environ: dict[str, str] | None) -> dict[str, Told]:
-    try:
-        return configured(file) if environ is None else configured(file, environ)
-    except ConfigurationError as error:
-        refuse(str(error))

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from sequence_planner.cli.options import refuse
-from sequence_planner.configuration import FILE, ConfigurationError, configured
+from sequence_planner.cli.options import WORDING, is_typed, refuse
+from sequence_planner.configuration import FILE, ConfigurationError, as_told, configured
 
 
 def _configure(context: typer.Context, file: Path | None) -> Path | None:
@@ -18,6 +18,12 @@ def _configure(context: typer.Context, file: Path | None) -> Path | None:
     except ConfigurationError as error:
         refuse(str(error))
     context.default_map = {name: each.value for name, each in told.items()}
+
+    def worded(message: str) -> str:
+        return as_told(message, {name: each.called for name, each in told.items() if not is_typed(context, name)})
+
+    before = WORDING.set(worded)
+    context.call_on_close(lambda: WORDING.reset(before))
     return file
 
 

@@ -12,6 +12,7 @@ from typer.core import TyperGroup
 from sequence_planner.cli import journal_replay
 from sequence_planner.cli.journal_database import the_database
 from sequence_planner.cli.options import FINDINGS, FINE, DatabaseOption, refuse
+from sequence_planner.counting import counted
 
 Model = Annotated[Path | None, typer.Argument(metavar="[MODEL]", help="The station's folder.", show_default=False)]
 DEFAULT_LIMIT = 50
@@ -102,7 +103,8 @@ def trim(
         from sequence_planner.journal.retention import trim  # noqa: PLC0415
 
         trimmed = trim(opened, time.time() - older_than * _DAY, at_the_command_line())
-    typer.echo(f"{trimmed.removed} records were taken out; what happened begins with record {trimmed.begin + 1}")
+    removed = counted(trimmed.removed, "record was", "records were")
+    typer.echo(f"{removed} taken out; what happened begins with record {trimmed.begin + 1}")
 
 
 journal.command()(journal_replay.replay)

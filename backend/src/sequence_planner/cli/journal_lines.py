@@ -10,6 +10,7 @@ from pathlib import Path
 from pydantic import ValidationError
 from sqlalchemy import Connection
 
+from sequence_planner.counting import counted
 from sequence_planner.journal import audit, run_journal
 from sequence_planner.journal.chain import START, Link
 from sequence_planner.journal.checkpoints import Checkpoint
@@ -80,7 +81,8 @@ def _whole(verified: Verified, kept: Checkpoint | None) -> Iterator[str]:
     if who == START:
         yield "nobody did anything yet"
     else:
-        yield f"who did what: {who.number} records, all as they were written; the hash of the last one is {who.hash}"
+        records = counted(who.number, "record")
+        yield f"who did what: {records}, all as they were written; the hash of the last one is {who.hash}"
     if what == START:
         yield "nothing happened yet"
     else:

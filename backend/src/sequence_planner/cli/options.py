@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
+from contextvars import ContextVar
 from pathlib import Path
 from typing import Annotated, NoReturn
 
@@ -40,11 +42,26 @@ Memory = Annotated[
 USUAL_MEMORY = USUAL
 
 
+def _as_it_is(message: str) -> str:
+    return message
+
+
+# How a refusal is worded: where a configuration has told an option, that is called as it is there.
+WORDING: ContextVar[Callable[[str], str]] = ContextVar("wording", default=_as_it_is)
+
+
 def refuse(message: str, code: int = UNUSABLE) -> NoReturn:
     """Say on standard error what makes the input unusable, and end."""
+    message = WORDING.get()(message)
     leave_last_words(message)
     typer.echo(message, err=True)
     raise typer.Exit(code)
+
+
+def is_typed(context: typer.Context, name: str) -> bool:
+    """Whether an option stands on the command line itself."""
+    source = context.get_parameter_source(name)
+    return source is not None and source.name == "COMMANDLINE"
 
 
 def database_url(model: Path, given: str | None) -> str:

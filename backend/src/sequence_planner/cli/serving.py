@@ -12,7 +12,15 @@ import typer
 
 from sequence_planner.backup.settings import KEPT, Keeping
 from sequence_planner.cli.configured import ConfigurationOption
-from sequence_planner.cli.options import USUAL_MEMORY, DatabaseOption, Memory, StationFolder, database_url, refuse
+from sequence_planner.cli.options import (
+    USUAL_MEMORY,
+    DatabaseOption,
+    Memory,
+    StationFolder,
+    database_url,
+    is_typed,
+    refuse,
+)
 from sequence_planner.cli.parts import (
     Launched,
     RosbridgeOption,
@@ -170,7 +178,7 @@ def run(
     )
     if demonstration and not emulator:
         refuse("--demonstration is for emulated devices, which nobody has to sign in for: give --emulator, or leave it")
-    if database is not None and has_password(database) and _is_typed(context, "database"):
+    if database is not None and has_password(database) and is_typed(context, "database"):
         refuse(
             "everybody on this machine can read a password on the command line: give the database's URL in "
             f"--database-file, in the --configuration or in {DATABASE}"
@@ -237,12 +245,6 @@ def _unusable(model: Path) -> str | None:
     except ModelError as error:
         return str(error)
     return None
-
-
-def _is_typed(context: typer.Context, name: str) -> bool:
-    """Whether an option stands on the command line itself."""
-    source = context.get_parameter_source(name)
-    return source is not None and source.name == "COMMANDLINE"
 
 
 def _url_in(file: Path, beside: str | None) -> str:

@@ -8,20 +8,20 @@ from contextlib import closing
 from pathlib import Path
 
 from sequence_planner.cli.loading import load_model
-from sequence_planner.configuration import ConfigurationError, Told, url_in
+from sequence_planner.configuration import Configuration, ConfigurationError, Told, as_told, options_in, url_in
 from sequence_planner.model.source import ModelError
 from sequence_planner.storage.address import SqliteFile, address
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
-from sequence_planner.web.certificate import check_certificate
-from sequence_planner.web.settings import SettingsError, split_name
+from sequence_planner.web.binding import wrong_with
+from sequence_planner.web.settings import Endpoint
 
 _READ_WHOLE = ("oidc_client_secret_file",)
 
 
 def unfit(told: Mapping[str, Told]) -> Iterator[str]:
     """What `run` would not start with, each with where it was told. Nothing is made, written or upgraded."""
-    for check in (_model, _certificate, _database, _secrets, _backup_folder):
+    for check in (_model, _endpoint, _database, _secrets, _backup_folder):
         yield from check(told)
 
 
@@ -33,21 +33,30 @@ def _model(told: Mapping[str, Told]) -> Iterator[str]:
             yield from (f"{model.where}: {finding}" for finding in error.findings)
 
 
-def _certificate(told: Mapping[str, Told]) -> Iterator[str]:
-    certificate, key = told.get("certificate"), told.get("private_key")
-    if certificate is None and key is None:
-        return
-    if certificate is None or key is None:
-        there, missing = (certificate or key), "private_key" if key is None else "certificate"
-        assert there is not None
-        yield f"{there.where}: `{missing}` is missing beside it: HTTPS needs both"
-        return
-    names = told["name"].value if "name" in told else []
-    try:
-        hosts = [split_name(str(name))[0] for name in (names if isinstance(names, list) else [names])]
-        check_certificate(Path(str(certificate.value)), Path(str(key.value)), hosts)
-    except SettingsError as error:
-        yield f"{certificate.where}: {error}"
+def _endpoint(told: Mapping[str, Told]) -> Iterator[str]:
+    """Where it listens, by which names, and with what certificate."""
+    given = {name: each.value for name, each in told.items()}
+    endpoint = Endpoint(
+        host=str(given.get("host", Endpoint.host)),
+        port=int(str(given.get("port", Endpoint.port))),
+        certificate=_path(given.get("certificate")),
+        private_key=_path(given.get("private_key")),
+        proxies=_list(given.get("proxy")),
+        names=_list(given.get("name")),
+    )
+    called = {name: f"`{name}`" for name in Configuration.model_fields}
+    anywhere = next(iter(told.values())).where.rpartition(":")[0] if told else ""
+    for wrong in wrong_with(endpoint):
+        where = next((told[name].where for name in options_in(wrong) if name in told), anywhere)
+        yield f"{where}: {as_told(wrong, called)}"
+
+
+def _path(value: object) -> Path | None:
+    return None if value is None else Path(str(value))
+
+
+def _list(value: object) -> tuple[str, ...]:
+    return tuple(map(str, value)) if isinstance(value, list) else ()
 
 
 def _database(told: Mapping[str, Told]) -> Iterator[str]:

@@ -14,6 +14,7 @@ from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, Limi
 from sequence_planner.cli.findings import finding_lines
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json
+from sequence_planner.counting import counted
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import TRUE
 
@@ -84,9 +85,9 @@ def _lines(automaton: Automaton, found: Found) -> Iterator[str]:
 def _counts(document: AnalysisDocument) -> str:
     if document.supervised is False:
         return "there is no supervisor"
-    reachable = "?" if document.reachable_states is None else f"{document.reachable_states}"
+    reachable = "? states" if document.reachable_states is None else counted(document.reachable_states, "state")
     supervised = "?" if document.supervised_states is None else f"{document.supervised_states}"
-    return f"{reachable} states can be reached, {supervised} of them with the supervisor"
+    return f"{reachable} can be reached, {supervised} of them with the supervisor"
 
 
 def _guards(document: AnalysisDocument, rest: str) -> Iterator[str]:

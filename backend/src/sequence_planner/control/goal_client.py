@@ -9,6 +9,7 @@ from collections.abc import Callable, Coroutine, Sequence
 from pydantic import ValidationError
 
 from sequence_planner.automaton.structure import State
+from sequence_planner.complaints import in_a_line
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.goal_course import Do, GoalCourse
 from sequence_planner.control.request_making import RequestMaker
@@ -100,7 +101,7 @@ class GoalClient:
         except GoalRejectedError as error:
             self._fail(GoalState.REJECTED, str(error))
         except _FAILURES as error:
-            self._fail(GoalState.LOST, str(error))
+            self._fail(GoalState.LOST, _told(error))
         else:
             self._say(self._use.result, outcome.result)
             self._goal = None
@@ -115,7 +116,7 @@ class GoalClient:
                 await self._client.cancel_others(self._use.deadline)
         except (GoalRejectedError, *_FAILURES) as error:
             if goal is None or not goal.status.ended:
-                self._feeds.reports.note(self._use.name, str(error), time.monotonic())
+                self._feeds.reports.note(self._use.name, _told(error), time.monotonic())
 
     def _fail(self, state: GoalState, text: str) -> None:
         self._feeds.reports.note(self._use.name, text, time.monotonic())
@@ -155,3 +156,8 @@ class GoalClient:
         task = asyncio.get_running_loop().create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
+
+
+def _told(error: Exception) -> str:
+    """What went wrong, in a line."""
+    return in_a_line(error) if isinstance(error, ValidationError) else str(error)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.control.execution import Execution
+from sequence_planner.counting import counted
 from sequence_planner.expressions.printing import print_expression, print_value
 from sequence_planner.expressions.syntax import Comparison, Constant, Expression, Not, Variable, variables
 from sequence_planner.expressions.types import Value
@@ -139,14 +140,16 @@ class Outside:
 
     def _no_way(self, searched: int) -> str:
         unknown = self.situation.awaited if self.situation is not None else ()
-        far = f"within {_ticks(searched)}" if searched else "in time"
+        far = f"within {counted(searched, 'tick')}" if searched else "in time"
         blind = f", with {', '.join(unknown)} unknown" if unknown else ""
         return f"No way back was found {far}{blind}: bring the devices back by hand."
 
     def _by_starts(self, way: WayBack) -> str:
         abilities = self._execution.automaton.abilities
         starts = ", then ".join(f"{abilities[name].title} ({name})" for _, name in way.starts)
-        return f"Shortest way back, {_ticks(len(way.ticks))}: {starts}. The station does not take it by itself."
+        return (
+            f"Shortest way back, {counted(len(way.ticks), 'tick')}: {starts}. The station does not take it by itself."
+        )
 
     def _by_itself(self, way: WayBack) -> str:
         automaton, state = self._execution.automaton, self._execution.state
@@ -188,7 +191,3 @@ def _printed(automaton: Automaton, name: str, value: Value) -> str:
 
 def _named(automaton: Automaton, specifications: Iterable[str]) -> str:
     return " and ".join(f"“{automaton.specifications[name].title}” ({name})" for name in specifications)
-
-
-def _ticks(number: int) -> str:
-    return "1 tick" if number == 1 else f"{number} ticks"

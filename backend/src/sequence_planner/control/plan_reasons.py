@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.view import PlanStatus
+from sequence_planner.counting import counted
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.planning.plan import PlanAnswer, Verdict
@@ -32,10 +33,11 @@ def why_none(answer: PlanAnswer, blind: bool) -> str:
         return f"no plan at all{unknown}, proven: nothing the station can do from here reaches any of the goals"
     if blind:
         return "no plan while measured values are unknown"
+    none = f"no plan of up to {counted(answer.searched, 'tick')}"
     if answer.verdict is Verdict.LATE:
-        known = f"no plan of up to {answer.searched} ticks, and longer ones" if answer.searched > 0 else "a plan"
+        known = f"{none}, and longer ones" if answer.searched > 0 else "a plan"
         return f"no answer in time: {known} may exist"
-    return f"no plan of up to {answer.searched} ticks: there may be a longer one"
+    return f"{none}: there may be a longer one"
 
 
 def why_violated(automaton: Automaton, names: Iterable[str]) -> str:

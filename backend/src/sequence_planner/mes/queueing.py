@@ -26,10 +26,18 @@ _MODES: Mapping[Mode, str] = {
 
 @dataclass(frozen=True)
 class Queue:
-    """The orders that the station gets now, in this order, and of each other one that may start what it waits for."""
+    """The orders that the station gets now, in this order, and of each other one that may start what it waits for.
+
+    `revisions` has that of each of them, as it was looked at.
+    """
 
     next: list[JobOrder] = field(default_factory=list)
     waits: dict[str, list[str]] = field(default_factory=dict)
+    revisions: dict[str, int] = field(default_factory=dict)
+
+    def knows(self, order: JobOrder) -> bool:
+        """Whether it was looked at as it is."""
+        return self.revisions.get(order.id) == order.revision
 
 
 def queue(
@@ -46,6 +54,7 @@ def queue(
     in_the_way_of: dict[str, list[str]] = {}  # by work master, what is; there are few of these, and many orders
     waiting = [each for each in orders if each.state is OrderState.ALLOWED_TO_START and not each.is_at_station]
     for order in sequence(waiting):
+        found.revisions[order.id] = order.revision
         waits = [*hindered, *_own_waits(order, masters, now)]
         if not waits and masters is not None:
             master = order.work_master

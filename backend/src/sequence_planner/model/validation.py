@@ -11,6 +11,7 @@ from typing import Any
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
 
+from sequence_planner.complaints import complained
 from sequence_planner.expressions.place import Place
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.model.reading import Document, EntryPath
@@ -75,8 +76,8 @@ def _said(details: ErrorDetails, kind: type[BaseModel]) -> str | None:
             return f"`{name}` is not known here{suggestion(name, _fields_at(kind, details['loc'][:-1]))}"
         case "missing":
             return f"`{name}` is missing here"
-        case "value_error":
-            return details["msg"].removeprefix("Value error, ")
+        case "value_error" | "assertion_error":
+            return complained(details)
     return None
 
 

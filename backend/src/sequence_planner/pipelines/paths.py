@@ -11,6 +11,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from sequence_planner.counting import counted
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.pipelines.record import FieldType, ListType, NestedType, RecordType
 
@@ -88,7 +89,7 @@ def _follow(type_: FieldType, above: str, steps: tuple[str | int, ...]) -> Field
             if not isinstance(type_, ListType):
                 raise NoFieldError(f"`{above}` is {type_}, and no list")
             if type_.length is not None and step >= type_.length:
-                raise NoFieldError(f"`{above}` has only {type_.length} items, the first of which is [0]")
+                raise NoFieldError(f"`{above}` has only {counted(type_.length, 'item')}, the first of which is [0]")
             type_, above = type_.element, f"{above}[{step}]"
         else:
             if not isinstance(type_, NestedType):

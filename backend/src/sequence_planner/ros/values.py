@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from rosbags.typesys.base import normalize_fieldname
 
+from sequence_planner.counting import counted
 from sequence_planner.ros.errors import MessageValueError, nearest
 from sequence_planner.ros.fields import FLOAT32_MAX, PLACEHOLDER, FieldType
 
@@ -93,9 +94,9 @@ def _value(shapes: Shapes, field: FieldType, value: object, root: str, path: str
     if not isinstance(value, Sequence) or isinstance(value, (str, bytes, bytearray)):
         raise MessageValueError(root, path, f"a list for {field}", value)
     if isinstance(field.array, int) and len(value) != field.array:
-        raise MessageValueError(root, path, f"exactly {field.array} items", value)
+        raise MessageValueError(root, path, f"exactly {counted(field.array, 'item')}", value)
     if field.max_items and len(value) > field.max_items:
-        raise MessageValueError(root, path, f"at most {field.max_items} items", value)
+        raise MessageValueError(root, path, f"at most {counted(field.max_items, 'item')}", value)
     element = field.element
     items = [_single(shapes, element, item, root, f"{path}[{index}]") for index, item in enumerate(value)]
     return items if field.kind in ("string", "message") else np.array(items, dtype=_dtype(field))
@@ -139,7 +140,7 @@ def _string(field: FieldType, value: object, root: str, path: str) -> str:
     except UnicodeEncodeError:
         raise MessageValueError(root, path, "text that UTF-8 can encode", value) from None
     if field.max_length and length > field.max_length:
-        raise MessageValueError(root, path, f"at most {field.max_length} bytes of UTF-8", value)
+        raise MessageValueError(root, path, f"at most {counted(field.max_length, 'byte')} of UTF-8", value)
     if "\0" in value:  # A CDR string ends there for every peer written in C or C++.
         raise MessageValueError(root, path, "text without a NUL character", value)
     return value
@@ -163,8 +164,8 @@ def _plain(shapes: Shapes, field: FieldType, value: object) -> object:
 
 def _check_bounds(field: FieldType, value: object) -> None:
     if field.max_items and isinstance(value, (list, np.ndarray)) and len(value) > field.max_items:
-        raise MessageValueError(str(field), "", f"at most {field.max_items} items", len(value))
+        raise MessageValueError(str(field), "", f"at most {counted(field.max_items, 'item')}", len(value))
     if field.max_length:
         for text in value if isinstance(value, list) else [value]:
             if isinstance(text, str) and len(text.encode()) > field.max_length:
-                raise MessageValueError(str(field), "", f"at most {field.max_length} bytes of UTF-8", text)
+                raise MessageValueError(str(field), "", f"at most {counted(field.max_length, 'byte')} of UTF-8", text)

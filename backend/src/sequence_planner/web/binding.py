@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import errno
 import socket
+from collections.abc import Iterator
 
 from sequence_planner.web.certificate import check_certificate
 from sequence_planner.web.settings import LOCALHOST, Endpoint, SettingsError, address_of, split_name
@@ -16,28 +17,44 @@ BACKLOG = 128  # connections that wait to be accepted
 
 
 def check_endpoint(endpoint: Endpoint) -> None:
-    """Raise `SettingsError` unless the server may be reached so; nothing is bound."""
-    if address_of(endpoint.host) is None:
-        raise SettingsError(f"{endpoint.host!r} is no address; use --host with {LOCALHOST} or one of this machine")
-    if not 1 <= endpoint.port <= 65535:
-        raise SettingsError(f"{endpoint.port} is not a port; use --port with a number from 1 to 65535")
-    if not (endpoint.loopback or endpoint.https):
-        raise SettingsError(
+    """Raise `SettingsError` with all that is wrong, each in a line, unless the server may be reached so.
+
+    Nothing is bound.
+    """
+    if wrong := list(wrong_with(endpoint)):
+        raise SettingsError("\n".join(wrong))
+
+
+def wrong_with(endpoint: Endpoint) -> Iterator[str]:
+    """Why the server may not be reached so; each names the options that it is about."""
+    is_address = address_of(endpoint.host) is not None
+    if not is_address:
+        yield f"{endpoint.host!r} is no address; use --host with {LOCALHOST} or one of this machine"
+    elif not (endpoint.loopback or endpoint.https or endpoint.private_key is not None):
+        yield (
             f"cannot serve on {endpoint.host} without HTTPS: give --certificate and --private-key, or the --proxy that "
-            "has them; without any of these only the loopback is served"
+            "has them; without any of these only the loopback is served, see --host"
         )
+    if not 1 <= endpoint.port <= 65535:
+        yield f"{endpoint.port} is not a port; use --port with a number from 1 to 65535"
     for proxy in endpoint.proxies:
         if address_of(proxy) is None:
-            raise SettingsError(f"{proxy!r} is no address; use --proxy with the one that the proxy connects from")
+            yield f"{proxy!r} is no address; use --proxy with the one that the proxy connects from"
+    hosts = []
     for name in endpoint.names:
-        split_name(name)
-    if not endpoint.names and (endpoint.proxies or not endpoint.loopback):
-        raise SettingsError("use --name with the host name by which people open the page; no other is answered")
+        try:
+            hosts.append(split_name(name)[0])
+        except SettingsError as error:
+            yield str(error)
+    if not endpoint.names and (endpoint.proxies or (is_address and not endpoint.loopback)):
+        yield "use --name with the host name by which people open the page; no other is answered"
     if (endpoint.certificate is None) != (endpoint.private_key is None):
-        raise SettingsError("--certificate and --private-key belong together: give both, or none")
+        yield "--certificate and --private-key belong together: give both, or none"
     if endpoint.certificate is not None and endpoint.private_key is not None:
-        names = () if endpoint.proxies else endpoint.names  # a proxy may know us by another
-        check_certificate(endpoint.certificate, endpoint.private_key, [split_name(name)[0] for name in names])
+        try:  # a proxy may know us by another name
+            check_certificate(endpoint.certificate, endpoint.private_key, () if endpoint.proxies else hosts)
+        except SettingsError as error:
+            yield from str(error).split("\n")
 
 
 def check_demonstration(endpoint: Endpoint) -> None:

@@ -22,11 +22,14 @@ def server_context(certificate: Path, private_key: Path) -> ssl.SSLContext:
 
     Raises `SettingsError` when the files cannot be read, are not PEM, do not fit together, or need a passphrase.
     """
+    wrong = []
     for path, option in ((certificate, "--certificate"), (private_key, "--private-key")):
         try:
             path.read_bytes()
         except OSError as error:
-            raise SettingsError(f"{path} cannot be read: {error.strerror}; use {option}") from error
+            wrong.append(f"{path} cannot be read: {error.strerror}; use {option}")
+    if wrong:
+        raise SettingsError("\n".join(wrong))
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.minimum_version = ssl.TLSVersion.TLSv1_2
     try:
@@ -38,9 +41,12 @@ def server_context(certificate: Path, private_key: Path) -> ssl.SSLContext:
         ) from error
     except ssl.SSLError as error:
         if error.reason == "KEY_VALUES_MISMATCH":
-            raise SettingsError(f"{private_key} is not the private key of {certificate}") from error
+            raise SettingsError(
+                f"{private_key} is not the private key of {certificate}: see --private-key and --certificate"
+            ) from error
         raise SettingsError(
-            f"{certificate} and {private_key} cannot be used: both must be PEM files ({error.reason or error.args[0]})"
+            f"{certificate} and {private_key} cannot be used: both must be PEM files "
+            f"({error.reason or error.args[0]}), see --certificate and --private-key"
         ) from error
     return context
 
@@ -69,16 +75,18 @@ def _check_as_browser(certificate: Path, client: ssl.SSLContext, server: ssl.SSL
         _shake_hands(client, server, name)
     except ssl.SSLCertVerificationError as error:
         if error.verify_code == EXPIRED:
-            reason = "has expired; renew it"
+            reason = "has expired; renew it, see --certificate"
         elif error.verify_code == NOT_YET_VALID:
-            reason = "is not valid yet; look at its dates, and at this machine's clock"
+            reason = "is not valid yet; look at its dates, see --certificate, and at this machine's clock"
         elif error.verify_code in (HOST_MISMATCH, ADDRESS_MISMATCH):
             reason = f"is not for {name}: its subject alternative names must have what --name says"
         else:
-            reason = f"would be refused by browsers: {error.verify_message}"
+            reason = f"would be refused by browsers, see --certificate: {error.verify_message}"
         raise SettingsError(f"the certificate {certificate} {reason}") from error
     except ssl.SSLError as error:
-        raise SettingsError(f"the certificate {certificate} cannot be used: {error.reason or error.args[0]}") from error
+        raise SettingsError(
+            f"the certificate {certificate} cannot be used, see --certificate: {error.reason or error.args[0]}"
+        ) from error
 
 
 def _shake_hands(client: ssl.SSLContext, server: ssl.SSLContext, name: str | None) -> None:

@@ -24,7 +24,7 @@ from sequence_planner.mes.times import Time
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.web.body import Body, Reason
-from sequence_planner.web.order_answer import OrderAnswer, answered
+from sequence_planner.web.order_answer import OrderAnswer, all_answered, answered
 from sequence_planner.web.order_desk import OrderDesk
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
@@ -138,7 +138,7 @@ async def read_job_orders(
         found = await identity.read(lambda connection: orders.page(connection, state, cursor, limit + 1))
         shown = found[:limit]
         after = shown[-1].number if len(found) > limit else None
-    return OrdersAnswer(job_orders=[answered(each, desk) for each in shown], next=after)
+    return OrdersAnswer(job_orders=all_answered(shown, desk), next=after)
 
 
 @bodiless.get("/{id}", responses={200: TAGGED, **refused(404)})
@@ -169,7 +169,7 @@ async def store_job_order(
         if unknown is not None:
             raise unknown
         order = orders.store(connection, body.content(), actor, now, id=body.id, start=body.start)
-        kept = Kept(201, _tag(order), answered(order, None).model_dump_json())
+        kept = Kept(201, _tag(order), answered(order, desk).model_dump_json())
         answers.keep(connection, actor.id, idempotency_key, digest, kept, now)
         return kept, False
 

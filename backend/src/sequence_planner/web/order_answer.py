@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from pydantic import BaseModel
 
 from sequence_planner.mes.order import JobOrder
@@ -53,11 +55,20 @@ class OrderAnswer(BaseModel):
 _KEPT = OrderAnswer.model_fields.keys() & JobOrder.model_fields.keys()
 
 
-def answered(order: JobOrder, desk: OrderDesk | None) -> OrderAnswer:
+def answered(order: JobOrder, desk: OrderDesk) -> OrderAnswer:
     """An order as it is told to who asks `desk`, which knows how it stands at the station."""
-    return OrderAnswer(
-        **order.model_dump(include=_KEPT),
-        commanded=None if order.wish is None else _COMMANDS[order.wish],
-        allowed=[] if order.removed is not None else list(order.allowed),
-        waits_for=[] if desk is None else desk.waits_for(order),
-    )
+    return all_answered([order], desk)[0]
+
+
+def all_answered(orders: Sequence[JobOrder], desk: OrderDesk) -> list[OrderAnswer]:
+    """Orders as they are told to who asks `desk`."""
+    waits = desk.waits_for(orders)
+    return [
+        OrderAnswer(
+            **each.model_dump(include=_KEPT),
+            commanded=None if each.wish is None else _COMMANDS[each.wish],
+            allowed=[] if each.removed is not None else list(each.allowed),
+            waits_for=waits[each.id],
+        )
+        for each in orders
+    ]

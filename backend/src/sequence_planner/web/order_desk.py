@@ -11,6 +11,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import time
+from collections.abc import Sequence
 
 import structlog
 from starlette.concurrency import run_in_threadpool
@@ -108,16 +109,25 @@ class OrderDesk:
         detail = f"The station has no work master `{name}`. It has: {known}."[:1000]
         return OrderRefused("unknown-work-master", "There is no such work master", detail, 422)
 
-    def waits_for(self, order: JobOrder) -> list[str]:
-        """In words why nothing is done for an order now; empty where something is, or nothing is to be."""
-        if order.is_over or order.state is OrderState.NOT_ALLOWED_TO_START:
-            return []
+    def waits_for(self, asked: Sequence[JobOrder]) -> dict[str, list[str]]:
+        """In words why nothing is done for each of these orders now; empty where something is, or nothing is to be.
+
+        What was changed since the last look is looked at. Any thread may ask.
+        """
+        waiting, view, now_queued = [each for each in asked if _may_wait(each)], self._view, self._queue
+        if not all(now_queued.knows(each) for each in waiting):
+            known = {each.id: each for each in [*self._orders, *waiting]}
+            now_queued = queue(list(known.values()), view, self._masters, self._office.now(), self.sequence)
+        return {each.id: self._waits_for(each, view, now_queued) for each in asked}
+
+    def _waits_for(self, order: JobOrder, view: StationView | None, queued: Queue) -> list[str]:
         refused = self._dispatch.why_refused(order.id)
         if order.is_at_station:
-            view = self._view
             job = None if view is None else view.jobs.get(order.id)
             return job.waits_for if job is not None else [refused or "the station to take it"]
-        return self._queue.waits.get(order.id) or ([] if refused is None else [refused])
+        if not _may_wait(order):
+            return []
+        return queued.waits.get(order.id) or ([] if refused is None else [refused])
 
     def require_control(self, actor: Actor) -> None:
         """Raises `CommandRefused` where a person lets something go on without being in control; a key never is."""
@@ -187,3 +197,8 @@ class OrderDesk:
         if reason != self._trouble:
             LOG.warning("orders cannot be looked after now", reason=reason)
         self._trouble = reason
+
+
+def _may_wait(order: JobOrder) -> bool:
+    """Whether it may start and is not at the station yet."""
+    return order.state is OrderState.ALLOWED_TO_START and not order.is_at_station

@@ -118,8 +118,8 @@ class OrderOfWorkDesk:
 
     def ordered(self, orders: Sequence[JobOrder]) -> list[JobOrder]:
         """Those that have a place in the order that was found, then the others by rule."""
-        last = len(self._places)
-        return sorted(order_of_work(orders), key=lambda order: self._places.get(order.id, last))
+        places = self._places  # any thread may ask, and there are others at any time
+        return sorted(order_of_work(orders), key=lambda order: places.get(order.id, len(places)))
 
     async def _look(self) -> None:
         view = self._controller.view if self._controller.heard else None

@@ -19,6 +19,7 @@ from pydantic import BaseModel, JsonValue
 from starlette.exceptions import HTTPException
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
+from sequence_planner.complaints import complained
 from sequence_planner.control.command_base import TextPlace
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.identity.refusal import IdentityRefused
@@ -161,7 +162,7 @@ async def _invalid(request: Request, error: Exception) -> Response:
         position = found[0]["loc"][-1]
         detail = f"The body is not JSON: {found[0]['ctx']['error']} at character {position}."
         return problem_response(400, "malformed-json", "The body is not JSON", detail)
-    errors = [FieldError(field=".".join(map(str, each["loc"])), expected=each["msg"]) for each in found]
+    errors = [FieldError(field=".".join(map(str, each["loc"])), expected=complained(each)) for each in found]
     detail = "; ".join(f"{each.field}: {each.expected}" for each in errors[:5])
     return problem_response(422, "invalid-request", "The request is not as expected", detail, errors=errors)
 

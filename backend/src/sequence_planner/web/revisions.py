@@ -30,6 +30,7 @@ from sequence_planner.workshop.comparison_view import ComparisonView, TransferVi
 from sequence_planner.workshop.draft import Draft
 from sequence_planner.workshop.files import Files, write_files
 from sequence_planner.workshop.processes import worked
+from sequence_planner.workshop.transfer import untransferred
 from sequence_planner.workshop.view import FilesView, RevisionsView, RevisionView
 from sequence_planner.workshop.what_if_view import WhatIfView
 
@@ -122,7 +123,13 @@ async def comparison(shop: TheWorkshop, old: Version, new: Version = DRAFT) -> R
 async def transfer(
     shop: TheWorkshop, view: LiveView, simulation: Annotated[Simulation, Query()] = Simulation.KEEP
 ) -> Response:
-    """Whether the station could take the draft as it is now, or with the simulation reset."""
+    """Whether the station could take the draft as it is now, or with the simulation reset.
+
+    Where no station may run the draft, as its check has not ended or has found errors, `obstacle` says what a
+    deployment would be refused with.
+    """
+    if (hindrance := (await shop.checked()).hindrance((await shop.open()).number)) is not None:
+        return found(untransferred(hindrance.why).model_dump_json())
     return await _found("fitted", *await _to_fit(shop, view, simulation))
 
 
@@ -142,17 +149,16 @@ async def deploy(body: DeploymentBody, shop: TheWorkshop, actor: Actor, client: 
 
     The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
     production. Where it cannot be started with it the model before comes back: `deployment` in `GET /station` says what
-    has become of it.
+    has become of it. 409 `not-checked` while the check of the draft has not ended, `check-found-errors` with the first
+    of the errors and its place, `no-supervisor` where nothing of it could be started.
     """
     draft = await _at(shop, body.number)
     known = await _known(shop, body.revision)
     if not known.draft:
         detail = "What is deployed is the draft, once it was saved: take the revision back into the draft first."
         raise ProblemFound(409, "not-the-draft", "The draft is not this revision", detail)
-    check = await shop.checked()
-    if check.number != draft.number or not check.deployable:
-        detail = "Only a model whose check has ended without errors, and with a supervisor, is deployed. See Check."
-        raise ProblemFound(409, "not-checked", "The draft is not checked", detail)
+    if (hindrance := (await shop.checked()).hindrance(draft.number)) is not None:
+        raise ProblemFound(409, hindrance.slug, hindrance.title, f"{hindrance.why}.")
     fits = await worked("fitted", *await _to_fit(shop, view, body.simulation))
     assert isinstance(fits, TransferView)
     if not fits.legal:

@@ -19,6 +19,7 @@ from pydantic import ValidationError
 from starlette.types import Message
 
 from sequence_planner.actor import Actor
+from sequence_planner.complaints import complained
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.access import Access, allowed
@@ -151,5 +152,5 @@ def _fault(frame: Message, longest: int) -> str | None:
         if first["type"] == "json_invalid":
             return "The frame is not JSON."
         place = ".".join(map(str, first["loc"])) or "the frame"
-        return f'Only {{"kind": "resync"}} is understood. {place}: {first["msg"]}.'
+        return f'Only {{"kind": "resync"}} is understood. {place}: {complained(first)}.'
     return None

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import StrEnum
 
 from sequence_planner.analysis.document import AnalysisDocument, FindingDocument
+from sequence_planner.checking.unmeetable import CANNOT_BE_MET
 from sequence_planner.control.view_part import View
+from sequence_planner.counting import counted
 
 MOST_FINDINGS = 500  # that are shown
 MORE = "more"  # the kind of the last of them where there are more
@@ -31,6 +34,15 @@ class SummaryView(View):
     specifications: int
 
 
+@dataclass(frozen=True)
+class Hindrance:
+    """Why no station may run a draft: the end of a problem's `type`, a title, and for a person (no full stop) why."""
+
+    slug: str
+    title: str
+    why: str
+
+
 class CheckView(View):
     """What is known of the draft after change `number`; `doing` is what is being looked for, or why nothing is.
 
@@ -44,15 +56,29 @@ class CheckView(View):
     summary: SummaryView | None
     analysis: AnalysisDocument | None
 
-    @property
-    def deployable(self) -> bool:
-        """Whether a station may run it: nothing makes it unusable, and there is a supervisor."""
-        return (
-            self.state is CheckState.DONE
-            and all(finding.severity != "error" for finding in self.findings)
-            and self.analysis is not None
-            and self.analysis.supervised is True
-        )
+    def hindrance(self, number: int) -> Hindrance | None:
+        """Why no station may run the draft after its change `number`; None where one may: nothing makes it unusable,
+        and there is a supervisor.
+        """
+        if self.number == number and self.state is CheckState.FAILED:
+            why = f"The draft could not be checked: {self.doing}. Change the draft, then it is checked anew"
+            return Hindrance("not-checked", "The draft is not checked", why)
+        if self.number != number or self.state is not CheckState.DONE:
+            why = "The check of the draft has not ended yet. Try again when it has, as the page Check shows"
+            return Hindrance("not-checked", "The draft is not checked", why)
+        if errors := [each for each in self.findings if each.severity == "error"]:
+            which = "an error" if len(errors) == 1 else f"{len(errors)} errors, the first"
+            why = f"The check has found {which} at {_told(errors[0])}. Mend the draft, save it, and deploy that"
+            return Hindrance("check-found-errors", "The check has found errors", why)
+        if self.analysis is None or self.analysis.supervised is not True:
+            because = "".join(f": {_told(each)}" for each in self.findings if each.kind == CANNOT_BE_MET)
+            why = f"Nothing of the draft could be started{because}. Mend the draft, save it, and deploy that"
+            return Hindrance("no-supervisor", "The draft has no supervisor", why)
+        return None
+
+
+def _told(finding: FindingDocument) -> str:
+    return f"{finding.file}:{finding.line}:{finding.column}: {finding.message.rstrip('.')}"
 
 
 def listed(findings: Sequence[FindingDocument]) -> list[FindingDocument]:
@@ -61,7 +87,8 @@ def listed(findings: Sequence[FindingDocument]) -> list[FindingDocument]:
         return list(findings)
     worst = sorted(findings, key=lambda finding: finding.severity != "error")
     shown, left = worst[:MOST_FINDINGS], worst[MOST_FINDINGS:]
-    message = f"there are {len(left)} more findings, which are not shown: mend those before this one first"
+    more = counted(len(left), "more finding is", "more findings are")
+    message = f"{more} not shown: mend those before this one first"
     return [*shown, left[0].model_copy(update={"kind": MORE, "message": message, "trace": None})]
 
 

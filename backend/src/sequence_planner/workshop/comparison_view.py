@@ -78,6 +78,7 @@ class TransferView(View):
     `changes` are the variables that are new, gone, or of other values; they begin as the model says. Where it is not
     legal, `violated` are the specifications that the state would violate, `under_way` the abilities that run now and
     would go on as other ones or as none, and `ways` the starts, first to last, of ways into the safe states.
+    `obstacle` says why no station may run the model at all; null where one may.
     """
 
     legal: bool

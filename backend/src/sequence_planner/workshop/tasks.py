@@ -23,7 +23,7 @@ from sequence_planner.workshop.comparison import (
 from sequence_planner.workshop.comparison_view import ComparisonView, TransferView
 from sequence_planner.workshop.files import Files, write_files
 from sequence_planner.workshop.playing import played
-from sequence_planner.workshop.transfer import transfer
+from sequence_planner.workshop.transfer import transfer, untransferred
 from sequence_planner.workshop.what_if import what_if
 from sequence_planner.workshop.what_if_view import WhatIfView
 
@@ -68,7 +68,7 @@ def fitted(
     try:
         after = _meant("the model", new, stages, folder / "new")
     except Unusable as error:
-        yield TransferView(legal=False, changes=[], violated=[], under_way=[], ways=[], obstacle=str(error))
+        yield untransferred(str(error))
         return
     try:
         before = _station(old, stages, folder / "old").automaton

@@ -66,6 +66,11 @@ def transfer(
     )
 
 
+def untransferred(obstacle: str) -> TransferView:
+    """Of a model that no station may run."""
+    return TransferView(legal=False, changes=[], violated=[], under_way=[], ways=[], obstacle=obstacle)
+
+
 def _same(one: Ability | None, other: Ability | None) -> bool:
     """Whether they are the same but for what people call them."""
     return one is not None and other is not None and replace(one, title="") == replace(other, title="")

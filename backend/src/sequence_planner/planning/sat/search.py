@@ -11,6 +11,7 @@ from types import MappingProxyType
 
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
+from sequence_planner.counting import counted
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.plan import Circumstances, Contract, Goal, Plan
 from sequence_planner.planning.sat.fewest import Fewest
@@ -24,7 +25,7 @@ class SearchTimeoutError(Exception):
     """The deadline passed; `searched` ticks were searched completely."""
 
     def __init__(self, searched: int) -> None:
-        super().__init__(f"no answer in time; complete up to {searched} ticks")
+        super().__init__(f"no answer in time; complete up to {counted(searched, 'tick')}")
         self.searched = searched
 
 

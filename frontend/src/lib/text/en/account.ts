@@ -1,3 +1,4 @@
+import { count } from '../count.ts';
 /** Who is signed in and who has control; people, keys and watches of the station. */
 export const account = {
 	signedIn: 'Signed in:',
@@ -154,7 +155,7 @@ export const account = {
 		rotateEnds: 'A secret from before that still works ends at once.',
 		overlap: 'The present secret works for',
 		overlaps: { 0: 'no longer', 1: '1 hour more', 24: '1 day more', 168: '7 days more', 720: '30 days more' },
-		renew: (days: number): string => `The key expires in ${days} days from now`,
+		renew: (days: number): string => `The key expires in ${count(days, 'day', 'days')} from now`,
 		wasRotated: (name: string): string => `${name} has a new secret. Keep it now: it is not shown again.`,
 		former: (moment: string): string => `The secret before works until ${moment}`,
 		nameOf: 'Name of the system that uses it',

@@ -1,3 +1,4 @@
+import { count } from '../count.ts';
 import type { Text } from '../text.svelte.ts';
 
 export const account: Text['account'] = {
@@ -160,7 +161,7 @@ export const account: Text['account'] = {
 		rotateEnds: 'En tidigare hemlighet som ännu fungerar upphör genast.',
 		overlap: 'Den nuvarande hemligheten fungerar',
 		overlaps: { 0: 'inte längre', 1: '1 timme till', 24: '1 dygn till', 168: '7 dygn till', 720: '30 dygn till' },
-		renew: (days) => `Nyckeln går ut om ${days} dagar räknat från nu`,
+		renew: (days) => `Nyckeln går ut om ${count(days, 'dag', 'dagar')} räknat från nu`,
 		wasRotated: (name) => `${name} har en ny hemlighet. Spara den nu: den visas inte igen.`,
 		former: (moment) => `Den tidigare hemligheten fungerar till ${moment}`,
 		nameOf: 'Namn på systemet som använder den',

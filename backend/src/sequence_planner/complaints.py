@@ -1,0 +1,22 @@
+"""What pydantic has found wrong with a value, as people are told it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import ValidationError
+
+
+def complained(details: Mapping[str, Any]) -> str:
+    """The message of one of pydantic's errors, as in its `ErrorDetails`; without the name of the exception, which it
+    writes before what our own validators say.
+    """
+    message = str(details["msg"])
+    return message.partition(", ")[2] if details["type"] in ("value_error", "assertion_error") else message
+
+
+def in_a_line(error: ValidationError) -> str:
+    """The first few of the errors, each with its place."""
+    found = error.errors(include_url=False, include_input=False)[:5]
+    return "; ".join(f"{'.'.join(map(str, each['loc'])) or 'it'}: {complained(each)}" for each in found)
