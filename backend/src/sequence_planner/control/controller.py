@@ -206,6 +206,7 @@ class Controller:
         """What there is to show now."""
         moment = Moment.now()
         alarms = self._alarms.current(self._questions.trouble, moment)
+        self._viewing.who_can = self._alarms.who_can.found
         overrides, control = self.devices.overrides.view(moment), self._orders.in_control.view()
         jobs = self._jobs.up_to(self._writer.durable)
         doubts = Doubts(
