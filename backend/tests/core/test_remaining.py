@@ -50,9 +50,8 @@ def runs(case_: Case) -> Iterator[State]:
     station, absent = case_.automaton, case_.absent
     pending = list(_heard(case_))
     seen = {tuple(each.values()) for each in pending}
-    may = [
-        a for a in station.abilities.values() if a.resource not in absent.resources and a.name not in absent.abilities
-    ]
+    here = [each for each in station.abilities.values() if each.resource not in absent.resources]
+    may = [each for each in here if each.name not in absent.abilities]
     while pending:
         state = pending.pop()
         yield state

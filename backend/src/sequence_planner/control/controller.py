@@ -346,7 +346,8 @@ class Controller:
         self._alarms.unjournalled = self._unjournalled()
         number, what = self._kept
         self._alarms.kept = what if number > self._writer.durable else None
-        self._alarms.undecided, self._alarms.questions = self._doubting.undecided, self._doubting.questions
+        self._alarms.undecided = self._doubting.told(self._alarms.untold)
+        self._alarms.questions = self._doubting.questions
         self._alarms.problems = {id_: (self.desk.open[id_].ability, each) for id_, each in self.desk.problems.items()}
         self._alarms.moved = self._by_hand.notices(moment.monotonic)
         self._alarms.look(self._questions.trouble, moment)

@@ -36,7 +36,7 @@ class WhoCan:
         """Find out. The silence of resources in `untold` is too young to be told."""
         conduct = self._execution.conduct
         resources = (conduct.silent - frozenset(untold)) | conduct.out_of(ServiceKind.RESOURCE)
-        absent = Absent(resources, conduct.out_of(ServiceKind.ABILITY))
+        absent = Absent(resources, conduct.out_of(ServiceKind.ABILITY) & self._execution.automaton.abilities.keys())
         wanted = tuple(self._wanted())
         about = (wanted, self._execution.active, self._execution.revision)
         if absent == self._absent and (about == self._about or monotonic < self._next):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view_part import Value, View
 
 
@@ -18,7 +17,7 @@ class AbsenceReason(StrEnum):
 class AbsenceView(View):
     """A resource or an ability with which nothing is started."""
 
-    of: ServiceKind
+    of: str  # resource or ability
     name: str
     title: str
     why: AbsenceReason

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 from pydantic import JsonValue
 
@@ -83,6 +83,11 @@ class Alarms(StationAlarms):
         """All alarms now."""
         self.look(planner_trouble, moment)
         return self._lives.view()
+
+    @property
+    def untold(self) -> Collection[str]:
+        """The resources whose silence is too young to be told."""
+        return self._devices.untold
 
     def carry_out(self, command: AlarmCommand, moment: Moment) -> None:
         """Do what a person asks for. Raises `CommandRefused`; nothing has changed then."""
