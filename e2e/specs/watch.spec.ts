@@ -62,12 +62,18 @@ test('a problem told on the watch is an alarm until it is solved, and the next t
 		await expect(watch.getByTestId('standing')).toHaveText(words);
 		await expect(watch.getByText('Nothing moves yet')).toBeVisible();
 		await expect(watch.getByText('Moves next')).toHaveCount(0);
+		// Nobody waits for it, and it says that nothing comes of it but a record.
+		await expect(done(watch)).toHaveText('Record as done');
+		await expect(done(watch)).toHaveCSS('border-style', 'dashed');
+		expect(await smallTargets(watch)).toEqual([]);
+		expect(await findings(watch)).toEqual([]);
 		expect(await outsideCircle(watch)).toEqual([]);
 		await picture(watch, `watch-${act.toLowerCase()}`);
 	}
 	await takeControl(operate);
 	await operate.getByRole('button', { name: 'Continue', exact: true }).first().click();
 	await expect(watch.getByTestId('standing')).toHaveCount(0);
+	await expect(done(watch)).toHaveText('Done');
 
 	// The wearer's own page on a phone, where text is larger.
 	await watch.setViewportSize(PHONE.viewport);

@@ -12,8 +12,9 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.control.alarm_view import AlarmState
 from sequence_planner.control.execution import Execution
-from sequence_planner.control.outside import Difference, Outside
+from sequence_planner.control.outside import CHOOSE, Difference, Outside
 from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.viewing_outside import way_back
 from sequence_planner.control.way_back_view import DifferenceView, SpecificationView, WayBackView
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.way_back import WaysBack
@@ -105,16 +106,19 @@ def test_what_the_devices_could_violate_is_named_once_it_is_known() -> None:
 def test_a_way_back_may_start_restart_abilities() -> None:
     seen = Seen(gate_open=True, closed=True, shut=True)
     assert seen.ask()
-    assert seen.outside.way() == "Shortest way back, 2 ticks: lift (lift). The station does not take it by itself."
+    assert seen.outside.way() == CHOOSE
+    found = way_back(seen.execution.automaton, seen.outside, {})
+    assert found is not None
+    assert [step.ability for step in found.steps] == ["lift"]
 
 
 def test_a_way_that_violates_something_says_so() -> None:
     seen = Seen(gate_open=True, closed=True, shut=True, slide="back", extend=False)
     assert seen.ask()
-    assert seen.outside.way() == (
-        "Shortest way back, 4 ticks: slide_out (slide_out), then lift (lift). The station does not take it by itself. "
-        "On the way it violates “sliding” (sliding)."
-    )
+    found = way_back(seen.execution.automaton, seen.outside, {})
+    assert found is not None
+    assert [step.ability for step in found.steps] == ["slide_out", "lift"]
+    assert [each.name for each in found.breaks] == ["sliding"]
 
 
 def test_where_nothing_needs_to_be_started_it_is_said_what_is_awaited() -> None:
@@ -127,7 +131,7 @@ def test_where_no_way_is_found_it_is_said_how_far_was_searched() -> None:
     seen = Seen(gate_open=True, closed=True, shut=True, slide=None)
     assert seen.ask()
     assert seen.outside.way() == (
-        "No way back was found within 40 ticks, with slide unknown: bring the devices back by hand."
+        f"No way back by starts alone was found within 40 ticks, with slide unknown. {CHOOSE}"
     )
 
 

@@ -11,6 +11,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.standing_still import StandingStill
+from sequence_planner.control.who_can import WhoCan
 from sequence_planner.expressions.types import EnumerationType, Value
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervision import synthesise
@@ -61,7 +62,7 @@ def test_a_device_that_was_pushed_away_and_does_not_come_back_is_noticed() -> No
 def test_it_is_an_alarm_that_says_what_the_device_says() -> None:
     execution, _ = made()
     station = prepare_station(MODEL)
-    alarms = PlanAlarms(execution, Feeds(station.pipelines, station.registry), lambda: False)
+    alarms = PlanAlarms(execution, Feeds(station.pipelines, station.registry), lambda: False, WhoCan(execution))
     execution.start_production()
     tick(execution, "between", 1.0)
     assert not [cause for cause in alarms.causes(None, 5.0) if cause.key.startswith("still:")]

@@ -61,6 +61,15 @@ def test_a_device_that_is_not_heard_may_react() -> None:
     assert view.quiet == []
 
 
+def test_nobody_is_called_before_a_device_can_have_been_heard() -> None:
+    """Devices that begin with the station are heard a moment later, and then it is certain."""
+    undecided = Undecided(come_back({}, robot__pose=None))
+    assert undecided.views()
+    assert undecided.told({"robot"}) == []
+    assert undecided.told(()) == ["robot.target_pose"]
+    assert Undecided(come_back({}, robot__pose="above_engine")).told({"robot"}) == ["robot.target_pose"]
+
+
 def test_a_decision_is_one_and_so_is_the_value_that_came_back() -> None:
     for value in ("above_engine", "home"):
         execution = come_back({}, robot__pose="above_engine")

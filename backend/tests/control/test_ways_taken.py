@@ -13,6 +13,7 @@ from sequence_planner.control.alarming.of_plans import PlanAlarms
 from sequence_planner.control.errand import Errand, ErrandKind
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.who_can import WhoCan
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.immutable import replace
 from sequence_planner.planning.advice.offer import OfferKind
@@ -105,7 +106,7 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     """The robot has to arrive before the second start, and does not."""
     tried, taken = station(NAME), standing()
     ready = prepare_station(MODELS / NAME)
-    alarms = PlanAlarms(taken.execution, Feeds(ready.pipelines, ready.registry), lambda: False)
+    alarms = PlanAlarms(taken.execution, Feeds(ready.pipelines, ready.registry), lambda: False, WhoCan(taken.execution))
     arrives = "robot.move_to_position(home).robot_arrives"
     to_home = "robot.move_to_position(home)"
     ticks = (PlanTick((), (TO_ABOVE,)), PlanTick((LEAVES,), ()), PlanTick((arrives,), (to_home,)))
@@ -119,7 +120,7 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     taken.tick((LEAVES,))
     assert causes(20) == [], "what runs is overdue by its own time-outs"
     taken = standing()
-    alarms = PlanAlarms(taken.execution, Feeds(ready.pipelines, ready.registry), lambda: False)
+    alarms = PlanAlarms(taken.execution, Feeds(ready.pipelines, ready.registry), lambda: False, WhoCan(taken.execution))
     missing = Errand(ErrandKind.WAY_BACK, "home", Plan((PlanTick((), (to_home,)),), False, False), goal, by="Eva")
     take(taken, missing)
     assert taken.tick() == ()
@@ -127,7 +128,7 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     held = replace(missing, plan=Plan((PlanTick((), (TO_ABOVE,)),), False, False), into_safe=True, unsupervised=True)
     taken = standing()
     taken.execution.set_stepping(True)
-    alarms = PlanAlarms(taken.execution, Feeds(ready.pipelines, ready.registry), lambda: False)
+    alarms = PlanAlarms(taken.execution, Feeds(ready.pipelines, ready.registry), lambda: False, WhoCan(taken.execution))
     take(taken, replace(held, goal=TRUE))
     assert taken.tick() == ()
     assert causes(4) == []

@@ -167,6 +167,7 @@ def example_view(**changes: object) -> StationView:
         out_of_service=[],
         questions=[],
         last_correction=None,
+        who_can=None,
         approvals={
             "a-1": ApprovalView(
                 act=CorrectionAct(values={"bolts[bolt_pair_1]": "placed"}),

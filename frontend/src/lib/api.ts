@@ -2776,6 +2776,25 @@ export interface components {
             title: string;
         };
         /**
+         * AbsenceReason
+         * @description Why nothing is started with it.
+         * @enum {string}
+         */
+        AbsenceReason: "silent" | "out of service";
+        /**
+         * AbsenceView
+         * @description A resource or an ability with which nothing is started.
+         */
+        AbsenceView: {
+            /** Name */
+            name: string;
+            /** Of */
+            of: string;
+            /** Title */
+            title: string;
+            why: components["schemas"]["AbsenceReason"];
+        };
+        /**
          * AcknowledgeBody
          * @description The alarm as it was seen, `since` when: none that came later is acknowledged by mistake.
          */
@@ -3892,6 +3911,27 @@ export interface components {
             now: boolean | number | string;
             /** Safe */
             safe: boolean | number | string;
+        };
+        /**
+         * DoableView
+         * @description An operation that may still be completed, as far as is known without a search.
+         *
+         *     `by` are the titles of the resources that would start something for it. `once` is what somebody has to see to
+         *     first, by the names of variables.
+         */
+        DoableView: {
+            /** Active */
+            active: boolean;
+            /** By */
+            by: string[];
+            /** Once */
+            once: {
+                [key: string]: boolean | number | string;
+            };
+            /** Operation */
+            operation: string;
+            /** Title */
+            title: string;
         };
         /**
          * Doing
@@ -5155,6 +5195,20 @@ export interface components {
             /** Secret */
             secret: string;
             webhook: components["schemas"]["Webhook"];
+        };
+        /**
+         * NobodyView
+         * @description An operation that nobody can complete now; `lacks` are the titles of what has to be there again for it.
+         */
+        NobodyView: {
+            /** Active */
+            active: boolean;
+            /** Lacks */
+            lacks: string[];
+            /** Operation */
+            operation: string;
+            /** Title */
+            title: string;
         };
         /**
          * NodeView
@@ -6947,6 +7001,7 @@ export interface components {
             undecided: {
                 [key: string]: components["schemas"]["UndecidedOutputView"];
             };
+            who_can: components["schemas"]["WhoCanView"] | null;
         };
         /**
          * StationChange
@@ -7033,6 +7088,7 @@ export interface components {
                 [key: string]: components["schemas"]["VariableView"];
             };
             way_back?: components["schemas"]["WayBackView"] | null;
+            who_can?: components["schemas"]["WhoCanView"] | null;
         };
         /**
          * StationIdentity
@@ -7193,6 +7249,7 @@ export interface components {
                 [key: string]: components["schemas"]["VariableView"];
             };
             way_back: components["schemas"]["WayBackView"] | null;
+            who_can: components["schemas"]["WhoCanView"] | null;
         };
         /**
          * Step
@@ -8075,6 +8132,18 @@ export interface components {
             seconds: number;
             /** Unplanned */
             unplanned: string;
+        };
+        /**
+         * WhoCanView
+         * @description What nobody can do for the want of what is `absent`, and what others may still do.
+         */
+        WhoCanView: {
+            /** Absent */
+            absent: components["schemas"]["AbsenceView"][];
+            /** Nobody */
+            nobody: components["schemas"]["NobodyView"][];
+            /** Others */
+            others: components["schemas"]["DoableView"][];
         };
         /**
          * WhyNotView

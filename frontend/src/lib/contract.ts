@@ -48,6 +48,7 @@ export type Simulation = Schemas['Simulation'];
 export type Force = Schemas['ForceView'];
 export type OutOfService = Schemas['ServiceView'];
 export type Errand = Schemas['ErrandView'];
+export type WhoCan = Schemas['WhoCanView'];
 export type LastErrand = Schemas['LastErrandView'];
 export type Question = Schemas['QuestionView'];
 export type Approval = Schemas['ApprovalView'];

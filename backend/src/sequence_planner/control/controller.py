@@ -206,6 +206,7 @@ class Controller:
         """What there is to show now."""
         moment = Moment.now()
         alarms = self._alarms.current(self._questions.trouble, moment)
+        self._viewing.who_can = self._alarms.who_can.found
         overrides, control = self.devices.overrides.view(moment), self._orders.in_control.view()
         jobs = self._jobs.up_to(self._writer.durable)
         doubts = Doubts(
@@ -345,7 +346,8 @@ class Controller:
         self._alarms.unjournalled = self._unjournalled()
         number, what = self._kept
         self._alarms.kept = what if number > self._writer.durable else None
-        self._alarms.undecided, self._alarms.questions = self._doubting.undecided, self._doubting.questions
+        self._alarms.undecided = self._doubting.told(self._alarms.untold)
+        self._alarms.questions = self._doubting.questions
         self._alarms.problems = {id_: (self.desk.open[id_].ability, each) for id_, each in self.desk.problems.items()}
         self._alarms.moved = self._by_hand.notices(moment.monotonic)
         self._alarms.look(self._questions.trouble, moment)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 import structlog
 
@@ -50,6 +50,10 @@ class Doubting:
     def undecided(self) -> dict[str, UndecidedOutputView]:
         """The outputs on which a person must decide."""
         return self._outputs.views()
+
+    def told(self, untold: Collection[str]) -> list[str]:
+        """Those for which somebody is called, while the silence of resources in `untold` is too young to be told."""
+        return self._outputs.told(untold)
 
     def impossible(self) -> frozenset[Pair]:
         """The values of estimates that never go together with a value of another variable, as far as is known."""

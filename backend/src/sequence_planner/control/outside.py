@@ -18,6 +18,9 @@ from sequence_planner.expressions.types import Value
 from sequence_planner.planning.plan import Circumstances, WayBack, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.way_back import deciding, violated
 
+# Which one is best is for advice alone to say, which weighs all that people and devices can do.
+CHOOSE = "The page Restart proposes ways back. The station takes none by itself."
+
 
 @dataclass(frozen=True)
 class Difference:
@@ -134,22 +137,13 @@ class Outside:
             return f"No way back could be computed: {answer}"
         if answer.way is None:
             return self._no_way(answer.searched)
-        text = self._by_starts(answer.way) if answer.way.starts else self._by_itself(answer.way)
-        broken = _named(self._execution.automaton, answer.way.breaks)
-        return f"{text} On the way it violates {broken}." if broken else text
+        return CHOOSE if answer.way.starts else self._by_itself(answer.way)
 
     def _no_way(self, searched: int) -> str:
         unknown = self.situation.awaited if self.situation is not None else ()
         far = f"within {counted(searched, 'tick')}" if searched else "in time"
         blind = f", with {', '.join(unknown)} unknown" if unknown else ""
-        return f"No way back was found {far}{blind}: bring the devices back by hand."
-
-    def _by_starts(self, way: WayBack) -> str:
-        abilities = self._execution.automaton.abilities
-        starts = ", then ".join(f"{abilities[name].title} ({name})" for _, name in way.starts)
-        return (
-            f"Shortest way back, {counted(len(way.ticks), 'tick')}: {starts}. The station does not take it by itself."
-        )
+        return f"No way back by starts alone was found {far}{blind}. {CHOOSE}"
 
     def _by_itself(self, way: WayBack) -> str:
         automaton, state = self._execution.automaton, self._execution.state

@@ -210,6 +210,7 @@ def preparing_view(
         out_of_service=[],
         questions=[],
         last_correction=None,
+        who_can=None,
         approvals={},
         tasks={},
         topics={},

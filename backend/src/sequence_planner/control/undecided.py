@@ -6,7 +6,7 @@ are now is for a person to decide.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Automaton, Effect, State, target
@@ -39,6 +39,24 @@ class Undecided:
             real = {name: value for name, value in forced.items() if value is not None}
             self._views = dict(self._look(self._execution.corrected(real) if real else state, real, conduct.returned))
         return self._views
+
+    def told(self, untold: Collection[str]) -> list[str]:
+        """Those of them for which somebody is called.
+
+        What rests only on resources whose silence is too young to be told may be over as soon as they are heard.
+        """
+        return [name for name in self.views() if not self._may_pass(name, untold)]
+
+    def _may_pass(self, name: str, untold: Collection[str]) -> bool:
+        """Whether nothing reacts for certain, and what is unknown is of resources in `untold`."""
+        automaton, state = self._execution.automaton, self._execution.state
+        for effect in self._readers.get(name, ()):
+            if _reaction(automaton, effect, state) is not None:
+                read = read_variables(automaton, (effect.guard, *(each.value for each in effect.actions)))
+                unknown = [each for each in read if state[each] is None]
+                if not unknown or any(automaton.variables[each].resource not in untold for each in unknown):
+                    return False
+        return True
 
     def _look(
         self, state: State, real: Mapping[str, Value], returned: frozenset[str]

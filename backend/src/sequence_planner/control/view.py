@@ -26,6 +26,7 @@ from sequence_planner.control.restart_view import (
 from sequence_planner.control.task_commands import ProblemKind
 from sequence_planner.control.view_part import Value, View
 from sequence_planner.control.way_back_view import WayBackView
+from sequence_planner.control.who_can_view import WhoCanView
 from sequence_planner.planning.plan import Contract
 
 
@@ -352,6 +353,7 @@ class StationView(View):
     questions: list[QuestionView]
     last_correction: LastCorrectionView | None
     approvals: dict[str, ApprovalView]  # what waits for a second person
+    who_can: WhoCanView | None  # null while all that there is takes part
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
     overrides: dict[str, OverrideView]  # by resource and name, as in `ur10.speed`

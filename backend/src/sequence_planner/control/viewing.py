@@ -63,6 +63,7 @@ from sequence_planner.control.viewing_jobs import job_views
 from sequence_planner.control.viewing_jobs import waits_for as job_waits_for
 from sequence_planner.control.viewing_outside import way_back
 from sequence_planner.control.waiting import waits_for
+from sequence_planner.control.who_can_view import WhoCanView
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.plan import Contract, Plan
@@ -108,6 +109,7 @@ class Viewing:
         self._replaced: tuple[Replacement | None, float] = (None, 0.0)  # and when that was seen first
         self.completed: dict[str, int] = dict.fromkeys(execution.automaton.operations, 0)
         self.analysis: AnalysisDocument | None = None
+        self.who_can: WhoCanView | None = None
         self.guards: Mapping[str, Guard] = {}  # that the supervisor adds, as far as they are known
 
     def note(self, outcome: TickOutcome, now: float) -> None:
@@ -173,6 +175,7 @@ class Viewing:
             questions=doubts.questions,
             last_correction=doubts.last_correction,
             approvals=doubts.approvals,
+            who_can=self.who_can,
             tasks=self._tasks(desk, stands in (StationStanding.WORKING, StationStanding.SILENT)),
             topics=self._topics(commander, moment),
             overrides=overrides,

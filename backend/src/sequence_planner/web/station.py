@@ -39,6 +39,7 @@ from sequence_planner.control.view import (
     TopicView,
     VariableView,
 )
+from sequence_planner.control.who_can_view import WhoCanView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
 from sequence_planner.web.request_parts import LiveView
@@ -77,6 +78,7 @@ class StationAnswer(Answer):
     standby: StandbyView | None
     deployment: DeploymentView | None
     approvals: dict[str, ApprovalView]
+    who_can: WhoCanView | None
 
 
 class StateAnswer(Answer):

@@ -46,6 +46,7 @@ from sequence_planner.control.view import (
     VariableView,
 )
 from sequence_planner.control.way_back_view import WayBackView
+from sequence_planner.control.who_can_view import WhoCanView
 
 
 class StationChange(TypedDict, total=False):
@@ -78,6 +79,7 @@ class StationChange(TypedDict, total=False):
     questions: list[QuestionView]
     last_correction: LastCorrectionView | None
     approvals: dict[str, ApprovalView]  # whole, too
+    who_can: WhoCanView | None
     tasks: dict[str, TaskView]
     topics: dict[str, TopicView]
     overrides: dict[str, OverrideView]

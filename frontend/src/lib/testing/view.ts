@@ -108,6 +108,7 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		overrides: {},
 		alarms: {},
 		way_back: null,
+		who_can: null,
 		control: null,
 		analysis: null,
 		standby: null,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 from pydantic import JsonValue
 
@@ -31,6 +31,7 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.who_can import WhoCan
 
 Tell = Callable[[str, Mapping[str, JsonValue]], None]
 KEEP_EVERY = 86400.0  # seconds after which what is aside is told again, so that it is among what the journal keeps
@@ -55,8 +56,9 @@ class Alarms(StationAlarms):
         known = known or Known()
         undone = known.deployment if known.deployment and known.deployment.why is not None else None
         super().__init__(execution, outside, known, undone)
-        self._devices = DeviceAlarms(execution, feeds, network, commander)
-        self._plans = PlanAlarms(execution, feeds, lambda: bool(self._touched()))
+        self.who_can = WhoCan(execution)
+        self._devices = DeviceAlarms(execution, feeds, network, commander, self.who_can)
+        self._plans = PlanAlarms(execution, feeds, lambda: bool(self._touched()), self.who_can)
         self._following = Following(execution.automaton, self._touched)
         self._folding = Folding()
         self._lives = Lives(self._told)
@@ -69,6 +71,7 @@ class Alarms(StationAlarms):
         """Take note of what is there now; often enough that nothing comes and goes unseen."""
         self._resume(moment)
         unused = self._execution.conduct.out_of(ServiceKind.RESOURCE)
+        self.who_can.look(self._devices.untold, moment.monotonic)
         of_devices = tuple(self._devices.causes(moment, unused))
         of_plans = self._plans.causes(planner_trouble, moment.monotonic, self._devices.untold)
         causes = (*of_devices, *of_plans, *self.causes())
@@ -80,6 +83,11 @@ class Alarms(StationAlarms):
         """All alarms now."""
         self.look(planner_trouble, moment)
         return self._lives.view()
+
+    @property
+    def untold(self) -> Collection[str]:
+        """The resources whose silence is too young to be told."""
+        return self._devices.untold
 
     def carry_out(self, command: AlarmCommand, moment: Moment) -> None:
         """Do what a person asks for. Raises `CommandRefused`; nothing has changed then."""

@@ -7,6 +7,7 @@ from collections.abc import Collection, Iterable
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.view import Mode, PlanStatus, Production
+from sequence_planner.control.who_can import WhoCan
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.planning.plan import Circumstances
@@ -18,8 +19,9 @@ _NAMED = 3  # so many are named, and the others counted
 class Consequences:
     """Sentences about `execution` as it is now."""
 
-    def __init__(self, execution: Execution) -> None:
+    def __init__(self, execution: Execution, who_can: WhoCan | None = None) -> None:
         self._execution = execution
+        self._who_can = who_can
         self._about: tuple[object, ...] = ()
         self._held_up: dict[frozenset[str], frozenset[str]] = {}  # by idle resources, of one plan
 
@@ -39,8 +41,7 @@ class Consequences:
         names = sorted(execution.active.intersection(operations))
         if not names:
             return "No active operation waits for it."
-        titles = [f"“{execution.automaton.operations[name].title}”" for name in names]
-        return f"{listed(titles)} {'waits' if len(names) == 1 else 'wait'}{until}."
+        return f"{listed(self._quoted(names))} {'waits' if len(names) == 1 else 'wait'}{until}."
 
     def without(self, resources: Collection[str]) -> str:
         """Of resources that cannot be used: what the plan without them leaves out."""
@@ -52,11 +53,24 @@ class Consequences:
             return self._open(resources) or self.waiting(())
         plan, them = execution.plan, "it" if len(resources) == 1 else "them"
         if plan.status is PlanStatus.NONE:
-            return f"There is no plan without {them}. {self.waiting(execution.active)}"
+            return f"There is no plan without {them}. {self._nobody(resources, them)}"
         if plan.status is not PlanStatus.FOLLOWED or plan.answer is None:
-            return f"A plan without {them} is being looked for. {self.waiting(execution.active)}"
+            return f"A plan without {them} is being looked for. {self._nobody(resources, them)}"
         waiting = self.held_up(resources) | execution.active.intersection(plan.answer.left_out)
         return self.waiting(waiting) if waiting else f"The work goes on without {them}."
+
+    def _nobody(self, resources: Collection[str], them: str) -> str:
+        """That nobody can do some operations without these, as far as that is known without a plan; others wait."""
+        active, lacking = self._execution.active, {} if self._who_can is None else self._who_can.lacking
+        beyond = [name for name in sorted(active) if lacking.get(name, frozenset()).intersection(resources)]
+        if not beyond:
+            return self.waiting(active)
+        nobody = f"Nobody can do {listed(self._quoted(beyond))} without {them}."
+        rest = active.difference(beyond)
+        return f"{nobody} {self.waiting(rest)}" if rest else nobody
+
+    def _quoted(self, names: Iterable[str]) -> list[str]:
+        return [f"“{self._execution.automaton.operations[name].title}”" for name in names]
 
     def _open(self, resources: Collection[str]) -> str:
         """That it is not known whether operations can begin, since values of these resources are not."""

@@ -14,6 +14,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feed, Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.control.who_can import WhoCan
 
 GRACE = 30.0  # seconds after the start for devices to be heard first
 STUMBLES = 3.0  # seconds for which one that was heard may be silent meanwhile: much begins at once
@@ -26,14 +27,17 @@ _DEFAULTS = "The device gets the default instead. Correct the pipeline."
 class DeviceAlarms:
     """Looks at the links between `execution` and its devices."""
 
-    def __init__(self, execution: Execution, feeds: Feeds, network: NetworkWatch, commander: Commander) -> None:
+    def __init__(
+        self, execution: Execution, feeds: Feeds, network: NetworkWatch, commander: Commander, who_can: WhoCan
+    ) -> None:
         self._execution = execution
-        self._consequences = Consequences(execution)
+        self._consequences = Consequences(execution, who_can)
         self._feeds = feeds
         self._network = network
         self._commander = commander
         self._began: float | None = None
-        self.untold: Collection[str] = ()  # resources whose silence is too young to be told
+        # Resources whose silence is too young to be told.
+        self.untold: Collection[str] = frozenset(execution.automaton.resources)
 
     def causes(self, moment: Moment, unused: Collection[str]) -> Iterator[Cause]:
         """All that there are now. That an `unused` resource is silent is nothing to be told."""

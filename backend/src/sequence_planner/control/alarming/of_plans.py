@@ -22,6 +22,7 @@ from sequence_planner.control.timeouts import in_the_past, overdue
 from sequence_planner.control.value_text import value_text
 from sequence_planner.control.view import PlanStatus, Production
 from sequence_planner.control.waiting import idle_since, waits_for
+from sequence_planner.control.who_can import WhoCan
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.planning.plan import PlanAnswer
 
@@ -37,11 +38,11 @@ class PlanAlarms:
     Where the state is `unsafe`, a device that is late for it is told soon: it is why.
     """
 
-    def __init__(self, execution: Execution, feeds: Feeds, unsafe: Callable[[], bool]) -> None:
+    def __init__(self, execution: Execution, feeds: Feeds, unsafe: Callable[[], bool], who_can: WhoCan) -> None:
         self._execution = execution
         self._unsafe = unsafe
         self._told_still: frozenset[str] = frozenset()
-        self._consequences = Consequences(execution)
+        self._consequences = Consequences(execution, who_can)
         self._still = StandingStill(execution)
         self._feeds = feeds
         self._tellers = {

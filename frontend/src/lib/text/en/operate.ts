@@ -159,6 +159,18 @@ export const operate = {
 			operation: 'It does not become active, and is not active any more, until somebody puts it back.'
 		} as Readonly<Record<string, string>>
 	},
+	whoCan: {
+		title: 'Who can do what',
+		nobody: (n: number): string => (n === 1 ? 'Nobody can do this now' : 'Nobody can do these now'),
+		lacks: (what: string): string => `needs ${what}`,
+		others: 'This can still be done',
+		by: (whom: string): string => `by ${whom}`,
+		goesOn: 'by what is already under way',
+		once: (what: string): string => `as soon as ${what}`,
+		later: (n: number): string => (n === 1 ? '1 more that comes later' : `${n} more that come later`),
+		none: 'Nothing of what is to be done now.',
+		absent: { silent: 'is not heard', 'out of service': 'is out of service' } as Readonly<Record<string, string>>
+	},
 	topics: {
 		title: 'Topics',
 		never: 'never',

@@ -6,6 +6,8 @@ export const watch = {
 	nothingKnown: 'Nothing is known of your tasks',
 	operatorSays: 'An operator says when it is done.',
 	done: 'Done',
+	/** In its place where nothing comes of it. */
+	record: 'Record as done',
 	sent: 'Sent',
 	gone: 'This task is gone.',
 	movesNext: 'Moves next:',

@@ -158,6 +158,18 @@ export const operate: Text['operate'] = {
 			operation: 'Den blir inte aktiv, och är inte längre aktiv, tills någon tar den i drift igen.'
 		}
 	},
+	whoCan: {
+		title: 'Vem kan göra vad',
+		nobody: (n) => (n === 1 ? 'Detta kan ingen göra nu' : 'Dessa kan ingen göra nu'),
+		lacks: (what) => `behöver ${what}`,
+		others: 'Detta kan fortfarande göras',
+		by: (whom) => `av ${whom}`,
+		goesOn: 'av det som redan pågår',
+		once: (what) => `så snart ${what}`,
+		later: (n) => (n === 1 ? '1 till som kommer senare' : `${n} till som kommer senare`),
+		none: 'Inget av det som ska göras nu.',
+		absent: { silent: 'hörs inte', 'out of service': 'är ur drift' }
+	},
 	topics: {
 		title: 'Topics',
 		never: 'aldrig',

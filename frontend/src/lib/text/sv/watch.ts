@@ -7,6 +7,7 @@ export const watch: Text['watch'] = {
 	nothingKnown: 'Inget är känt om dina uppgifter',
 	operatorSays: 'En operatör säger till när det är klart.',
 	done: 'Klart',
+	record: 'Notera som klart',
 	sent: 'Skickat',
 	gone: 'Uppgiften finns inte längre.',
 	movesNext: 'Rör sig sedan:',

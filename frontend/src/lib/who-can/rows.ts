@@ -1,0 +1,34 @@
+/** What is said of who can do what: of operations that are active, and of those that come later. */
+import type { WhoCan } from '#lib/contract.ts';
+import { say } from '#lib/text/text.svelte.ts';
+import { valueText, variableName } from '#lib/wording/values.ts';
+import type { Row } from './who-can-rows.svelte';
+
+export interface Rows {
+	readonly now: readonly Row[];
+	readonly later: readonly Row[];
+}
+
+type Told = WhoCan['nobody'][number] | WhoCan['others'][number];
+
+function split<T extends Told>(every: readonly T[], said: (each: T) => string): Rows {
+	const rows = (active: boolean): Row[] =>
+		every
+			.filter((each) => each.active === active)
+			.map((each) => ({ operation: each.operation, title: each.title, said: said(each) }));
+	return { now: rows(true), later: rows(false) };
+}
+
+export const whoCanText = {
+	/** What each lacks that nobody can do. */
+	nobody: ({ nobody }: WhoCan): Rows => split(nobody, ({ lacks }) => say().operate.whoCan.lacks(lacks.join(', '))),
+
+	/** By whom the others can be done, and what has to be so first. */
+	others: ({ others }: WhoCan): Rows =>
+		split(others, ({ by, once }) => {
+			const texts = say().operate.whoCan;
+			const first = Object.entries(once).map(([name, value]) => `${variableName(name, null)} = ${valueText(value)}`);
+			const whom = by.length > 0 ? texts.by(by.join(', ')) : first.length > 0 ? '' : texts.goesOn;
+			return [whom, first.length > 0 ? texts.once(first.join(', ')) : ''].filter((each) => each !== '').join(', ');
+		})
+};
