@@ -36,6 +36,9 @@ class Controller:
     def spawn(self, *more: str) -> None:
         self.done.append("spawn")
 
+    def said(self, code: int) -> str:
+        return f"it ended with {code}"
+
 
 class Now:
     def __init__(self) -> None:
@@ -139,6 +142,31 @@ def test_one_that_is_overtaken_while_it_starts_gets_all_the_time_again(model: Pa
     watch.look()
     assert controller.done == []
     now.seconds += 2
+    watch.look()
+    assert controller.done == ["stop", "spawn"]
+    assert read_contents(model) == read_contents(MODEL)
+
+
+def test_one_that_waits_as_somebody_else_commands_has_not_failed(model: Path, beside: Path, now: Now) -> None:
+    controller = Controller()
+    watch = begun(model, beside, controller)
+    last = LastDeployment(beside / "socket")
+    last.tell_that_it_waits(waits=True)
+    for _ in range(5):
+        now.seconds += LONGEST_START + 1
+        watch.look()
+    assert controller.done == []
+    last.tell_that_it_waits(waits=False)
+    now.seconds += LONGEST_START + 1
+    watch.look()
+    assert controller.done == ["stop", "spawn"], "it has all the time again, and no more"
+
+
+def test_one_that_dies_while_it_waits_has_failed(model: Path, beside: Path, now: Now) -> None:
+    controller = Controller()
+    watch = begun(model, beside, controller)
+    LastDeployment(beside / "socket").tell_that_it_waits(waits=True)
+    controller.ended = 1
     watch.look()
     assert controller.done == ["stop", "spawn"]
     assert read_contents(model) == read_contents(MODEL)

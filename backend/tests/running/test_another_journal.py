@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 from running.stations import eventually, finished, free_port, process
@@ -76,7 +78,8 @@ def test_a_restored_backup_begins_at_rest_once(tmp_path: Path) -> None:
         model = station.model
         works(station)
     copy = tmp_path / "copy"
-    shutil.copy(database_of(model), copy)
+    with closing(sqlite3.connect(database_of(model))) as was, closing(sqlite3.connect(copy)) as backup:
+        was.backup(backup)
     paused_later(tmp_path, model)
     shutil.copy(copy, gone(model))
     with edited(tmp_path, "--emulator", model=model) as station:
