@@ -355,6 +355,7 @@ async def _beside(life: Coroutine[None, None, None]) -> AsyncIterator[None]:
     finally:
         task.cancel()
         await asyncio.wait({task})
+        life.close()  # which has never begun where the block was over at once
 
 
 async def _prepared(preparation: Preparation) -> Supervisor | None:
