@@ -40,6 +40,7 @@ def with_other_title(folder: Path) -> Path:
     return model
 
 
+@pytest.mark.timeout(900)  # on a machine that is busy with much else
 def test_a_deployment_during_whose_start_another_station_takes_over_is_kept(
     postgresql: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
