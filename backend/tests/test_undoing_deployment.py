@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import shutil
 import sys
 from pathlib import Path
@@ -9,15 +10,18 @@ from typing import cast
 
 import pytest
 
+from core.actors import EVA
 from sequence_planner import deployment_under_way
-from sequence_planner.control.deploying import LastDeployment
+from sequence_planner.control.command_base import CommandRefused
+from sequence_planner.control.deploying import Deploying, LastDeployment
 from sequence_planner.control.known import Known
+from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.view import ControlView
 from sequence_planner.deployment_folder import NAME, DeploymentFolder, DeploymentNote
 from sequence_planner.deployment_under_way import LONGEST_START, UnderWay
 from sequence_planner.launcher import Part
 from sequence_planner.lifeline import DEPLOYED, OVERTAKEN
-from sequence_planner.workshop.files import put_in_place, read_contents, read_files
+from sequence_planner.workshop.files import put_in_place, read_contents, read_files, write_files
 
 MODEL = Path(__file__).parents[2] / "models" / "single_bolt"
 NOTE = DeploymentNote(revision="1" * 40, name="Repaired", by="anna", time=1.0)
@@ -35,6 +39,9 @@ class Controller:
 
     def spawn(self, *more: str) -> None:
         self.done.append("spawn")
+
+    def said(self, code: int) -> str:
+        return f"it ended with {code}"
 
 
 class Now:
@@ -144,6 +151,31 @@ def test_one_that_is_overtaken_while_it_starts_gets_all_the_time_again(model: Pa
     assert read_contents(model) == read_contents(MODEL)
 
 
+def test_one_that_waits_as_somebody_else_commands_has_not_failed(model: Path, beside: Path, now: Now) -> None:
+    controller = Controller()
+    watch = begun(model, beside, controller)
+    last = LastDeployment(beside / "socket")
+    last.tell_that_it_waits(waits=True)
+    for _ in range(5):
+        now.seconds += LONGEST_START + 1
+        watch.look()
+    assert controller.done == []
+    last.tell_that_it_waits(waits=False)
+    now.seconds += LONGEST_START + 1
+    watch.look()
+    assert controller.done == ["stop", "spawn"], "it has all the time again, and no more"
+
+
+def test_one_that_dies_while_it_waits_has_failed(model: Path, beside: Path, now: Now) -> None:
+    controller = Controller()
+    watch = begun(model, beside, controller)
+    LastDeployment(beside / "socket").tell_that_it_waits(waits=True)
+    controller.ended = 1
+    watch.look()
+    assert controller.done == ["stop", "spawn"]
+    assert read_contents(model) == read_contents(MODEL)
+
+
 def test_what_ends_between_two_looks_is_seen_by_who_watches_over_the_deployment_first(
     model: Path, beside: Path
 ) -> None:
@@ -166,6 +198,25 @@ def test_what_ends_between_two_looks_is_seen_by_who_watches_over_the_deployment_
     assert watch.was
     assert part.process not in (None, first)
     part.end()
+
+
+def test_only_an_accepted_deployment_keeps_others_from_commanding(model: Path, beside: Path) -> None:
+    command = Deploy(actor=EVA, reason="better", revision="1" * 40, name="Titled", staged=f"deploy-{'0' * 16}")
+
+    async def scenario() -> None:
+        deploying = Deploying(model, beside / "socket", emulated=True)
+        assert deploying.refusal() is None
+        with pytest.raises(CommandRefused, match="Try once more to deploy"):
+            await deploying.carry_out(command, None, 1.0)
+        assert deploying.refusal() is None, "all is as it was"
+        write_files({**read_files(model), "station.yaml": "title: new\n"}, beside / command.staged)
+        await deploying.carry_out(command, None, 1.0)
+        refusal = deploying.refusal()
+        assert refusal is not None
+        assert (refusal.slug, refusal.status) == ("deployment-under-way", 503)
+        assert "Eva has deployed Titled" in refusal.detail
+
+    asyncio.run(scenario())
 
 
 def test_only_its_own_deployment_is_forgotten(beside: Path) -> None:

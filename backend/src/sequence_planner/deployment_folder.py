@@ -18,7 +18,7 @@ from sequence_planner.control.view import ControlView
 from sequence_planner.workshop.files import Contents, read_contents, restore_contents, write_contents
 
 NAME = "deployment"
-_NOTE, _BEFORE, _RUNS = "note.json", "before", "runs"
+_NOTE, _BEFORE, _RUNS, _WAITS = "note.json", "before", "runs", "waits"
 
 
 class DeploymentNote(BaseModel):
@@ -71,6 +71,18 @@ class DeploymentFolder:
     def runs(self) -> bool:
         """Whether it does."""
         return (self._folder / _RUNS).exists()
+
+    def tell_that_it_waits(self, *, waits: bool) -> None:
+        """The new model waits, as somebody else commands the devices; or nobody does any more. Raises
+        `OSError`.
+        """
+        mark = self._folder / _WAITS
+        mark.touch() if waits else mark.unlink(missing_ok=True)
+
+    @property
+    def waits(self) -> bool:
+        """Whether somebody else commands the devices, which says nothing of the new model."""
+        return (self._folder / _WAITS).exists()
 
     def bring_back(self, model: Path, why: str) -> None:
         """Let the model in the folder `model` be as it was before, and write down `why`.

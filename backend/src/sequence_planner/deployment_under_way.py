@@ -47,10 +47,12 @@ class UnderWay:
         elif not self._folder.exists:
             self._since = None
             LOG.warning("what was kept of a deployment has vanished, and its model stays whatever becomes of its start")
-        elif self._controller.ended == OVERTAKEN:
-            self._since = time.monotonic()  # the next one prepares the model from the first
-        elif (why := self._failure(self._since)) is not None:
-            self._undo(why)
+        else:
+            if self._controller.ended == OVERTAKEN or self._folder.waits:
+                # The next one prepares the model from the first; and for whom it waits is not the model's affair.
+                self._since = time.monotonic()
+            if (why := self._failure(self._since)) is not None:
+                self._undo(why)
 
     def _begin(self) -> None:
         """The files are in place, and the controller has made room."""

@@ -97,7 +97,7 @@ class Mortal:
             each.terminate()
             each.send_signal(signal.SIGCONT)
         for each in self._parts.values():
-            each.wait(timeout=20)
+            each.wait(timeout=PATIENCE)
 
     def children(self, part: str) -> list[int]:
         """The processes that a part has started."""

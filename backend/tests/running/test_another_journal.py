@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import shutil
+import sqlite3
+from contextlib import closing
 from pathlib import Path
 
 from running.stations import eventually, finished, free_port, process
@@ -14,10 +16,9 @@ from sequence_planner.storage.location import default_url
 
 def works(station: EditedStation) -> None:
     """A person lets it work."""
-    eventually(station.up)
+    eventually(station.up, 240.0)
     station.control()
-    undecided = station.station()["undecided"]
-    if undecided:
+    if undecided := station.get("undecided", "station"):
         values = {name: each["value"] for name, each in undecided.items()}
         station.asked("PUT", "outputs", {"values": values, "reason": "as it was"})
     station.asked("POST", "production/start", {})
@@ -49,7 +50,7 @@ def gone(model: Path) -> Path:
 
 def begun(station: EditedStation) -> tuple[str, bool]:
     """The mode in which it is once it is up, and whether it says that it began at rest."""
-    eventually(station.up)
+    eventually(station.up, 240.0)
     return str(station.get("mode", "station")), "begins-at-rest" in station.get("alarms")
 
 
@@ -63,7 +64,7 @@ def test_a_new_station_begins_without_the_last_word_of_the_one_before(tmp_path: 
     assert (refused.returncode, "run --new" in refused.stderr) == (UNUSABLE, True)
     log = tmp_path / "new.log"
     with process(log, "run", str(model), "--port", str(free_port()), "--emulator", "--new"):
-        eventually(lambda: "runs: open" in log.read_text())
+        eventually(lambda: "runs: open" in log.read_text(), 240.0)
     (kept,) = file.parent.glob("*-last-word-aside-*")
     assert f"is kept as {kept}" in log.read_text()
     with edited(tmp_path, "--emulator", "--new", model=model) as station:
@@ -76,7 +77,8 @@ def test_a_restored_backup_begins_at_rest_once(tmp_path: Path) -> None:
         model = station.model
         works(station)
     copy = tmp_path / "copy"
-    shutil.copy(database_of(model), copy)
+    with closing(sqlite3.connect(database_of(model))) as was, closing(sqlite3.connect(copy)) as backup:
+        was.backup(backup)
     paused_later(tmp_path, model)
     shutil.copy(copy, gone(model))
     with edited(tmp_path, "--emulator", model=model) as station:

@@ -5,9 +5,11 @@ from __future__ import annotations
 import asyncio
 import shutil
 import threading
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from running.stations import eventually, finished, foreign_node, free_port
 from running.workshops import NEVER_GIVEN, ROBOT, SINGLE_BOLT, STATION, EditedStation, edited
@@ -35,6 +37,14 @@ def deployed(station: EditedStation, *replacements: tuple[str, str, str], name: 
 
 def alarms(station: EditedStation) -> dict[str, str]:
     return {key: each["text"] for key, each in station.get("alarms").items()}
+
+
+def begin(station: EditedStation) -> None:
+    """Start production, on which nobody has to decide anything once all devices are heard: till then it is not known
+    what they would do.
+    """
+    eventually(lambda: station.get("undecided", "station") == {})
+    station.asked("POST", "production/start", {})
 
 
 def test_a_revision_that_cannot_be_emulated_is_found_and_not_deployed(tmp_path: Path) -> None:
@@ -95,7 +105,7 @@ def test_a_start_that_fails_brings_the_model_before_back(tmp_path: Path) -> None
         # Nobody is in the way any more.
         assert station.deploy(revision).status_code == 204
         eventually(lambda: station.outcome(revision)["state"] == "runs")
-        station.asked("POST", "production/start", {})
+        begin(station)
         eventually(lambda: "deployment-undone" not in alarms(station))
         # Whoever puts the files of before there now, once it went well, has changed the model: nothing was undone.
         (station.model / ROBOT).write_text(before)
@@ -172,17 +182,53 @@ def test_emulated_devices_go_on_as_they_stand_or_begin_anew_with_the_station(tmp
         assert title(station) == "Another title"
         assert station.value("robot.target_pose") == "above"
         assert station.get("control", "station")["session"] == session
-        assert station.get("undecided", "station") == {}
-        station.asked("POST", "production/start", {})
+        begin(station)
 
         again = (STATION, TITLED[2], TITLED[1])
         revision = deployed(station, again, name="As at first", simulation="reset")
         assert station.outcome(revision)["state"] == "runs"
         eventually(lambda: station.value("robot.pose") == "home")
         assert station.value("robot.target_pose") == "home"
-        seen = station.station()
-        assert (seen["undecided"], seen["unconfirmed"], seen["control"]["session"]) == ({}, False, session)
-        station.asked("POST", "production/start", {})
+        assert station.get("control", "station")["session"] == session
+        assert station.get("unconfirmed", "station") is False
+        begin(station)
+
+
+def becomes(seen: dict[str, Any]) -> str:
+    """What is seen to become of the first deployment."""
+    return str((seen.get("deployment") or {"state": "starting"})["state"])
+
+
+def test_nothing_but_a_stop_is_accepted_while_a_deployment_is_under_way_and_mode_and_control_are_shown(
+    tmp_path: Path,
+) -> None:
+    with edited(tmp_path, "--emulator") as station:
+        eventually(station.up)
+        station.control()
+        station.asked("PUT", "mode", {"mode": "paused"})
+        session = station.get("control", "station")["session"]
+        revision = deployed(station, TITLED, name="Titled")
+        held = station.browser.put("mode", json={"mode": "hold"}).is_success  # the controller before may be gone by now
+        mode, refused, shown = "hold" if held else "paused", Counter[str](), 0
+        while becomes(seen := station.station()) != "runs":
+            answer = station.browser.put("mode", json={"mode": "automatic"})
+            if becomes(station.station()) == "runs":
+                break  # it may have been accepted by the new one
+            assert answer.status_code in (503, 504), answer.text
+            refused[answer.json()["type"]] += 1
+            if seen.get("production") == "preparing":
+                assert (seen["mode"], seen["standing"]) == (mode, "preparing")
+                assert seen["control"]["session"] == session
+                shown += 1
+        assert refused["/problems/deployment-under-way"] > 0
+        assert refused.keys() <= {
+            "/problems/deployment-under-way",
+            "/problems/controller-unavailable",
+            "/problems/controller-no-answer",
+        }
+        assert shown > 0
+        assert station.outcome(revision)["state"] == "runs"
+        assert station.get("control", "station")["session"] == session
 
 
 def test_real_devices_cannot_be_reset(tmp_path: Path) -> None:

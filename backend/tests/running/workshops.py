@@ -33,6 +33,26 @@ class EditedStation(RunningStation):
         assert answer.is_success, answer.text
         return answer.json() if answer.content else None
 
+    def get(self, part: str, path: str = "") -> Any:  # noqa: ANN401 - JSON
+        """The `part` of the answer at `path`, once somebody tells it: while another model is started nobody does, nor
+        as long as the controller has no processor to say how it stands.
+        """
+        found: list[Any] = []
+
+        def told() -> bool:
+            assert self.process.poll() is None, f"`run` has ended: {self.log.read_text()}"
+            try:
+                answer = self.browser.get(path or part)
+            except httpx.HTTPError:
+                return False
+            if answer.status_code != httpx.codes.SERVICE_UNAVAILABLE:
+                answer.raise_for_status()
+                found[:] = [answer.json()[part]]
+            return bool(found)
+
+        eventually(told)
+        return found[0]
+
     def control(self) -> None:
         """Take control from whoever has it."""
         holds = self.get("control", "station")
@@ -106,6 +126,6 @@ def edited(folder: Path, *options: str, model: Path | None = None) -> Iterator[E
     with process(log, "run", str(model), "--port", str(port), *options) as running:
         seen = EditedStation(running, port, log, model)
         seen.__dict__["browser"] = signed_in(model, port)
-        eventually(lambda: bool(seen.station()))
+        eventually(lambda: bool(seen.station()), 4 * PATIENCE)
         yield seen
     assert running.returncode == 0, log.read_text()

@@ -169,6 +169,11 @@ class LastDeployment:
         note = self._note
         return under_way(note.name, note.by) if note is not None and self.starting else None
 
+    def tell_that_it_waits(self, *, waits: bool) -> None:
+        """Whether somebody else commands the devices, so that the start takes as long as that. Raises `OSError`."""
+        if self.starting:
+            self._folder.tell_that_it_waits(waits=waits)
+
     def tell_that_it_runs(self) -> None:
         """The station runs the new model. Raises `OSError`."""
         if self.starting:

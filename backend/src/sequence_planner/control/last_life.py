@@ -11,6 +11,7 @@ from sequence_planner.control.alarming.keeping import KIND as ASIDE
 from sequence_planner.control.alarming.keeping import aside_from
 from sequence_planner.control.belief import KIND as BELIEFS
 from sequence_planner.control.belief import beliefs_from
+from sequence_planner.control.conduct import Beginning
 from sequence_planner.control.happenings import ProductionStarted
 from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
@@ -51,13 +52,15 @@ def as_it_ended(known: Known, ended: Ending, before: str | None) -> Known:
 
     `before` is the station that commanded before, if that was another one.
     """
-    if ended.is_certain or known.beginning is None:
+    if ended.is_certain:
         return known
-    word, mode = ended.word, known.beginning.mode
+    # Nothing came back, and yet somebody has stopped the station: as nothing of that life has reached the journal.
+    begins = known.beginning or Beginning({}, None, (), frozenset(), Moment.now())
+    word, mode = ended.word, begins.mode
     if word is None and mode is not Mode.AUTOMATIC:
         return known  # it is at rest anyway
     because = _not_in_journal(word) if word is not None else _unknown(before)
-    return replace(known, beginning=replaced(known.beginning, mode=_as_it_ended(mode, ended)), halted=because)
+    return replace(known, beginning=replaced(begins, mode=_as_it_ended(mode, ended)), halted=because)
 
 
 def last_known_mode(database: Database, ended: Ending) -> Mode:

@@ -38,6 +38,7 @@ from sequence_planner.synthesis.guards import Guard
 LOG = structlog.get_logger(__name__)
 
 ANALYSIS_DEADLINE = 120.0  # seconds for all that synthesis finds
+PREPARING = "preparing"  # why a command is refused that only comes too early
 PUT_OFF = 10.0  # seconds until what is not known from before is looked for: the station begins again first
 
 
@@ -127,7 +128,7 @@ class Preparation:
             return CommandRefused("no-supervisor", "The specifications cannot be met", f"{self.trouble}.")
         if self._others is not None:
             return CommandRefused("other-commander", "Somebody else commands the devices", f"{self._others}.")
-        return CommandRefused("preparing", "The station is being prepared", "Try again in a moment.", 503)
+        return CommandRefused(PREPARING, "The station is being prepared", "Try again in a moment.", 503)
 
 
 def preparing_view(

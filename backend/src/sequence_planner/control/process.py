@@ -25,7 +25,7 @@ from sequence_planner.control.link import ControllerLink
 from sequence_planner.control.network_graph import network_steps
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.control.network_watch import NetworkWatch
-from sequence_planner.control.preparation import Preparation, Unusable, analyse, preparing_view
+from sequence_planner.control.preparation import PREPARING, Preparation, Unusable, analyse, preparing_view
 from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.recording import Recording
 from sequence_planner.control.starting import go_on, start_when_alone
@@ -201,11 +201,14 @@ class _Life:
         """Wait until nobody else commands the devices. Raises `TransportError`."""
         while True:
             try:
-                return await _require_sole_command(self._running, station)
+                await _require_sole_command(self._running, station)
             except NotAloneError as error:
                 if not self._running.again:
                     raise
                 self._preparation.note_others(str(error))
+                self._deployment.tell_that_it_waits(waits=True)
+            else:
+                return self._deployment.tell_that_it_waits(waits=False)
 
     async def _run_with(
         self, station: ReadyStation, supervisor: Supervisor, transport: Transport, alone: asyncio.Task[None]
@@ -299,9 +302,8 @@ class _Life:
 
     def _refusal(self) -> CommandRefused:
         """Why nothing can be commanded or asked yet."""
-        trouble = self._preparation.trouble
-        deploying = self._deployment.refusal() if trouble is None else None
-        return deploying or self._preparation.refusal()
+        refusal = self._preparation.refusal()
+        return self._deployment.refusal() or refusal if refusal.slug == PREPARING else refusal
 
     def _seen(self, controller: Controller) -> StationView:
         standby = None if self.keeper is None else standby_view(self.keeper)
@@ -353,6 +355,7 @@ async def _beside(life: Coroutine[None, None, None]) -> AsyncIterator[None]:
     finally:
         task.cancel()
         await asyncio.wait({task})
+        life.close()  # which has never begun where the block was over at once
 
 
 async def _prepared(preparation: Preparation) -> Supervisor | None:

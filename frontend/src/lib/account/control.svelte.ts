@@ -17,7 +17,8 @@ export class ControlSeen {
 	/** Something is wanted that needs it, and nobody has it: the station does not work by itself, or waits for the start of production. */
 	readonly wanted: boolean = $derived.by(() => {
 		const view = this.#station.view;
-		return view !== null && view.control === null && (view.mode !== 'automatic' || view.production === 'waiting');
+		if (view === null || view.production === 'preparing') return false; // nothing is taken yet, control neither
+		return view.control === null && (view.mode !== 'automatic' || view.production === 'waiting');
 	});
 
 	constructor(station: Station, session: Session) {
