@@ -6,8 +6,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from sqlalchemy import Connection
-
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
@@ -15,8 +13,8 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.history.codec import BEGUN, SNAPSHOT
 from sequence_planner.history.error import HistoryError
 from sequence_planner.history.player import Player
-from sequence_planner.journal import run_journal
 from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.journal.whole_run import WholeRun
 
 _PAGE: Final = 1000  # records read at once
 
@@ -35,7 +33,7 @@ class Replayed:
 
 
 def replay(
-    connection: Connection, automaton: Automaton, supervisor: Supervisor, from_: int = 1, to: int | None = None
+    run: WholeRun, automaton: Automaton, supervisor: Supervisor, from_: int = 1, to: int | None = None
 ) -> Iterator[Replayed]:
     """Replay the records from the last one that says everything and is not above `from_`, up to `to` or all there are.
 
@@ -43,8 +41,8 @@ def replay(
     one, or a record cannot be read.
     """
     player = Player(automaton, supervisor)
-    number = _start(connection, from_) - 1
-    while page := run_journal.after(connection, number, _PAGE):
+    number = _start(run, from_) - 1
+    while page := run.after(number, _PAGE):
         for record in page:
             if to is not None and record.number > to:
                 return
@@ -55,10 +53,10 @@ def replay(
         number = page[-1].number
 
 
-def _start(connection: Connection, number: int) -> int:
+def _start(run: WholeRun, number: int) -> int:
     """Where to begin. Raises `HistoryError` where there is nothing to begin with."""
     whole = (BEGUN, SNAPSHOT)
-    found = run_journal.before(connection, number + 1, 1, whole) or run_journal.after(connection, 0, 1, whole)
+    found = run.before(number + 1, 1, whole) or run.after(0, 1, whole)
     if not found:
         raise HistoryError("history-gone", "nothing has happened yet: the journal has no record of a run")
     return found[0].number
