@@ -23,6 +23,7 @@ from sequence_planner.history.replay import replay
 from sequence_planner.history.restoring import beginning
 from sequence_planner.history.simulated import SimulatedStation
 from sequence_planner.journal.run_writer import RunWriter
+from sequence_planner.journal.whole_run import WholeRun
 from sequence_planner.planning.planner import Planner
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.storage.database import Database
@@ -57,7 +58,7 @@ def again(station: ReadyStation, supervisor: Supervisor, database: Database) -> 
     size = 0
     began = time.perf_counter()
     with database.reading() as connection:
-        for each in replay(connection, station.automaton, supervisor):
+        for each in replay(WholeRun(connection), station.automaton, supervisor):
             assert each.difference is None, each.difference
             kinds[each.record.kind] += 1
             size += len(each.record.content)

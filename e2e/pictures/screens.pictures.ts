@@ -118,7 +118,7 @@ test.describe('where people are known', () => {
 		}
 		await eva.waitForTimeout(12_000); // until their order is computed
 		await take(eva, 'orders', DESKS);
-		for (const name of ['people', 'webhooks', 'backups']) {
+		for (const name of ['people', 'webhooks', 'backups', 'storage']) {
 			const page = await browse(ADA, `/${name}`);
 			await page.locator('main h2').first().waitFor();
 			await page.waitForTimeout(1500);

@@ -24,6 +24,7 @@ from sequence_planner.complaints import complained
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.logs import FORMAT, LogFormat
 from sequence_planner.memory_limit import LEAST, MOST
+from sequence_planner.retention.settings import LEAST_ORDER_DAYS, MOST_DAYS, MOST_GB, NO_ARCHIVE
 from sequence_planner.ros.choice import TransportChoice
 from sequence_planner.ros.environment import INTERFACE
 from sequence_planner.secret_variables import CLIENT_SECRET
@@ -40,6 +41,7 @@ _PATHS: Final = (
     "database_file",
     "oidc_client_secret_file",
     "backup_folder",
+    "archive_folder",
 )  # from the file's folder, where they are relative
 _SECRET: Final = "database"
 _OPTION: Final = re.compile(r"(?<![\w-])--([a-z]+(?:-[a-z]+)*)(?![\w-])")
@@ -79,6 +81,12 @@ class Configuration(BaseModel):
     backup_folder: Path | None = None
     backups_kept: Annotated[int, Field(ge=1, le=1000)] | None = None
     backup_every: Annotated[float, Field(ge=0.25, le=8760)] | None = None
+    journal_days: Annotated[float, Field(ge=0.01, le=MOST_DAYS)] | None = None
+    journal_gb: Annotated[float, Field(ge=0.001, le=MOST_GB)] | None = None
+    order_days: Annotated[float, Field(ge=LEAST_ORDER_DAYS, le=MOST_DAYS)] | None = None
+    archive_folder: str | None = None
+    archive_days: Annotated[float, Field(ge=1, le=MOST_DAYS)] | None = None
+    archive_gb: Annotated[float, Field(ge=0.001, le=MOST_GB)] | None = None
     log_format: LogFormat | None = None
     memory: Annotated[float, Field(ge=LEAST, le=MOST)] | None = None
 
@@ -173,9 +181,13 @@ def _in_file(file: Path) -> Iterator[Told | str]:
         yield f"{lines[_SECRET]}: others may read this file, and there is a password in it: chmod 600 {file}"
     for name, value in document.items():
         if name in Configuration.model_fields and name not in dict(wrong):
-            yield Told(
-                name, str(file.parent / value) if name in _PATHS and isinstance(value, str) else value, lines[name]
-            )
+            yield Told(name, _path(file, name, value), lines[name])
+
+
+def _path(file: Path, name: str, value: str | bool | int | float | list[str]) -> str | bool | int | float | list[str]:
+    """A value as the command line would have it: a path is relative to the file that names it."""
+    is_path = name in _PATHS and isinstance(value, str) and (name, value) != ("archive_folder", NO_ARCHIVE)
+    return str(file.parent / str(value)) if is_path else value
 
 
 def _in_environment(environ: Mapping[str, str]) -> Iterator[Told | str]:

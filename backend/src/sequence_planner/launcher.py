@@ -47,6 +47,7 @@ from sequence_planner.logs import FORMAT, LogFormat, configure_logs
 from sequence_planner.memory_limit import USUAL, VARIABLE
 from sequence_planner.mes.webhooks.targets import Targets
 from sequence_planner.parts_file import write_restarts
+from sequence_planner.retention.settings import Retention
 from sequence_planner.secret_variables import CLIENT_SECRET, PASSWORD, environment
 from sequence_planner.service_manager import ServiceManager
 from sequence_planner.storage.address import PostgresqlServer
@@ -92,6 +93,7 @@ class Launch:
     log_format: LogFormat = LogFormat.TEXT
     webhooks: Targets = field(default_factory=Targets)
     backups: Keeping = field(default_factory=Keeping)
+    retention: Retention = field(default_factory=Retention)
     new: bool = False
     memory: float = USUAL  # GB, for each process that checks a model
     unusable: str | None = None
@@ -347,6 +349,7 @@ class _Launcher:
         server += [f"--webhook-network={network}" for network in request.webhooks.networks]
         server += ["--webhook-loopback"] if request.webhooks.loopback else []
         server += request.backups.arguments()
+        server += request.retention.arguments()
         # It listens as long as this process lives: whoever connects while a server has died waits for the next one.
         server += [*_options(request.endpoint), f"--listener={listener.fileno()}"]
         kept = (listener.fileno(),)

@@ -11,6 +11,7 @@ from sequence_planner.control.commands import SetMode, TakeControl
 from sequence_planner.control.view import Mode
 from sequence_planner.history.codec import BEGUN
 from sequence_planner.history.replay import replay
+from sequence_planner.journal.whole_run import WholeRun
 from sequence_planner.ros.memory import MemoryNetwork
 from sequence_planner.storage.database import Database
 
@@ -39,7 +40,7 @@ def test_what_the_controller_wrote_is_replayed() -> None:
         for _ in range(2):
             asyncio.run(life(MemoryNetwork(), database))
         with database.reading() as connection:
-            found = list(replay(connection, station.automaton, supervisor))
+            found = list(replay(WholeRun(connection), station.automaton, supervisor))
         assert found[-1].difference is None, found[-1].difference
         kinds = [each.record.kind for each in found]
         assert kinds.count(BEGUN) == 2

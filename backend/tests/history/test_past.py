@@ -35,6 +35,7 @@ from sequence_planner.history.replay import Replayed, replay
 from sequence_planner.history.restoring import beginning
 from sequence_planner.immutable import replace
 from sequence_planner.journal import run_journal
+from sequence_planner.journal.whole_run import WholeRun
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
 from sequence_planner.version import VERSION
@@ -54,7 +55,7 @@ def past() -> Iterator[Worked]:
 
 def replayed(database: Database, from_: int = 1, to: int | None = None) -> list[Replayed]:
     with database.reading() as connection:
-        return list(replay(connection, AUTOMATON, SUPERVISOR, from_, to))
+        return list(replay(WholeRun(connection), AUTOMATON, SUPERVISOR, from_, to))
 
 
 def test_the_work_is_replayed_bit_for_bit(past: Worked) -> None:
@@ -76,11 +77,12 @@ def test_another_process_replays_it_too(past: Worked) -> None:
         "import sys\n"
         "from control.rig import TRUCK_ENGINE, ready\n"
         "from sequence_planner.history.replay import replay\n"
+        "from sequence_planner.journal.whole_run import WholeRun\n"
         "from sequence_planner.storage.database import Database\n"
         "station, supervisor, _ = ready(TRUCK_ENGINE)\n"
         "database = Database.open(sys.argv[1], create=False)\n"
         "with database.reading() as connection:\n"
-        "    found = list(replay(connection, station.automaton, supervisor))\n"
+        "    found = list(replay(WholeRun(connection), station.automaton, supervisor))\n"
         "assert not found[-1].difference, found[-1].difference\n"
         "print(len(found))\n"
     )
@@ -123,7 +125,7 @@ def test_another_model_is_refused_in_words(past: Worked) -> None:
     database, _ = past
     other = replace(AUTOMATON, title="another")
     with database.reading() as connection, pytest.raises(HistoryError, match="another model of the station") as refused:
-        list(replay(connection, other, SUPERVISOR))
+        list(replay(WholeRun(connection), other, SUPERVISOR))
     assert refused.value.slug == "model-changed"
 
 
@@ -166,7 +168,7 @@ def test_every_moment_can_be_looked_at(past: Worked) -> None:
     found = replayed(database)
     with database.reading() as connection:
         for number in (1, 60, 101, len(found)):
-            moment = looking_back(connection, AUTOMATON, SUPERVISOR, number)
+            moment = looking_back(WholeRun(connection), AUTOMATON, SUPERVISOR, number)
             shown = moment_view(moment)
             assert shown.record.number == number
             content = json.loads(moment.record.content)
@@ -174,7 +176,7 @@ def test_every_moment_can_be_looked_at(past: Worked) -> None:
                 assert shown.past.values[name] == value
         assert moment.now.epoch <= NOW.epoch + 31
         with pytest.raises(HistoryError, match="no record"):
-            looking_back(connection, AUTOMATON, SUPERVISOR, len(found) + 1)
+            looking_back(WholeRun(connection), AUTOMATON, SUPERVISOR, len(found) + 1)
 
 
 def test_what_was_believed_comes_back(past: Worked) -> None:
@@ -215,7 +217,7 @@ def test_a_second_life_begins_with_what_the_first_has_left() -> None:
         begun = [each.record.number for each in lives if each.record.kind == BEGUN]
         assert len(begun) == 2
         with database.reading() as connection:
-            second = looking_back(connection, AUTOMATON, SUPERVISOR, begun[1]).execution
+            second = looking_back(WholeRun(connection), AUTOMATON, SUPERVISOR, begun[1]).execution
         for name in AUTOMATON.names(Kind.ESTIMATED):
             assert second.state[name] == first.state[name]
         assert second.revision >= first.revision > 0, "what was looked at in one life is never decided on in the next"
@@ -271,14 +273,14 @@ def test_nothing_comes_back_where_nothing_was() -> None:
     with journal() as database, database.reading() as connection:
         assert beginning(connection, AUTOMATON, NOW) is None
         with pytest.raises(HistoryError, match="nothing has happened yet"):
-            list(replay(connection, AUTOMATON, SUPERVISOR))
+            list(replay(WholeRun(connection), AUTOMATON, SUPERVISOR))
 
 
 def test_a_branch_goes_on_from_the_past_without_touching_it(past: Worked) -> None:
     database, _ = past
     with database.reading() as connection:
         before = run_journal.end(connection)
-        found = branch(connection, STATION, SUPERVISOR, 60, 20.0, {}, 60.0)
+        found = branch(WholeRun(connection), STATION, SUPERVISOR, 60, 20.0, {}, 60.0)
         assert run_journal.end(connection) == before
     assert found.seconds == 20.0
     started = [name for each in found.records for name in json.loads(each.content).get("started", ())]
@@ -290,18 +292,18 @@ def test_a_branch_may_begin_with_a_correction(past: Worked) -> None:
     database, _ = past
     name = AUTOMATON.names(Kind.ESTIMATED)[0]
     with database.reading() as connection:
-        now = looking_back(connection, AUTOMATON, SUPERVISOR, 60).execution.state[name]
+        now = looking_back(WholeRun(connection), AUTOMATON, SUPERVISOR, 60).execution.state[name]
         other = next(value for value in AUTOMATON.variables[name].type.domain if value != now)
-        found = branch(connection, STATION, SUPERVISOR, 60, 1.0, {name: other}, 60.0)
+        found = branch(WholeRun(connection), STATION, SUPERVISOR, 60, 1.0, {name: other}, 60.0)
         assert json.loads(found.records[1].content)["changes"] == {name: other}
         with pytest.raises(HistoryError, match="no estimated variable"):
-            branch(connection, STATION, SUPERVISOR, 60, 1.0, {AUTOMATON.names(Kind.OUTPUT)[0]: True}, 60.0)
+            branch(WholeRun(connection), STATION, SUPERVISOR, 60, 1.0, {AUTOMATON.names(Kind.OUTPUT)[0]: True}, 60.0)
         with pytest.raises(HistoryError, match="ranges over"):
-            branch(connection, STATION, SUPERVISOR, 60, 1.0, {name: "nonsense"}, 60.0)
+            branch(WholeRun(connection), STATION, SUPERVISOR, 60, 1.0, {name: "nonsense"}, 60.0)
 
 
 def test_a_branch_ends_when_its_time_is_over(past: Worked) -> None:
     database, _ = past
     with database.reading() as connection:
-        found = branch(connection, STATION, SUPERVISOR, 60, 600.0, {}, 0.5)
+        found = branch(WholeRun(connection), STATION, SUPERVISOR, 60, 600.0, {}, 0.5)
     assert found.seconds < 600.0

@@ -15,6 +15,7 @@ from sequence_planner.history.replay import Replayed, replay
 from sequence_planner.journal import run_journal
 from sequence_planner.journal.chain import START, Position, broken_at
 from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.journal.whole_run import WholeRun
 from sequence_planner.storage.database import Database
 
 
@@ -63,7 +64,7 @@ class Judge:
     def judge(self, database: Database) -> None:
         """AssertionError when something is otherwise than it was, was started twice, or led out of the safe set."""
         with database.reading() as connection:
-            for each in replay(connection, self._automaton, self._supervisor):
+            for each in replay(WholeRun(connection), self._automaton, self._supervisor):
                 assert each.difference is None, each.difference
                 self._look(each)
 

@@ -600,7 +600,10 @@ export interface paths {
         };
         /**
          * Read Events
-         * @description The events with higher numbers than `after`. They are numbered without gaps and never change.
+         * @description The events with higher numbers than `after`; without it from the oldest that is kept. They are numbered without
+         *     gaps and never change.
+         *
+         *     410 `events-gone` where one behind `after` is kept no more: it may have been missed.
          *
          *     409 `event-not-known` where there is no event `after` yet: a station that was restored from a backup numbers anew.
          */
@@ -898,6 +901,8 @@ export interface paths {
          * Read Job Responses
          * @description What was made of the orders that are over, in the order in which they were; orders that are cleared are left
          *     out. With `newest` it goes back from the last one.
+         *
+         *     410 `responses-gone` where one behind `cursor` is kept no more; without `cursor` it begins with the oldest that is.
          */
         get: operations["read_job_responses"];
         put?: never;
@@ -917,7 +922,7 @@ export interface paths {
         };
         /**
          * Read Job Response
-         * @description What was made of an order; 404 `no-job-response` until it is over.
+         * @description What was made of an order; 404 `no-job-response` until it is over, 410 `job-order-gone` long after that.
          */
         get: operations["read_job_response"];
         put?: never;
@@ -2138,6 +2143,46 @@ export interface paths {
          * @description Allow one start, as soon as there is one. It takes control.
          */
         post: operations["take_step"];
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/storage": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        /**
+         * Storage
+         * @description How much there is of what, how it grows, since when what is kept, and what is in the way.
+         */
+        get: operations["storage"];
+        put?: never;
+        post?: never;
+        delete?: never;
+        options?: never;
+        head?: never;
+        patch?: never;
+        trace?: never;
+    };
+    "/api/v1/storage/archive": {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        get?: never;
+        put?: never;
+        /**
+         * Archive Now
+         * @description Cut what is older than the settings say now, in the background. Whoever asks while it is done gets that.
+         */
+        post: operations["archive_now"];
         delete?: never;
         options?: never;
         head?: never;
@@ -7303,6 +7348,163 @@ export interface components {
             reason?: string | null;
         };
         /**
+         * StorageAnswer
+         * @description How much is kept, for how long, and how it grows. `database` and `archived` are null where there is nothing.
+         *
+         *     `days` are the last days, the oldest first; `files` the newest files of the archive, the newest first, of so many.
+         *     `trouble` is what keeps old things from being cut now; `missing` counts the files that are not there.
+         */
+        StorageAnswer: {
+            archived: components["schemas"]["StorageKeptAnswer"] | null;
+            busy: components["schemas"]["StorageBusyAnswer"] | null;
+            database: components["schemas"]["StorageKeptAnswer"] | null;
+            /** Days */
+            days: components["schemas"]["StorageDayAnswer"][];
+            /** File Count */
+            file_count: number;
+            /** Files */
+            files: components["schemas"]["StorageFileAnswer"][];
+            growth: components["schemas"]["StorageGrowthAnswer"] | null;
+            last: components["schemas"]["StorageRunAnswer"] | null;
+            /** Missing */
+            missing: number;
+            settings: components["schemas"]["StorageSettingsAnswer"];
+            sizes: components["schemas"]["StorageSizesAnswer"];
+            /** Trouble */
+            trouble: string | null;
+        };
+        /**
+         * StorageBusyAnswer
+         * @description For whom it is done now.
+         */
+        StorageBusyAnswer: {
+            /** By */
+            by: string;
+        };
+        /**
+         * StorageDayAnswer
+         * @description What has come in a day that begins at `since`: so many records, and about so many bytes.
+         */
+        StorageDayAnswer: {
+            /** Records */
+            records: number;
+            /** Since */
+            since: number;
+            /** Size */
+            size: number;
+        };
+        /**
+         * StorageFileAnswer
+         * @description A file of the archive: with the records from `first` to `last`, or else with so many `orders`.
+         */
+        StorageFileAnswer: {
+            /** File */
+            file: string;
+            /** First */
+            first: number | null;
+            /** Last */
+            last: number | null;
+            /** Missing */
+            missing: boolean;
+            /** Orders */
+            orders: number | null;
+            /** Since */
+            since: number | null;
+            /** Size */
+            size: number;
+            /** Until */
+            until: number;
+        };
+        /**
+         * StorageGrowthAnswer
+         * @description How it goes on if it goes on like this: bytes a day in the database (the mean of the last days) and, of these,
+         *     in the archive; `journal` is how large what happened becomes until it is cut, `by_size` whether that is because of
+         *     its size. The disk is full in `full_in` days; null where that is not foreseen within ten years.
+         */
+        StorageGrowthAnswer: {
+            /** Archived Per Day */
+            archived_per_day: number;
+            /** By Size */
+            by_size: boolean;
+            /** Full In */
+            full_in: number | null;
+            /** Journal */
+            journal: number;
+            /** Per Day */
+            per_day: number;
+        };
+        /**
+         * StorageKeptAnswer
+         * @description The records from `first` to `last`, and when these happened, in seconds since the epoch.
+         */
+        StorageKeptAnswer: {
+            /** First */
+            first: number;
+            /** Last */
+            last: number;
+            /** Since */
+            since: number;
+            /** Until */
+            until: number;
+        };
+        /**
+         * StorageRunAnswer
+         * @description What was done last: how many records and job orders were cut, and how many files removed.
+         */
+        StorageRunAnswer: {
+            /** Orders */
+            orders: number;
+            /** Records */
+            records: number;
+            /** Removed */
+            removed: number;
+            /** Time */
+            time: number;
+        };
+        /**
+         * StorageSettingsAnswer
+         * @description For how long things are kept, as the station was started: see the options of `run`. `folder` is null where what
+         *     is cut is archived nowhere.
+         */
+        StorageSettingsAnswer: {
+            /** Archive Days */
+            archive_days: number | null;
+            /** Archive Gb */
+            archive_gb: number | null;
+            /** Folder */
+            folder: string | null;
+            /** Journal Days */
+            journal_days: number;
+            /** Journal Gb */
+            journal_gb: number;
+            /** Order Days */
+            order_days: number;
+        };
+        /**
+         * StorageSizesAnswer
+         * @description Bytes: of the database, of which `unused` are free for what comes (known of SQLite alone); of what happened and
+         *     of job orders in it, estimated; of the archive and of backups beside the database. `free` is what is free on the
+         *     disk of the database (null on another machine), `archive_free` on that of the archive.
+         */
+        StorageSizesAnswer: {
+            /** Archive */
+            archive: number;
+            /** Archive Free */
+            archive_free: number | null;
+            /** Backups */
+            backups: number;
+            /** Database */
+            database: number;
+            /** Free */
+            free: number | null;
+            /** Journal */
+            journal: number;
+            /** Orders */
+            orders: number;
+            /** Unused */
+            unused: number;
+        };
+        /**
          * StreamError
          * @description Something the client sent cannot be understood. The connection goes on.
          */
@@ -8305,6 +8507,15 @@ export interface components {
         };
         /** @description A problem */
         Problem409: {
+            headers: {
+                [name: string]: unknown;
+            };
+            content: {
+                "application/problem+json": components["schemas"]["Problem"];
+            };
+        };
+        /** @description A problem */
+        Problem410: {
             headers: {
                 [name: string]: unknown;
             };
@@ -9635,7 +9846,7 @@ export interface operations {
     read_events: {
         parameters: {
             query?: {
-                after?: number;
+                after?: number | null;
                 limit?: number;
             };
             header?: never;
@@ -9656,6 +9867,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             409: components["responses"]["Problem409"];
+            410: components["responses"]["Problem410"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -9822,6 +10034,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -9859,6 +10072,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
+            409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -9968,6 +10182,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
+            409: components["responses"]["Problem409"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -10183,6 +10398,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
+            410: components["responses"]["Problem410"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -10231,6 +10447,7 @@ export interface operations {
             404: components["responses"]["Problem404"];
             408: components["responses"]["Problem408"];
             409: components["responses"]["Problem409"];
+            410: components["responses"]["Problem410"];
             412: components["responses"]["Problem412"];
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
@@ -10281,6 +10498,7 @@ export interface operations {
             404: components["responses"]["Problem404"];
             408: components["responses"]["Problem408"];
             409: components["responses"]["Problem409"];
+            410: components["responses"]["Problem410"];
             413: components["responses"]["Problem413"];
             415: components["responses"]["Problem415"];
             422: components["responses"]["Problem422"];
@@ -10300,7 +10518,7 @@ export interface operations {
     read_job_responses: {
         parameters: {
             query?: {
-                cursor?: number;
+                cursor?: number | null;
                 limit?: number;
                 newest?: boolean;
             };
@@ -10321,6 +10539,7 @@ export interface operations {
             };
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
+            410: components["responses"]["Problem410"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -10358,6 +10577,7 @@ export interface operations {
             401: components["responses"]["Problem401"];
             403: components["responses"]["Problem403"];
             404: components["responses"]["Problem404"];
+            410: components["responses"]["Problem410"];
             422: components["responses"]["Problem422"];
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
@@ -12912,6 +13132,83 @@ export interface operations {
             431: components["responses"]["Problem431"];
             503: components["responses"]["Problem503"];
             504: components["responses"]["Problem504"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    storage: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody?: never;
+        responses: {
+            /** @description Successful Response */
+            200: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StorageAnswer"];
+                };
+            };
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            409: components["responses"]["Problem409"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
+            /** @description A problem */
+            default: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/problem+json": components["schemas"]["Problem"];
+                };
+            };
+        };
+    };
+    archive_now: {
+        parameters: {
+            query?: never;
+            header?: never;
+            path?: never;
+            cookie?: never;
+        };
+        requestBody: {
+            content: {
+                "application/json": components["schemas"]["NothingBody"];
+            };
+        };
+        responses: {
+            /** @description Successful Response */
+            202: {
+                headers: {
+                    [name: string]: unknown;
+                };
+                content: {
+                    "application/json": components["schemas"]["StorageBusyAnswer"];
+                };
+            };
+            400: components["responses"]["Problem400"];
+            401: components["responses"]["Problem401"];
+            403: components["responses"]["Problem403"];
+            408: components["responses"]["Problem408"];
+            409: components["responses"]["Problem409"];
+            413: components["responses"]["Problem413"];
+            415: components["responses"]["Problem415"];
+            422: components["responses"]["Problem422"];
+            431: components["responses"]["Problem431"];
+            503: components["responses"]["Problem503"];
             /** @description A problem */
             default: {
                 headers: {

@@ -92,6 +92,7 @@ export type Capabilities = Schemas['CapabilitiesAnswer'];
 export type Backup = Schemas['BackupAnswer'];
 export type Backups = Schemas['BackupsAnswer'];
 export type BackupTrouble = Schemas['BackupTroubleAnswer'];
+export type Storage = Schemas['StorageAnswer'];
 export type Webhook = Schemas['Webhook'];
 export type Webhooks = Schemas['WebhooksAnswer'];
 export type NewWebhook = Schemas['NewWebhookAnswer'];

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
+
+import typer
 
 from sequence_planner.cli.options import refuse
 from sequence_planner.storage.error import StorageError
@@ -13,6 +15,17 @@ from sequence_planner.storage.location import default_url
 
 if TYPE_CHECKING:
     from sequence_planner.storage.database import Database
+
+ArchiveOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--archive",
+        metavar="FOLDER",
+        exists=True,
+        file_okay=False,
+        help="Where the archive is by now. By default it is where the station has put it.",
+    ),
+]
 
 
 @contextmanager

@@ -11,26 +11,33 @@ from pydantic import ValidationError
 from sqlalchemy import Connection
 
 from sequence_planner.counting import counted
-from sequence_planner.journal import audit, run_journal
+from sequence_planner.journal import audit
+from sequence_planner.journal.archive import Archive, Index
+from sequence_planner.journal.archive import verified as wrong_in
 from sequence_planner.journal.chain import START, Link
 from sequence_planner.journal.checkpoints import Checkpoint
 from sequence_planner.journal.entry import Record
 from sequence_planner.journal.signing_key import key_file, public_key
 from sequence_planner.journal.verification import Verified, verify
+from sequence_planner.journal.whole_run import WholeRun
+from sequence_planner.mes.retention import OrderFile, order_files, wrong_files
 from sequence_planner.storage.database import Database, StorageError
 
 _PAGE = 1000  # records read at once
 
 
-def verification(database: Database, kept: Path | None) -> tuple[bool, Sequence[str]]:
+def verification(database: Database, kept: Path | None, folder: Path | None = None) -> tuple[bool, Sequence[str]]:
     """Whether a record was changed or is missing, and lines that say so or tell the last records.
 
-    `kept` is a file with a checkpoint that was kept elsewhere. Raises `StorageError` if it holds none.
+    `kept` is a file with a checkpoint that was kept elsewhere, `folder` where the archive is by now. Raises
+    `StorageError` if it holds none.
     """
-    checkpoint = None if kept is None else _kept(kept)
+    checkpoint, archive = None if kept is None else _kept(kept), Archive(folder)
     with database.reading() as connection:
         verified = verify(connection, public_key(key_file(database.place)), checkpoint)
-    return bool(verified.wrong), verified.wrong or [*_whole(verified, checkpoint)]
+        index, of_orders = archive.index(connection), order_files(connection)
+    wrong = [*verified.wrong, *wrong_in(archive, index), *wrong_files(of_orders, folder)]
+    return bool(wrong), wrong or [*_whole(verified, checkpoint, index), *_of_orders(of_orders)]
 
 
 def documents(database: Database) -> Iterator[str]:
@@ -38,11 +45,10 @@ def documents(database: Database) -> Iterator[str]:
     return _lines(database, 0, audit.page_after)
 
 
-def happenings(database: Database, after: int) -> Iterator[str]:
-    """All records of what happened with numbers above `after`, in order, as JSON."""
-    with database.reading() as connection:
-        number = max(after, run_journal.begin(connection).number)
-    return _lines(database, number, run_journal.after)
+def happenings(database: Database, after: int, folder: Path | None = None) -> Iterator[str]:
+    """All records of what happened with numbers above `after`, in order, as JSON: those of the archive too."""
+    archive = Archive(folder)
+    return _lines(database, after, lambda connection, number, most: WholeRun(connection, archive).after(number, most))
 
 
 def latest(database: Database, limit: int, action: str | None) -> Iterator[str]:
@@ -76,7 +82,7 @@ def _kept(file: Path) -> Checkpoint:
     return checkpoint
 
 
-def _whole(verified: Verified, kept: Checkpoint | None) -> Iterator[str]:
+def _whole(verified: Verified, kept: Checkpoint | None, index: Index) -> Iterator[str]:
     who, what, begin = verified.audit, verified.run, verified.run_begin
     if who == START:
         yield "nobody did anything yet"
@@ -91,11 +97,22 @@ def _whole(verified: Verified, kept: Checkpoint | None) -> Iterator[str]:
             f"what happened: records {begin.number + 1} to {what.number}{cut}, all as they were written; "
             f"the hash of the last one is {what.hash}"
         )
+    if index.segments:
+        first, count = index.segments[0], len(index.segments)
+        cut = "" if index.whole else f" behind the hash {index.begin.hash}"
+        files = "1 file" if count == 1 else f"{count} files"
+        yield f"archive: records {first.first} to {begin.number}{cut} in {files}, all as they were written"
     if verified.newest is not None:
         said = verified.newest.statement()
         yield f"checkpoint {said.checkpoint} of {_moment(said.time)}, signed with the key {verified.newest.public_key}"
     if kept is not None:
         yield f"the checkpoint of {_moment(kept.statement().time)} that was kept fits"
+
+
+def _of_orders(files: Sequence[OrderFile]) -> Iterator[str]:
+    if files:
+        count = sum(each.orders for each in files)
+        yield f"archive: {count} job orders in {len(files)} files, all as they were written"
 
 
 def _line(record: Record) -> str:

@@ -36,6 +36,16 @@ from sequence_planner.lifeline import is_needed
 from sequence_planner.logs import LogFormat
 from sequence_planner.mes.webhooks.targets import TargetRefused, Targets, host_and_port, network
 from sequence_planner.model.source import ModelError
+from sequence_planner.retention.settings import (
+    JOURNAL_DAYS,
+    JOURNAL_GB,
+    LEAST_ORDER_DAYS,
+    MOST_DAYS,
+    MOST_GB,
+    NO_ARCHIVE,
+    ORDER_DAYS,
+    Retention,
+)
 from sequence_planner.ros.choice import TransportChoice, settled
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.secret_variables import CLIENT_SECRET
@@ -103,6 +113,40 @@ BackupEvery = Annotated[
         min=0.25, max=8760, metavar="HOURS", help="Make a backup every so many hours; by default when asked only."
     ),
 ]
+JournalDays = Annotated[
+    float,
+    typer.Option(min=0.01, max=MOST_DAYS, metavar="DAYS", help="How long what happened stays in the database."),
+]
+JournalGb = Annotated[
+    float,
+    typer.Option(min=0.001, max=MOST_GB, metavar="GB", help="How much of what happened stays in it, if that is less."),
+]
+OrderDays = Annotated[
+    float,
+    typer.Option(
+        min=LEAST_ORDER_DAYS, max=MOST_DAYS, metavar="DAYS", help="How long job orders stay in it after they are over."
+    ),
+]
+ArchiveFolder = Annotated[
+    str | None,
+    typer.Option(
+        metavar="FOLDER",
+        help="Where all that goes to then, a folder that is there; by default one beside the database. "
+        f"{NO_ARCHIVE}: it is gone for good.",
+    ),
+]
+ArchiveDays = Annotated[
+    float | None,
+    typer.Option(
+        min=1, max=MOST_DAYS, metavar="DAYS", help="Remove what is older from the archive; by default nothing is."
+    ),
+]
+ArchiveGb = Annotated[
+    float | None,
+    typer.Option(
+        min=0.001, max=MOST_GB, metavar="GB", help="Remove the oldest from an archive with more; by default nothing is."
+    ),
+]
 Demonstration = Annotated[
     bool,
     typer.Option(
@@ -155,6 +199,12 @@ def run(
     backup_folder: BackupFolder = None,
     backups_kept: BackupsKept = KEPT,
     backup_every: BackupEvery = None,
+    journal_days: JournalDays = JOURNAL_DAYS,
+    journal_gb: JournalGb = JOURNAL_GB,
+    order_days: OrderDays = ORDER_DAYS,
+    archive_folder: ArchiveFolder = None,
+    archive_days: ArchiveDays = None,
+    archive_gb: ArchiveGb = None,
     new: Annotated[
         bool,
         typer.Option(
@@ -220,6 +270,7 @@ def run(
         log_format=log_format,
         webhooks=webhooks,
         backups=Keeping(backup_folder, backups_kept, backup_every),
+        retention=Retention.told(journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb),
         new=new,
         memory=memory,
         unusable=unusable,
@@ -285,6 +336,12 @@ def server(
     backup_folder: BackupFolder = None,
     backups_kept: BackupsKept = KEPT,
     backup_every: BackupEvery = None,
+    journal_days: JournalDays = JOURNAL_DAYS,
+    journal_gb: JournalGb = JOURNAL_GB,
+    order_days: OrderDays = ORDER_DAYS,
+    archive_folder: ArchiveFolder = None,
+    archive_days: ArchiveDays = None,
+    archive_gb: ArchiveGb = None,
     launched: Launched = False,
     listener: Annotated[
         int | None, typer.Option("--listener", hidden=True, help="The descriptor of a socket that listens already.")
@@ -326,6 +383,7 @@ def server(
         provider=provider,
         webhooks=_targets(webhook_host, webhook_network, webhook_loopback),
         backups=Keeping(backup_folder, backups_kept, backup_every),
+        retention=Retention.told(journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb),
     )
     listening = None if listener is None else ListeningSocket(fileno=listener)
     if not spare or listening is None:

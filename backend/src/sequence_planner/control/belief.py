@@ -26,12 +26,14 @@ from sequence_planner.expressions.types import Value
 MODEL = "the model"  # writes what is so in the beginning
 JOURNAL = "the journal"  # of what came back when nobody knows any more who wrote it
 
-KIND = "beliefs"  # of the records of all beliefs, as they are from then on
+KIND = "beliefs"  # of the records of beliefs, as they are from then on: the first has all, and others what has changed
 Tell = Callable[[Mapping[str, JsonValue]], None]
 
 
 class Beliefs:
-    """Listens to `execution`. `tell` hears of all beliefs whenever one has changed; `before` came back."""
+    """Listens to `execution`. `tell` hears of all beliefs when the first has changed, and then of each that has;
+    `before` came back.
+    """
 
     def __init__(
         self,
@@ -44,12 +46,17 @@ class Beliefs:
         self._automaton = execution.automaton
         self._estimates = frozenset(execution.automaton.names(Kind.ESTIMATED))
         self._tell = tell
+        self._has_told = False
         self._beliefs = {name: _first(name, beginning, before or {}) for name in sorted(self._estimates)}
         execution.listeners.append(self.hear)
 
     def of(self, name: str) -> BeliefView:
         """Why an estimate is believed."""
         return self._beliefs[name]
+
+    def document(self) -> dict[str, JsonValue]:
+        """All beliefs, as a record has them."""
+        return _document(self._beliefs)
 
     @property
     def unconfirmed(self) -> bool:
@@ -71,8 +78,10 @@ class Beliefs:
             case ModeChanged(by=by, now=now) | CalledOff(by=by, now=now):
                 for name in self._changed(heard):
                     self._beliefs[name] = _unmeasured(by, now)
-        if before != self._beliefs:
-            self._tell({name: belief.model_dump(mode="json") for name, belief in self._beliefs.items()})
+        changed = {name: belief for name, belief in self._beliefs.items() if belief != before[name]}
+        if changed:
+            all_, self._has_told = not self._has_told, True
+            self._tell(self.document() if all_ else _document(changed))
 
     def _ticked(self, heard: Heard, outcome: TickOutcome, now: Moment) -> None:
         """In their order: what a new product brought, who finished, who was called off, who started."""
@@ -136,6 +145,10 @@ class Beliefs:
     def _is(self, name: str, kind: Kind) -> bool:
         variable = self._automaton.variables.get(name)
         return variable is not None and variable.kind is kind
+
+
+def _document(beliefs: Mapping[str, BeliefView]) -> dict[str, JsonValue]:
+    return {name: belief.model_dump(mode="json") for name, belief in beliefs.items()}
 
 
 def _taken(actions: Iterable[Assignment], names: frozenset[str], changed: frozenset[str]) -> Iterator[Assignment]:

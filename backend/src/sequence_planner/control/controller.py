@@ -22,6 +22,8 @@ from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.adviser import Adviser
 from sequence_planner.control.alarming.alarms import Alarms
+from sequence_planner.control.alarming.keeping import KIND as ASIDE
+from sequence_planner.control.alarming.keeping import aside_again
 from sequence_planner.control.approvals import Approvals
 from sequence_planner.control.asking import Asking
 from sequence_planner.control.asks import Ask
@@ -114,6 +116,8 @@ class Controller:
         self._alarms = Alarms(self.execution, self._outside, feeds, network, commander, self._note, known)
         self._standing = StandingNotes(self._note)
         self._beliefs = Beliefs(self.execution, known.beginning, known.beliefs, partial(self._note, BELIEFS))
+        self._recorder.know(BELIEFS, self._beliefs.document())
+        self._recorder.know(ASIDE, aside_again(known.aside))
         self._by_hand = ByHand(self.execution, station.pipelines, self._note)
         self._doubting = Doubting(self.execution)
         self._viewing = Viewing(identity, self.execution, self._outside, feeds, network, self._beliefs)
@@ -278,7 +282,7 @@ class Controller:
             self._wake.set()
 
     def _note(self, kind: str, content: Mapping[str, JsonValue]) -> None:
-        self._recorder.note(kind, time.time(), content)
+        self._recorder.note(kind, time.time(), content, lasts=kind in (ASIDE, BELIEFS))
 
     def _unjournalled(self) -> str | None:
         """Why what happens cannot be journalled; None when it can."""

@@ -5,8 +5,11 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from datetime import UTC, datetime
+from typing import Final
 
-from sequence_planner.automaton.structure import Automaton
+from sqlalchemy import Connection
+
+from sequence_planner.automaton.structure import Automaton, Kind
 from sequence_planner.control.alarming.keeping import KIND as ASIDE
 from sequence_planner.control.alarming.keeping import aside_from
 from sequence_planner.control.belief import KIND as BELIEFS
@@ -15,30 +18,62 @@ from sequence_planner.control.conduct import Beginning
 from sequence_planner.control.happenings import ProductionStarted
 from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import Mode
-from sequence_planner.history.codec import BEGUN, kind_of
+from sequence_planner.control.view import BeliefView, Mode, Production
+from sequence_planner.history.codec import BEGUN, SNAPSHOT, kind_of
+from sequence_planner.history.recorder import SNAPSHOT_EVERY
 from sequence_planner.history.restoring import beginning, last_mode
 from sequence_planner.immutable import replace as replaced
+from sequence_planner.journal import run_journal
 from sequence_planner.journal.ending import Ending, ending
 from sequence_planner.journal.entry import described
 from sequence_planner.journal.last_word import LastWord, Word
-from sequence_planner.journal.run_journal import last
 from sequence_planner.storage.database import Database
+
+_PAGE: Final = 50  # records read at once
+_FURTHEST: Final = 2 * SNAPSHOT_EVERY  # records of beliefs between two that have all
 
 
 def what_is_known(database: Database, automaton: Automaton) -> Known:
     """What the journal knows of the station from before. Raises `StorageError`."""
     with database.reading() as connection:
         restored = beginning(connection, automaton, Moment.now())
-        aside, beliefs = last(connection, ASIDE), last(connection, BELIEFS)
-        begun, started = last(connection, BEGUN), last(connection, kind_of(ProductionStarted))
+        aside = run_journal.last(connection, ASIDE)
+        beliefs, produced = _beliefs(connection, automaton), _produced(connection)
     return Known(
         restored.beginning if restored else None,
         {} if aside is None else aside_from(json.loads(aside.content)),
-        {} if beliefs is None else beliefs_from(json.loads(beliefs.content)),
+        beliefs,
         restored.left_out if restored else (),
-        begun is not None and started is not None and started.number > begun.number,
+        produced,
     )
+
+
+def _beliefs(connection: Connection, automaton: Automaton) -> dict[str, BeliefView]:
+    """All that were told, the newest of each: a record with all is not further back than the newest snapshot."""
+    estimates, found = set(automaton.names(Kind.ESTIMATED)), dict[str, BeliefView]()
+    number = None
+    for _ in range(0, _FURTHEST, _PAGE):
+        for record in (page := run_journal.before(connection, number, _PAGE, {BELIEFS})):
+            told = beliefs_from(json.loads(record.content))
+            found = {**told, **found}
+            if estimates <= told.keys():
+                return found
+            number = record.number
+        if len(page) < _PAGE:
+            break
+    return found
+
+
+def _produced(connection: Connection) -> bool:
+    """Whether production had been started in the last life, of whose records the first may have been cut off."""
+    whole = next(iter(run_journal.before(connection, None, 1, {BEGUN, SNAPSHOT})), None)
+    if whole is None:
+        return False
+    began = run_journal.last(connection, BEGUN) if "production" not in json.loads(whole.content) else whole
+    started = run_journal.last(connection, kind_of(ProductionStarted))
+    if began is whole and json.loads(whole.content).get("production") == Production.STARTED:
+        return True
+    return started is not None and (began is None or started.number > began.number)
 
 
 def how_it_ended(database: Database, last_word: LastWord) -> Ending:

@@ -11,8 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
-from sqlalchemy import Connection
-
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind
 from sequence_planner.control.execution import Execution
@@ -23,6 +21,7 @@ from sequence_planner.history.model_digest import model_digest
 from sequence_planner.history.recorder import RunRecorder
 from sequence_planner.history.simulated import SimulatedStation
 from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.journal.whole_run import WholeRun
 from sequence_planner.planning.planner import Planner
 from sequence_planner.station import ReadyStation
 
@@ -42,7 +41,7 @@ class Branch:
 
 
 def branch(
-    connection: Connection,
+    run: WholeRun,
     station: ReadyStation,
     supervisor: Supervisor,
     number: int,
@@ -55,7 +54,7 @@ def branch(
     """
     until = time.monotonic() + deadline
     _check(station.automaton, corrections)
-    past = looking_back(connection, station.automaton, supervisor, number)
+    past = looking_back(run, station.automaton, supervisor, number)
     execution, records = past.execution, list[RunRecord]()
 
     def write(kind: str, epoch: float, content: str) -> int:

@@ -10,14 +10,12 @@ import json
 from itertools import pairwise
 from typing import Any, Final
 
-from sqlalchemy import Connection
-
 from sequence_planner.control.by_hand import KIND as BY_HAND
 from sequence_planner.control.happenings import Answered, Asked
 from sequence_planner.history.codec import BEGUN, KINDS, SNAPSHOT, TICKED, kind_of
 from sequence_planner.history.view import LineView, MarkView, PlaceView
-from sequence_planner.journal import run_journal
 from sequence_planner.journal.run_journal import Place, RunRecord
+from sequence_planner.journal.whole_run import WholeRun
 
 MOST_READ: Final = 10_000  # records that are read one by one
 MOST_MARKS: Final = 3000
@@ -30,38 +28,38 @@ _TELLING: Final = tuple(f'"{part}":' for part in _TOLD)
 _PAGE: Final = 1000
 
 
-def line(connection: Connection, since: float, until: float) -> LineView | None:
+def line(run: WholeRun, since: float, until: float) -> LineView | None:
     """What happened after `since` and up to `until`; None while the journal is empty."""
-    bounds = run_journal.bounds(connection)
+    bounds = run.bounds()
     if bounds is None:
         return None
     first, last = bounds
-    before, end = (run_journal.at(connection, time, first, last) for time in (since, until))
-    marks = _all(connection, before, end) if end - before <= MOST_READ else None
+    before, end = (run.at(time) for time in (since, until))
+    marks = _all(run, before, end) if end - before <= MOST_READ else None
     whole = marks is not None and len(marks) <= MOST_MARKS
     if marks is None or not whole:
-        found = run_journal.after(connection, before, MOST_MARKS + 1, _SELDOM)
+        found = run.after(before, MOST_MARKS + 1, _SELDOM)
         marks = [_mark(each) for each in found if each.number <= end]
     return LineView(
         first=_place(first),
         last=_place(last),
         begin=before,
         end=end,
-        running=_running(connection, before) if whole else [],
-        mode=_mode(connection, before),
+        running=_running(run, before) if whole else [],
+        mode=_mode(run, before),
         marks=marks[:MOST_MARKS],
         whole=whole,
-        bins=_bins(connection, since, until, first, last),
+        bins=_bins(run, since, until),
     )
 
 
-def place_at(connection: Connection, time: float) -> PlaceView | None:
+def place_at(run: WholeRun, time: float) -> PlaceView | None:
     """The last record up to a time, or the first one there is; None while the journal is empty."""
-    bounds = run_journal.bounds(connection)
+    bounds = run.bounds()
     if bounds is None:
         return None
-    number = max(bounds[0].number, run_journal.at(connection, time, *bounds))
-    found = run_journal.get(connection, number)
+    number = max(bounds[0].number, run.at(time))
+    found = run.get(number)
     return None if found is None else PlaceView(number=number, time=found.time)
 
 
@@ -69,10 +67,10 @@ def _place(place: Place) -> PlaceView:
     return PlaceView(number=place.number, time=place.time)
 
 
-def _all(connection: Connection, before: int, end: int) -> list[MarkView]:
+def _all(run: WholeRun, before: int, end: int) -> list[MarkView]:
     """Of all records behind `before`, up to `end`."""
     marks: list[MarkView] = []
-    while before < end and (page := run_journal.after(connection, before, min(_PAGE, end - before))):
+    while before < end and (page := run.after(before, min(_PAGE, end - before))):
         marks += [
             _mark(each) for each in page if each.kind in _SELDOM or any(part in each.content for part in _TELLING)
         ]
@@ -89,14 +87,14 @@ def _mark(record: RunRecord) -> MarkView:
     return MarkView(number=record.number, time=record.time, kind=record.kind, content=told)
 
 
-def _running(connection: Connection, number: int) -> list[str]:
+def _running(run: WholeRun, number: int) -> list[str]:
     """What had been started up to a record and had not ended."""
-    whole = next(iter(run_journal.before(connection, number + 1, 1, (BEGUN, SNAPSHOT))), None)
+    whole = next(iter(run.before(number + 1, 1, (BEGUN, SNAPSHOT))), None)
     if whole is None:
         return []
     past = json.loads(whole.content)["memory"]["order.past"]
     running = {each["ability"]: None for each in past if each.get("ended") is None}
-    for record in run_journal.after(connection, whole.number, max(number - whole.number, 0), (TICKED,)):
+    for record in run.after(whole.number, max(number - whole.number, 0), (TICKED,)):
         if record.number > number or not any(part in record.content for part in _TELLING):
             continue
         content = json.loads(record.content)
@@ -106,19 +104,19 @@ def _running(connection: Connection, number: int) -> list[str]:
     return list(running)
 
 
-def _mode(connection: Connection, number: int) -> str | None:
+def _mode(run: WholeRun, number: int) -> str | None:
     """The mode after a record."""
     kinds = (BEGUN, SNAPSHOT, "mode-changed", "errand-taken", "errand-stopped")
-    for record in run_journal.before(connection, number + 1, 1, kinds):
+    for record in run.before(number + 1, 1, kinds):
         content = json.loads(record.content)
         mode = content.get("mode") or content.get("what", {}).get("mode")
         return None if mode is None else str(mode)
     return None
 
 
-def _bins(connection: Connection, since: float, until: float, first: Place, last: Place) -> list[int]:
+def _bins(run: WholeRun, since: float, until: float) -> list[int]:
     """How many records there are in each of as many equal parts of the time."""
     length = (until - since) / BINS
     edges = [since + each * length for each in range(BINS + 1)]
-    numbers = [run_journal.at(connection, edge, first, last) for edge in edges]
+    numbers = [run.at(edge) for edge in edges]
     return [max(0, after - before) for before, after in pairwise(numbers)]

@@ -16,11 +16,14 @@ IDLE: Final = 300.0  # seconds without a question, after which the process is en
 
 
 class HistoryProcess:
-    """Asks about the run of a station: its model's folder, and the URL of its database. Used from one event loop."""
+    """Asks about the run of a station: its model's folder, the URL of its database, and the folder of its archive, if
+    one is named. Used from one event loop.
+    """
 
-    def __init__(self, model: Path, database: str) -> None:
+    def __init__(self, model: Path, database: str, archive: Path | None = None) -> None:
         self._model = model
         self._database = database
+        self._archive = archive
         self._turn = asyncio.Lock()
         self._running: tuple[SpawnProcess, Connection] | None = None
         self._idle: asyncio.TimerHandle | None = None
@@ -77,7 +80,7 @@ class HistoryProcess:
         context = multiprocessing.get_context("spawn")
         ours, theirs = context.Pipe()
         with theirs:
-            arguments = (theirs, self._model, self._database)
+            arguments = (theirs, self._model, self._database, self._archive)
             process = context.Process(target=_work, args=arguments, daemon=True, name="looking-back")
             process.start()
         return process, ours
@@ -89,7 +92,7 @@ class HistoryProcess:
         self._idle = None if seconds is None else asyncio.get_running_loop().call_later(seconds, self.close)
 
 
-def _work(connection: Connection, model: Path, database: str) -> None:
+def _work(connection: Connection, model: Path, database: str, archive: Path | None) -> None:
     from sequence_planner.history.worker import work  # noqa: PLC0415 - the server does without what that imports
 
-    work(connection, model, database)
+    work(connection, model, database, archive)

@@ -58,21 +58,33 @@ class RunRecorder:
         self._mode, self._stepping = execution.conduct.mode, execution.conduct.stepping
         self._jobs, self._answers = execution.conduct.jobs, execution.conduct.answers
         self._plan = _plan(execution)
+        self._finished = frozenset[str]()  # of the last tick
+        self._lasting: dict[str, Document] = {}
         self._since_snapshot = 0
         self._now = Moment(clock(), 0.0) if beginning is None else beginning.now
         self.last = 0
         self._put(BEGUN, clock(), self._everything())
         execution.listeners.append(self._hear)
 
-    def note(self, kind: str, epoch: float, content: Mapping[str, JsonValue]) -> None:
-        """Write down what is no happening of the execution, such as an alarm."""
+    def note(self, kind: str, epoch: float, content: Mapping[str, JsonValue], lasts: bool = False) -> None:
+        """Write down what is no happening of the execution, such as an alarm.
+
+        What `lasts` holds part by part until it is noted otherwise. It is written again with each snapshot, so that
+        what was before that can be cut off.
+        """
+        if lasts:
+            self._lasting[kind] = {**self._lasting.get(kind, {}), **content}
         self._put(kind, epoch, content)
         self._now_and_then(epoch)
+
+    def know(self, kind: str, content: Mapping[str, JsonValue]) -> None:
+        """Something that lasts has been noted in a life before: it is written again with each snapshot."""
+        self._lasting[kind] = dict(content)
 
     def _hear(self, heard: Heard) -> None:
         happening, outcome = heard.happening, heard.outcome
         if isinstance(happening, Ticked):
-            content = self._book.content(happening) | _outcome(outcome)
+            content = self._book.content(happening) | self._outcome(outcome)
         else:
             content = self._codec.content(happening)
         content |= self._consequences(heard)
@@ -136,6 +148,8 @@ class RunRecorder:
             self._since_snapshot = 0
             self._execution.forget()  # or it would know more than one that goes on from the snapshot
             self._put(SNAPSHOT, epoch, self._everything())
+            for kind, content in self._lasting.items():
+                self._put(kind, epoch, content)
 
     def _everything(self) -> Document:
         execution = self._execution
@@ -148,6 +162,7 @@ class RunRecorder:
             "done": sorted(conduct.done),
             "mode": str(conduct.mode),
             "stepping": conduct.stepping,
+            "production": str(conduct.production),
             "answers": dict(conduct.answers),
             "by_order": conduct.jobs.by_order,
             "jobs": {job.id: self._codec.encode(Job, job) for job in conduct.jobs.taken},
@@ -158,6 +173,25 @@ class RunRecorder:
             "memory": self._memory.document(execution),
             "digest": self._memory.digest(execution),
         }
+
+    def _outcome(self, outcome: TickOutcome | None) -> Document:
+        """What a tick did, for people and programs that read the journal.
+
+        An ability may take its finish actions again with every tick: only the first of them is told.
+        """
+        if outcome is None:
+            return {}
+        before, self._finished = self._finished, frozenset(outcome.finished)
+        told = {
+            "finished": [name for name in outcome.finished if name not in before],
+            "ended": list(outcome.ended),
+            "started": list(outcome.started),
+            "activated": sorted(outcome.activated),
+            "completed": sorted(outcome.completed),
+            "called_off": list(outcome.called_off),
+            "given_up": list(outcome.given_up),
+        }
+        return {name: names for name, names in told.items() if names}
 
     def _put(self, kind: str, epoch: float, content: Mapping[str, JsonValue]) -> None:
         self.last = self._write(kind, epoch, json.dumps(content, separators=(",", ":")))
@@ -182,19 +216,3 @@ def _seen(heard: Heard) -> frozenset[str]:
         case Corrected(values, taken_back=taken_back):
             return frozenset(values) - taken_back
     return frozenset()
-
-
-def _outcome(outcome: TickOutcome | None) -> Document:
-    """What a tick did, for people and programs that read the journal."""
-    if outcome is None:
-        return {}
-    told = {
-        "finished": list(outcome.finished),
-        "ended": list(outcome.ended),
-        "started": list(outcome.started),
-        "activated": sorted(outcome.activated),
-        "completed": sorted(outcome.completed),
-        "called_off": list(outcome.called_off),
-        "given_up": list(outcome.given_up),
-    }
-    return {name: names for name, names in told.items() if names}

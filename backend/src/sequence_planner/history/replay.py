@@ -7,8 +7,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Final
 
-from sqlalchemy import Connection
-
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
@@ -16,8 +14,8 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.history.codec import BEGUN, SNAPSHOT
 from sequence_planner.history.error import OTHER_VERSION, HistoryError
 from sequence_planner.history.player import Player
-from sequence_planner.journal import run_journal
 from sequence_planner.journal.run_journal import RunRecord
+from sequence_planner.journal.whole_run import WholeRun
 from sequence_planner.version import VERSION
 
 _PAGE: Final = 1000  # records read at once
@@ -39,7 +37,7 @@ class Replayed:
 
 
 def replay(
-    connection: Connection, automaton: Automaton, supervisor: Supervisor, from_: int = 1, to: int | None = None
+    run: WholeRun, automaton: Automaton, supervisor: Supervisor, from_: int = 1, to: int | None = None
 ) -> Iterator[Replayed]:
     """Replay the records from the last one that says everything and is not above `from_`, up to `to` or all there are.
 
@@ -47,41 +45,41 @@ def replay(
     one, a record cannot be read, or was written by another version of the program and cannot be done again by this one.
     """
     player = Player(automaton, supervisor)
-    number = _start(connection, from_) - 1
-    while page := run_journal.after(connection, number, _PAGE):
+    number = _start(run, from_) - 1
+    while page := run.after(number, _PAGE):
         for record in page:
             if to is not None and record.number > to:
                 return
             try:
                 difference = player.play(record)
             except HistoryError as error:
-                raise _with_the_next(connection, record.number, error) from error
+                raise _with_the_next(run, record.number, error) from error
             yield Replayed(record, player.execution, player.now, difference)
             if difference is not None:
                 return
         number = page[-1].number
 
 
-def _start(connection: Connection, number: int) -> int:
+def _start(run: WholeRun, number: int) -> int:
     """Where to begin. Raises `HistoryError` where there is nothing to begin with."""
-    found = run_journal.before(connection, number + 1, 1, _WHOLE) or run_journal.after(connection, 0, 1, _WHOLE)
+    found = run.before(number + 1, 1, _WHOLE) or run.after(0, 1, _WHOLE)
     if not found:
         raise HistoryError("history-gone", "nothing has happened yet: the journal has no record of a run")
     return found[0].number
 
 
-def _with_the_next(connection: Connection, number: int, error: HistoryError) -> HistoryError:
+def _with_the_next(run: WholeRun, number: int, error: HistoryError) -> HistoryError:
     """The same, and where this version of the program can begin again behind what another one has written."""
     if error.slug != OTHER_VERSION:
         return error
-    own = (each for each in _whole_after(connection, number) if json.loads(each.content).get("program") == VERSION)
+    own = (each for each in _whole_after(run, number) if json.loads(each.content).get("program") == VERSION)
     first = next(own, None)
     further = "nothing was written by this one yet" if first is None else f"this one goes on from record {first.number}"
     return HistoryError(OTHER_VERSION, f"{error.detail}; {further}")
 
 
-def _whole_after(connection: Connection, number: int) -> Iterator[RunRecord]:
+def _whole_after(run: WholeRun, number: int) -> Iterator[RunRecord]:
     """Records behind `number` that say everything."""
-    while page := run_journal.after(connection, number, _FEW, _WHOLE):
+    while page := run.after(number, _FEW, _WHOLE):
         yield from page
         number = page[-1].number

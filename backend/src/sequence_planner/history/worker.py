@@ -21,6 +21,9 @@ from sequence_planner.history.error import HistoryError
 from sequence_planner.history.looking_back import looking_back
 from sequence_planner.history.moment_view import moment_view, past_view
 from sequence_planner.history.view import Answer, BranchView, LookBack, Question, Refused, TakeBranch, record_view
+from sequence_planner.journal.archive import Archive
+from sequence_planner.journal.archive_file import ArchiveError
+from sequence_planner.journal.whole_run import WholeRun
 from sequence_planner.lifeline import end_without_parent
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import ReadyStation, prepare_station
@@ -34,9 +37,10 @@ MOST_TOLD = 5000  # records of a branch
 
 
 class _Room:
-    def __init__(self, model: Path, database: str) -> None:
+    def __init__(self, model: Path, database: str, archive: Archive) -> None:
         self._model = model
         self._database = database
+        self._archive = archive
 
     @cached_property
     def _station(self) -> ReadyStation:
@@ -50,11 +54,12 @@ class _Room:
         """What is asked. Raises `HistoryError`, and what else keeps it from being answered."""
         station, supervisor = self._station, self._supervisor
         with closing(Database.open(self._database, create=False)) as database, database.reading() as connection:
+            run = WholeRun(connection, self._archive)
             match question:
                 case LookBack(number):
-                    return moment_view(looking_back(connection, station.automaton, supervisor, number))
+                    return moment_view(looking_back(run, station.automaton, supervisor, number))
                 case TakeBranch(number, seconds, corrections, deadline):
-                    found = branch(connection, station, supervisor, number, seconds, corrections, deadline)
+                    found = branch(run, station, supervisor, number, seconds, corrections, deadline)
         return BranchView(
             seconds=found.seconds,
             records=[record_view(each) for each in found.records[:MOST_TOLD]],
@@ -63,12 +68,12 @@ class _Room:
         )
 
 
-def work(connection: Connection, model: Path, database: str) -> None:
+def work(connection: Connection, model: Path, database: str, archive: Path | None) -> None:
     """Answer questions until the other end is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
     end_without_parent()
     os.nice(_NICENESS)
-    room = _Room(model, database)
+    room = _Room(model, database, Archive(archive))
     while True:
         try:
             question: Any = connection.recv()
@@ -82,6 +87,8 @@ def _answered(room: _Room, question: Question) -> Answer:
         return room.answer(question)
     except HistoryError as error:
         return Refused(error.slug, error.detail)
+    except ArchiveError as error:
+        return Refused("archive-unreadable", str(error))
     except StorageError as error:
         return Refused("storage-unavailable", str(error))
     except (ModelError, SynthesisError) as error:

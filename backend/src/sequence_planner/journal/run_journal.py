@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 import json
+import re
 from bisect import bisect_right
 from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
@@ -38,6 +39,14 @@ class RunRecord(Link):
         """It as a line of JSON, up to its hash."""
         return f'{{"number":{self.number},"time":{self.time!r},"kind":{_quoted(self.kind)},"content":{self.content}'
 
+    @classmethod
+    def of(cls, line: str) -> RunRecord | None:
+        """The record of a `line`; None for one that is none."""
+        if (found := _LINE.fullmatch(line)) is None:
+            return None
+        number, time, kind, content, hash_ = found.groups()
+        return cls(int(number), float(time), json.loads(kind), content, hash_)
+
 
 @dataclass(frozen=True)
 class Sought:
@@ -68,7 +77,23 @@ class Sought:
             asked.append(or_(*(content.icontains(_within(text), autoescape=True) for text in self.texts)))
         return and_(*asked) if asked else None
 
+    def has_part(self, record: RunRecord) -> bool:
+        """Whether a record has one of the parts, as `of_parts` says it to the database."""
+        return any(f'"{part}":{_BEGINNINGS.get(part, "[")}' in record.content for part in self.parts)
 
+    def fits(self, record: RunRecord) -> bool:
+        """Whether a record is sought, as `condition` says it to the database."""
+        content = record.content
+        if self.who and f'"by":{json.dumps(self.who)}' not in content:
+            return False
+        if self.names and not any(f'"{_within(name)}' in content for name in self.names):
+            return False
+        return not self.texts or any(_within(text).lower() in content.lower() for text in self.texts)
+
+
+_LINE: Final = re.compile(
+    r'\{"number":(\d+),"time":([^,]+),"kind":("(?:[^"\\]|\\.)*"),"content":(.*),"hash":"([^"]*)"\}', re.DOTALL
+)
 _BEGINNINGS: Final = {"plan": '{"status"', "mode": '"'}  # of what a part holds; all else is a list
 
 

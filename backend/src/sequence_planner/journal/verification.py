@@ -8,10 +8,10 @@ from dataclasses import dataclass
 from sqlalchemy import Connection, Table, select
 
 from sequence_planner.journal import audit, checkpoints, run_journal
+from sequence_planner.journal.archive import TRIMMED
 from sequence_planner.journal.audit import AUDIT
 from sequence_planner.journal.chain import START, Position
 from sequence_planner.journal.checkpoints import Checkpoint
-from sequence_planner.journal.retention import TRIMMED
 from sequence_planner.journal.run_tables import RUN
 from sequence_planner.storage.error import StorageError
 
@@ -56,7 +56,8 @@ def _broken(connection: Connection, begin: Position) -> Iterator[str]:
     if begin == START:
         return
     trimmed = audit.read(connection, limit=1, action=TRIMMED)
-    if not trimmed or trimmed[0].entry.details != {"number": begin.number, "hash": begin.hash}:
+    said = trimmed[0].entry.details if trimmed else {}
+    if (said.get("number"), said.get("hash")) != (begin.number, begin.hash):
         yield f"what happened up to record {begin.number} was cut off, and it is not recorded who did that"
 
 

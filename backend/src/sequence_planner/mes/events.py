@@ -13,7 +13,8 @@ from typing import Final
 from pydantic import BaseModel, ConfigDict, JsonValue
 from sqlalchemy import Connection, func, insert, select
 
-from sequence_planner.mes.tables import JOB_EVENTS
+from sequence_planner.mes.refusal import OrderRefused
+from sequence_planner.mes.tables import JOB_BEGIN, JOB_EVENTS
 from sequence_planner.mes.times import iso
 
 _OF_STATION: Final = ""  # in the database, in place of an order
@@ -78,7 +79,23 @@ def after(connection: Connection, number: int, limit: int) -> list[JobEvent]:
     ]
 
 
-def last(connection: Connection) -> int:
-    """The number of the newest event; 0 where there is none."""
-    found: int | None = connection.execute(select(func.max(JOB_EVENTS.c.number))).scalar_one()
+def begin(connection: Connection) -> int:
+    """The number of the last event that is kept no more; 0 if all are."""
+    found: int | None = connection.execute(select(JOB_BEGIN.c.events)).scalar_one_or_none()
     return found or 0
+
+
+def last(connection: Connection) -> int:
+    """The number of the newest event; 0 where there was none."""
+    found: int | None = connection.execute(select(func.max(JOB_EVENTS.c.number))).scalar_one()
+    return found or begin(connection)
+
+
+def require_kept(connection: Connection, after: int) -> None:
+    """Raises `OrderRefused` (`events-gone`, 410) where an event behind `after` is kept no more."""
+    if after < (gone := begin(connection)):
+        detail = (
+            f"The events up to {gone} are kept no more: whoever administers the station finds them in its archive. "
+            f"Read the orders and their responses anew, and the events after {gone}."
+        )
+        raise OrderRefused("events-gone", "These events are kept no more", detail, 410)

@@ -6,6 +6,7 @@ Each change is one transaction: the order, the record of who did it, and the eve
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from datetime import UTC, datetime
 from typing import Final
 
 from pydantic import JsonValue
@@ -20,11 +21,12 @@ from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.order import JobOrder, OrderContent
 from sequence_planner.mes.refusal import OrderRefused
 from sequence_planner.mes.states import AT_ONCE, BEFORE_START, OVER, WISHES, OrderCommand, OrderState, Wish
-from sequence_planner.mes.tables import JOB_ORDERS
+from sequence_planner.mes.tables import JOB_BEGIN, JOB_ORDERS, JOB_ORDERS_GONE
 
 MOST_OPEN: Final = 10_000  # orders that are not over
 _MOST_NAMED: Final = 500  # in one question to the database
 
+_NUMBERS: Final = (JOB_ORDERS.c.number, JOB_BEGIN.c.orders)  # whichever is highest was given last
 _SHOWN = JOB_ORDERS.c.removed.is_(None)
 # The states one by one, as the index has them: what is over is left out without being looked at.
 _OPEN = JOB_ORDERS.c.state.in_([str(each) for each in OrderState if each not in OVER]) & _SHOWN
@@ -53,18 +55,18 @@ def store(
 
     Raises `OrderRefused`: `job-order-exists` (409) for an id that was used before, `too-many-job-orders` (409).
     """
-    if id is not None and find(connection, id) is not None:
+    if id is not None and (find(connection, id) is not None or _gone(connection, id) is not None):
         detail = f"There is a job order {id} already, or there was. Every order has an id of its own."
         raise OrderRefused("job-order-exists", "There is such a job order", detail)
     if count_open(connection) >= MOST_OPEN:
         detail = f"The station holds {MOST_OPEN} orders that are not over. Try again when some are."
         raise OrderRefused("too-many-job-orders", "There are too many job orders", detail)
-    last: int | None = connection.execute(select(func.max(JOB_ORDERS.c.number))).scalar_one()
+    number = max(connection.execute(select(func.max(each))).scalar_one() or 0 for each in _NUMBERS)
     state = OrderState.ALLOWED_TO_START if start else OrderState.NOT_ALLOWED_TO_START
     id = id or new_id()
     row = {
         **content.model_dump(),
-        "number": (last or 0) + 1,
+        "number": number + 1,
         "id": id,
         "state": state.value,
         "revision": 1,
@@ -189,11 +191,23 @@ def become(
 
 
 def get(connection: Connection, id: str) -> JobOrder:
-    """The order with this id. Raises `OrderRefused` (`no-job-order`, 404)."""
+    """The order with this id. Raises `OrderRefused` (`no-job-order`, 404; `job-order-gone`, 410)."""
     order = find(connection, id)
+    if order is None:
+        require_kept(connection, id)
     if order is None or order.removed is not None:
         raise OrderRefused("no-job-order", "There is no such job order", "There is no job order with this id.", 404)
     return order
+
+
+def require_kept(connection: Connection, id: str) -> None:
+    """Raises `OrderRefused` (`job-order-gone`, 410) for an order that was over long ago."""
+    if (ended := _gone(connection, id)) is not None:
+        detail = (
+            f"It was over at {datetime.fromtimestamp(ended, UTC):%Y-%m-%d %H:%M:%S UTC}, and is kept no more: whoever "
+            "administers the station finds it in its archive."
+        )
+        raise OrderRefused("job-order-gone", "The job order is kept no more", detail, 410)
 
 
 def page(connection: Connection, state: OrderState | None, after: int, limit: int) -> list[JobOrder]:
@@ -233,6 +247,11 @@ def find(connection: Connection, id: str) -> JobOrder | None:
     """The order with this id, be it removed or not; None if there never was one."""
     row = connection.execute(select(JOB_ORDERS).where(JOB_ORDERS.c.id == id)).mappings().first()
     return None if row is None else JobOrder.of(row)
+
+
+def _gone(connection: Connection, id: str) -> float | None:
+    """When an order was over that is kept no more; None where there is none of this id."""
+    return connection.execute(select(JOB_ORDERS_GONE.c.ended).where(JOB_ORDERS_GONE.c.id == id)).scalar_one_or_none()
 
 
 def _set(connection: Connection, order: JobOrder, now: float, values: Mapping[str, object]) -> JobOrder:

@@ -14,8 +14,9 @@ from sqlalchemy import Connection, Select, func, insert, select, update
 
 from sequence_planner.control.view_part import Value
 from sequence_planner.mes.order import JobOrder
+from sequence_planner.mes.refusal import OrderRefused
 from sequence_planner.mes.states import OrderState
-from sequence_planner.mes.tables import JOB_RESPONSES
+from sequence_planner.mes.tables import JOB_BEGIN, JOB_RESPONSES
 
 _FORM: Final = ConfigDict(frozen=True, extra="forbid")
 
@@ -124,10 +125,26 @@ def nothing_made(order: JobOrder) -> JobResponse:
 def write(connection: Connection, response: JobResponse, now: float) -> int:
     """Keep a response, within a `writing()` block; its number."""
     last: int | None = connection.execute(select(func.max(JOB_RESPONSES.c.number))).scalar_one()
-    number = (last or 0) + 1
+    number = (last or begin(connection)) + 1
     row = {"number": number, "job_order": response.job_order, "time": now, "content": response.model_dump_json()}
     connection.execute(insert(JOB_RESPONSES), row)
     return number
+
+
+def begin(connection: Connection) -> int:
+    """The number of the last response that is kept no more; 0 if all are."""
+    found: int | None = connection.execute(select(JOB_BEGIN.c.responses)).scalar_one_or_none()
+    return found or 0
+
+
+def require_kept(connection: Connection, after: int) -> None:
+    """Raises `OrderRefused` (`responses-gone`, 410) where a response behind `after` is kept no more."""
+    if after < (gone := begin(connection)):
+        detail = (
+            f"The responses up to {gone} are kept no more: whoever administers the station finds them in its archive. "
+            f"Read those after {gone}."
+        )
+        raise OrderRefused("responses-gone", "These responses are kept no more", detail, 410)
 
 
 def remove(connection: Connection, job_order: str, now: float) -> None:

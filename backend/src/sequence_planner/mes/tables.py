@@ -1,7 +1,7 @@
 """The tables of this room: orders, what has become of them, and the answers to repeated requests.
 
-Times are seconds since the epoch. Nothing is taken out but answers that are no longer kept: an order that was cancelled
-or cleared stays, without being shown, so that its id never means another one.
+Times are seconds since the epoch. An order that was cancelled or cleared stays, without being shown. What is over long
+enough is taken out (`retention`): of an order its id stays, so that it never means another one.
 """
 
 from __future__ import annotations
@@ -70,6 +70,24 @@ JOB_RESPONSES: Final = Table(
     Column("removed", Double, nullable=True),  # as of its order
     _shown("ix_job_responses_shown", "number"),
 )
+
+JOB_BEGIN: Final = Table(
+    "job_begin",
+    METADATA,
+    Column("id", Integer, primary_key=True, autoincrement=False),
+    Column("orders", NUMBER, nullable=False),  # the highest number of an order that is gone
+    Column("events", NUMBER, nullable=False),  # that of the last event that is gone, and all before are
+    Column("responses", NUMBER, nullable=False),  # as of events
+)
+"""One row: up to where retention has taken things out."""
+
+JOB_ORDERS_GONE: Final = Table(
+    "job_orders_gone",
+    METADATA,
+    Column("id", ORDER, primary_key=True),
+    Column("ended", Double, nullable=False),
+)
+"""The orders that retention has taken out."""
 
 JOB_LEDGER: Final = Table(
     "job_ledger",

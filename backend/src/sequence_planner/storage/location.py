@@ -30,6 +30,12 @@ def backups_folder(url: str, model: Path) -> Path:
     return revisions.with_name(revisions.name.replace(".revisions.git", ".backups"))
 
 
+def archive_folder(url: str, model: Path) -> Path:
+    """Where what was cut is kept unless somebody says so: beside the revisions. Raises `StorageError` as they do."""
+    revisions = revisions_folder(url, model)
+    return revisions.with_name(revisions.name.replace(".revisions.git", ".archive"))
+
+
 def mark_of(model: Path) -> str:
     """What tells the station in the folder `model` from others of this machine: the folder's name, and 8 hexadecimal
     digits of the SHA-256 of its path.

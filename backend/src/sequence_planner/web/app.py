@@ -22,6 +22,7 @@ from starlette.middleware.gzip import GZipMiddleware
 
 from sequence_planner.backup.keeping import Shelf
 from sequence_planner.history.process import HistoryProcess
+from sequence_planner.journal.archive import Archive
 from sequence_planner.mes.webhooks.deliverer import Deliverer
 from sequence_planner.mes.webhooks.sending import Sender
 from sequence_planner.storage.location import revisions_folder
@@ -58,6 +59,7 @@ from sequence_planner.web import (
     ros,
     session,
     station,
+    storage,
     stream,
     watch_stream,
     watches,
@@ -83,6 +85,7 @@ from sequence_planner.web.order_of_work import OrderOfWorkDesk
 from sequence_planner.web.problems import LastResort
 from sequence_planner.web.readiness import Readiness
 from sequence_planner.web.remembering import Remembering
+from sequence_planner.web.retention_desk import RetentionDesk
 from sequence_planner.web.security_headers import SecurityHeaders
 from sequence_planner.web.settings import Settings
 from sequence_planner.web.static import PageFiles
@@ -123,6 +126,8 @@ PARTS = (
     webhooks.bodiless,
     backups.router,
     backups.bodiless,
+    storage.router,
+    storage.bodiless,
     audit.router,
     history.router,
     job_orders.router,
@@ -148,6 +153,10 @@ class StationServer(FastAPI):
         return self.openapi_schema
 
 
+def _looking_back(model: Path, settings: Settings) -> HistoryProcess:
+    return HistoryProcess(model, settings.database, settings.retention.folder)
+
+
 def _workshop(office: IdentityOffice, model: Path, settings: Settings) -> Workshop:
     return Workshop(office, model, revisions_folder(settings.database, model), settings.stream, settings.start)
 
@@ -158,6 +167,15 @@ def _backup_desk(office: IdentityOffice, settings: Settings, controller: Control
         return None
     shelf = Shelf(settings.database, settings.model, settings.backups)
     return BackupDesk(office, shelf, stands_by=lambda: controller.stands_by)
+
+
+def _retention_desk(office: IdentityOffice, settings: Settings, controller: ControllerClient) -> RetentionDesk | None:
+    """Who sees to it that the database does not grow for ever; nobody where there is none to keep."""
+    if settings.model is None or settings.demonstration:
+        return None
+    return RetentionDesk(
+        office, settings.database, settings.model, settings.retention, stands_by=lambda: controller.stands_by
+    )
 
 
 def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
@@ -182,16 +200,19 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.identity = office
         app.state.order_desk = desk = OrderDesk(office, controller)
         app.state.order_of_work = sequencing = OrderOfWorkDesk(office, controller, desk)
-        folder = settings.model
-        app.state.history = looking_back = None if folder is None else HistoryProcess(folder, settings.database)
+        folder, archives = settings.model, settings.retention.folder
+        app.state.archive = Archive(archives)
+        app.state.history = looking_back = (
+            None if folder is None else HistoryProcess(folder, settings.database, archives)
+        )
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
         app.state.backups = backup_desk = _backup_desk(office, settings, controller)
+        app.state.retention = retention_desk = _retention_desk(office, settings, controller)
         deliverer = Deliverer(office.database, Sender(settings.webhooks), stands_by=lambda: controller.stands_by)
         shows = (controller, broadcast, network, flows, watch_show)
         parts = (*shows, Sweeper(office, controller), desk, sequencing, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
-        if backup_desk is not None:
-            running.append(asyncio.create_task(backup_desk.run()))
+        running += [asyncio.create_task(each.run()) for each in (backup_desk, retention_desk) if each is not None]
         if shop is not None:
             running.append(asyncio.create_task(shop.read_ahead()))
             controller.listen(shop.hear)
@@ -228,14 +249,19 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
     app.state.readiness = Readiness(controller, app.state.figures)
     app.state.way_to_database = WayToDatabase(settings.database)
     problems.install(app)
+    _route(app, settings)
+    _surround(app, settings)
+    return app
+
+
+def _route(app: FastAPI, settings: Settings) -> None:
+    """What answers each address: the interface, what watches over the station's health, and the page's files."""
     for part in PARTS:
         app.include_router(part, prefix=PREFIX)
     app.include_router(health.router)
     app.include_router(metrics.router)
     check_declared(app.routes)
     app.router.default = PageFiles(settings.page)
-    _surround(app, settings)
-    return app
 
 
 def _operation(route: APIRoute) -> str:

@@ -26,23 +26,28 @@ class EventsAnswer(BaseModel):
     next: int
 
 
-@router.get("", responses=refused(409))
+@router.get("", responses=refused(409, 410))
 async def read_events(
     identity: Identity,
-    after: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
+    after: Annotated[int | None, Query(ge=0, le=LARGEST_NUMBER)] = None,
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,
 ) -> EventsAnswer:
-    """The events with higher numbers than `after`. They are numbered without gaps and never change.
+    """The events with higher numbers than `after`; without it from the oldest that is kept. They are numbered without
+    gaps and never change.
+
+    410 `events-gone` where one behind `after` is kept no more: it may have been missed.
 
     409 `event-not-known` where there is no event `after` yet: a station that was restored from a backup numbers anew.
     """
 
     def chosen(connection: Connection) -> tuple[list[JobEvent], int]:
-        found = events.after(connection, after, limit)
+        if after is not None:
+            events.require_kept(connection, after)
+        found = events.after(connection, after or 0, limit)
         return found, found[-1].number if found else events.last(connection)
 
     found, last = await identity.read(chosen)
-    if last < after:
+    if after is not None and last < after:
         detail = (
             f"There is no event {after}, the newest is {last}: the station was restored from a backup. Read the orders "
             f"anew, and the events after {last}."

@@ -6,11 +6,11 @@ the model that ran then; see `docs/journal.md`. Nobody can change the record ove
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Callable
 from functools import partial
-from typing import Annotated
+from typing import Annotated, TypeVar
 
-from fastapi import APIRouter, Path, Query, Request
+from fastapi import APIRouter, Depends, Path, Query, Request
 from fastapi.responses import StreamingResponse
 from pydantic import Field
 
@@ -32,9 +32,12 @@ from sequence_planner.history.view import (
     record_view,
 )
 from sequence_planner.identity.roles import Role, Scope
-from sequence_planner.journal import checkpoints, run_journal
+from sequence_planner.journal import checkpoints
+from sequence_planner.journal.archive import Archive
+from sequence_planner.journal.archive_file import ArchiveError
 from sequence_planner.journal.checkpoints import Checkpoint
-from sequence_planner.journal.run_journal import Sought
+from sequence_planner.journal.run_journal import RunRecord, Sought
+from sequence_planner.journal.whole_run import MOST_FILES, WholeRun
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.web.body import Body
@@ -42,6 +45,7 @@ from sequence_planner.web.identity import IdentityOffice
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Identity
 
+T = TypeVar("T")
 LOOKING_BACK = 60.0  # seconds for a look back, the first of which also prepares the station
 BRANCHING = 60.0  # seconds of work for a branch
 MOST_SECONDS = 600.0  # that a branch goes on
@@ -60,6 +64,7 @@ _REFUSALS = {
     "other-version": (409, "Another version of the program has written it"),
     "history-differs": (409, "The run cannot be replayed"),
     "history-unreadable": (409, "The run cannot be replayed"),
+    "archive-unreadable": (409, "The archive cannot be read"),
     "not-estimated": (422, "This is no estimated variable"),
     "not-in-domain": (422, "This is no value of the variable"),
     "history-late": (504, "There was no answer in time"),
@@ -71,6 +76,14 @@ Text = Annotated[str, Field(min_length=1, max_length=200)]
 Texts = Annotated[list[Text] | None, Query(max_length=100)]
 Seconds = Annotated[float, Query(ge=-1e11, le=1e11, allow_inf_nan=False)]
 Number = Annotated[int, Path(ge=1, le=LARGEST_NUMBER)]
+
+
+async def _the_archive(request: Request) -> Archive:
+    found: Archive = request.app.state.archive
+    return found
+
+
+TheArchive = Annotated[Archive, Depends(_the_archive)]
 
 
 class HistoryAnswer(View):
@@ -87,9 +100,10 @@ class BranchBody(Body):
     corrections: dict[str, GivenValue] = Field(default_factory=dict, max_length=200)
 
 
-@router.get("", dependencies=[OPERATOR])
+@router.get("", dependencies=[OPERATOR], responses=refused(409))
 async def read_history(
     identity: Identity,
+    archive: TheArchive,
     before: Annotated[int | None, Query(ge=1, le=LARGEST_NUMBER)] = None,
     limit: Annotated[int, Query(ge=1, le=MOST_RECORDS)] = 50,
     kinds: Annotated[str | None, Query(pattern=KINDS)] = None,
@@ -106,26 +120,28 @@ async def read_history(
     """
     wanted = None if kinds is None else frozenset(kinds.split(","))
     sought = Sought(who, tuple(name or ()), tuple(text or ()), tuple(parts.split(",")) if parts else ())
-    records = await identity.read(lambda connection: run_journal.before(connection, before, limit + 1, wanted, sought))
-    more = len(records) > limit
-    return HistoryAnswer(
-        records=[record_view(each) for each in records[:limit]], next=records[limit - 1].number if more else None
-    )
+
+    def chosen(run: WholeRun) -> tuple[list[RunRecord], int | None]:
+        return run.before(before, limit + 1, wanted, sought, MOST_FILES), run.reached
+
+    records, reached = await _read(identity, archive, chosen)
+    following = records[limit - 1].number if len(records) > limit else reached
+    return HistoryAnswer(records=[record_view(each) for each in records[:limit]], next=following)
 
 
-@router.get("/line", dependencies=[OPERATOR], responses=refused(404))
-async def time_line(identity: Identity, since: Seconds, until: Seconds) -> LineView:
+@router.get("/line", dependencies=[OPERATOR], responses=refused(404, 409))
+async def time_line(identity: Identity, archive: TheArchive, since: Seconds, until: Seconds) -> LineView:
     """What happened after `since` and up to `until` (seconds since the epoch), as a time line shows it."""
-    found = await identity.read(partial(line, since=since, until=until))
+    found = await _read(identity, archive, partial(line, since=since, until=until))
     if found is None:
         raise _empty()
     return found
 
 
-@router.get("/at", dependencies=[OPERATOR], responses=refused(404))
-async def find_time(identity: Identity, time: Seconds) -> PlaceView:
+@router.get("/at", dependencies=[OPERATOR], responses=refused(404, 409))
+async def find_time(identity: Identity, archive: TheArchive, time: Seconds) -> PlaceView:
     """The last record up to `time` (seconds since the epoch), or the first one where none is so old."""
-    found = await identity.read(partial(place_at, time=time))
+    found = await _read(identity, archive, partial(place_at, time=time))
     if found is None:
         raise _empty()
     return found
@@ -139,13 +155,14 @@ async def find_time(identity: Identity, time: Seconds) -> PlaceView:
 )
 async def export_history(
     identity: Identity,
+    archive: TheArchive,
     after: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
     to: Annotated[int, Query(ge=1, le=LARGEST_NUMBER)] = LARGEST_NUMBER,
 ) -> StreamingResponse:
     """All records with higher numbers than `after`, up to `to`, one JSON document a line, as `journal export` writes
     them.
     """
-    return StreamingResponse(_lines(identity, after, to), media_type=LINES)
+    return StreamingResponse(_lines(identity, archive, after, to), media_type=LINES)
 
 
 @router.get("/checkpoint", dependencies=[OPERATOR], responses=refused(404))
@@ -184,6 +201,18 @@ async def looked_back(request: Request, number: int) -> MomentView:
     return found
 
 
+async def _read(identity: IdentityOffice, archive: Archive, work: Callable[[WholeRun], T]) -> T:
+    """What `work` reads of the run. Raises `ProblemFound` where that is in a file that cannot be read."""
+    try:
+        return await identity.read(lambda connection: work(WholeRun(connection, archive)))
+    except ArchiveError as error:
+        raise _unreadable(str(error)) from None
+
+
+def _unreadable(why: str) -> ProblemFound:
+    return ProblemFound(409, "archive-unreadable", "The archive cannot be read", f"{why[0].upper()}{why[1:]}.")
+
+
 def _empty() -> ProblemFound:
     return ProblemFound(404, "no-record", "There is no such record", "Nothing has happened yet: the journal is empty.")
 
@@ -201,14 +230,11 @@ async def _asked(request: Request, question: Question, patience: float) -> Answe
         raise ProblemFound(status, error.slug, title, detail if detail.endswith(".") else f"{detail}.") from None
 
 
-async def _lines(identity: IdentityOffice, number: int, to: int) -> AsyncIterator[bytes]:
+async def _lines(identity: IdentityOffice, archive: Archive, number: int, to: int) -> AsyncIterator[bytes]:
     while number < to:
         limit = min(EXPORTED_AT_ONCE, to - number)
-        page = [
-            each
-            for each in await identity.read(partial(run_journal.after, number=number, limit=limit))
-            if each.number <= to
-        ]
+        found = await _read(identity, archive, partial(WholeRun.after, number=number, limit=limit))
+        page = [each for each in found if each.number <= to]
         if not page:
             return
         yield "".join(f"{each.line()}\n" for each in page).encode()

@@ -141,7 +141,7 @@ async def read_job_orders(
     return OrdersAnswer(job_orders=all_answered(shown, desk), next=after)
 
 
-@bodiless.get("/{id}", responses={200: TAGGED, **refused(404)})
+@bodiless.get("/{id}", responses={200: TAGGED, **refused(404, 410)})
 async def read_job_order(id: OrderId, request: Request, identity: Identity, response: Response) -> OrderAnswer:
     """An order, and why nothing is done for it now."""
     order = await identity.read(lambda connection: orders.get(connection, id))
@@ -180,7 +180,7 @@ async def store_job_order(
     return Response(found.content, found.status, headers | ({REPLAYED: "true"} if again else {}), "application/json")
 
 
-@router.put("/{id}", responses={200: TAGGED, **refused(404, 409, 412, 428)})
+@router.put("/{id}", responses={200: TAGGED, **refused(404, 409, 410, 412, 428)})
 async def change_job_order(
     id: OrderId,
     body: OrderBody,
@@ -213,7 +213,7 @@ async def change_job_order(
     return answered(order, desk)
 
 
-@router.post("/{id}/commands", responses={200: TAGGED, **refused(404, 409)})
+@router.post("/{id}/commands", responses={200: TAGGED, **refused(404, 409, 410)})
 async def command_job_order(
     id: OrderId, body: CommandBody, request: Request, identity: Identity, actor: Actor, response: Response
 ) -> OrderAnswer:

@@ -9,7 +9,7 @@ from pydantic import BaseModel
 from sqlalchemy import Connection
 
 from sequence_planner.identity.roles import Role, Scope
-from sequence_planner.mes import responses
+from sequence_planner.mes import orders, responses
 from sequence_planner.mes.responses import (
     AbilityMade,
     CorrectionMade,
@@ -94,21 +94,25 @@ class ResponsesAnswer(BaseModel):
     next: int | None
 
 
-@router.get("")
+@router.get("", responses=refused(410))
 async def read_job_responses(
     identity: Identity,
-    cursor: Annotated[int, Query(ge=0, le=LARGEST_NUMBER)] = 0,
+    cursor: Annotated[int | None, Query(ge=0, le=LARGEST_NUMBER)] = None,
     limit: Annotated[int, Query(ge=1, le=MOST_RESPONSES)] = 10,
     newest: Annotated[bool, Query()] = False,
 ) -> ResponsesAnswer:
     """What was made of the orders that are over, in the order in which they were; orders that are cleared are left
     out. With `newest` it goes back from the last one.
+
+    410 `responses-gone` where one behind `cursor` is kept no more; without `cursor` it begins with the oldest that is.
     """
 
     def chosen(connection: Connection) -> list[StoredResponse]:
         if newest:
             return responses.latest(connection, cursor or None, limit + 1)
-        return responses.page(connection, cursor, limit + 1)
+        if cursor is not None:
+            responses.require_kept(connection, cursor)
+        return responses.page(connection, cursor or 0, limit + 1)
 
     found = await identity.read(chosen)
     shown = found[:limit]
@@ -116,10 +120,15 @@ async def read_job_responses(
     return ResponsesAnswer(job_responses=told, next=shown[-1].number if len(found) > limit else None)
 
 
-@router.get("/{id}", responses=refused(404))
+@router.get("/{id}", responses=refused(404, 410))
 async def read_job_response(id: OrderId, identity: Identity) -> ResponseAnswer:
-    """What was made of an order; 404 `no-job-response` until it is over."""
-    found = await identity.read(lambda connection: responses.get(connection, id))
+    """What was made of an order; 404 `no-job-response` until it is over, 410 `job-order-gone` long after that."""
+
+    def chosen(connection: Connection) -> StoredResponse | None:
+        orders.require_kept(connection, id)
+        return responses.get(connection, id)
+
+    found = await identity.read(chosen)
     if found is None:
         detail = "There is no job order with this id that is over: a response is written when it is."
         raise ProblemFound(404, "no-job-response", "There is no such response", detail)

@@ -17,6 +17,7 @@ from sequence_planner.control.view import Mode, PackML, Production, StationView
 from sequence_planner.version import VERSION
 from sequence_planner.web.noting import Noted
 from sequence_planner.web.readiness import ReadinessCheck
+from sequence_planner.web.retention_desk import RetentionDesk
 
 PREFIX = "sequence_planner"
 
@@ -137,6 +138,24 @@ def _topics(view: StationView) -> Iterator[Metric]:
         fresh.add_metric([name, topic.direction], topic.fresh)
         messages.add_metric([name, topic.direction], topic.messages)
     yield from (age, fresh, messages)
+
+
+def of_retention(desk: RetentionDesk | None) -> Iterator[Metric]:
+    """How much is kept, as it was looked at last, and whether it can be archived; nothing where nothing is kept."""
+    if desk is None:
+        return
+    if desk.sizes is not None:
+        sizes = GaugeMetricFamily(
+            f"{PREFIX}_storage_bytes", "Bytes of what is kept, and what is free on its disk.", labels=["of"]
+        )
+        for name, size in desk.sizes.told():
+            sizes.add_metric([name], size)
+        yield sizes
+    if desk.last_done is not None:
+        text = "When retention has last done its work, in seconds since the epoch."
+        yield GaugeMetricFamily(f"{PREFIX}_retention_time_seconds", text, desk.last_done)
+    in_trouble = desk.trouble is not None
+    yield GaugeMetricFamily(f"{PREFIX}_retention_in_trouble", "Whether something is in the way of it.", in_trouble)
 
 
 def _states(name: str, text: str, states: type[StrEnum], present: StrEnum) -> Metric:

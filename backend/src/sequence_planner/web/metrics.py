@@ -60,6 +60,7 @@ async def metrics(request: Request, client: Controller, identity: Identity) -> R
                 *families.of_controller(figures),
                 *families.of_view(client.view if client.heard else None),
                 *families.of_backups(None if state.backups is None else state.backups.newest),
+                *families.of_retention(state.retention),
             ]
         )
     )

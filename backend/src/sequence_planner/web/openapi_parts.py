@@ -18,6 +18,7 @@ TAGS: Final[dict[str, str]] = {
     "approvals": "What waits for a second person.",
     "audit": "The record of who did what.",
     "backups": "Copies of the database and the model.",
+    "storage": "How much is kept, for how long, and the archive.",
     "control": "Who is in control, and may let devices move.",
     "corrections": "Values that a person knows better than the station.",
     "health": "Whether the server is alive and ready, and its figures.",

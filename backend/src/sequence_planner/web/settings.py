@@ -11,6 +11,7 @@ from pathlib import Path
 from sequence_planner.backup.settings import Keeping
 from sequence_planner.identity.openid.settings import ProviderSettings
 from sequence_planner.mes.webhooks.targets import Targets
+from sequence_planner.retention.settings import Retention
 from sequence_planner.start_needs import StartNeeds
 
 LOCALHOST = "localhost"
@@ -107,7 +108,7 @@ class Settings(Endpoint):
     With `transport` the network is joined for what a person wants to attach, as the controller joins it. `database`
     is the URL of where identity and journal are kept; `start` is how the station is run. With `demonstration` one may
     be opened without signing in, with `provider` people may sign in there. `webhooks` is where events may be sent to,
-    `backups` how they are kept.
+    `backups` how they are kept, and `retention` how long all else is.
     """
 
     controller_socket: Path
@@ -121,6 +122,7 @@ class Settings(Endpoint):
     stream: StreamLimits = field(default_factory=StreamLimits)
     webhooks: Targets = field(default_factory=Targets)
     backups: Keeping = field(default_factory=Keeping)
+    retention: Retention = field(default_factory=Retention)
 
 
 def address_of(host: str) -> IPv4Address | IPv6Address | None:

@@ -54,7 +54,8 @@ export const MENU: readonly Page[] = [
 	{ address: '/people', title: 'people', role: 'administrator' },
 	{ address: '/keys', title: 'keys', role: 'administrator' },
 	{ address: '/webhooks', title: 'webhooks', role: 'administrator' },
-	{ address: '/backups', title: 'backups', role: 'administrator' }
+	{ address: '/backups', title: 'backups', role: 'administrator' },
+	{ address: '/storage', title: 'storage', role: 'administrator' }
 ];
 
 const ALL: readonly Page[] = [...GROUPS.flatMap((group) => group.pages), ...MENU];

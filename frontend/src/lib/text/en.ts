@@ -16,7 +16,8 @@ import { restart } from './en/restart.ts';
 import { ros } from './en/ros.ts';
 import { state } from './en/state.ts';
 import { station } from './en/station.ts';
+import { storage } from './en/storage.ts';
 import { webhooks } from './en/webhooks.ts';
 import { whatIf } from './en/what-if.ts';
 
-export const en = { ...front, ability, account, alarms, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, webhooks, whatIf };
+export const en = { ...front, ability, account, alarms, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };

@@ -16,8 +16,9 @@ import { restart } from './sv/restart.ts';
 import { ros } from './sv/ros.ts';
 import { state } from './sv/state.ts';
 import { station } from './sv/station.ts';
+import { storage } from './sv/storage.ts';
 import { webhooks } from './sv/webhooks.ts';
 import { whatIf } from './sv/what-if.ts';
 import type { Text } from './text.svelte.ts';
 
-export const sv: Text = { ...front, ability, account, alarms, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, webhooks, whatIf };
+export const sv: Text = { ...front, ability, account, alarms, backups, check, deploy, header, history, model, operate, orders, pipelines, restart, ros, state, station, storage, webhooks, whatIf };

@@ -59,8 +59,12 @@ _ALL: TypeAdapter[dict[str, PutAside]] = TypeAdapter(dict[str, PutAside])
 
 def aside_to_keep(lives: Mapping[str, Life]) -> dict[str, JsonValue]:
     """The content of a record of all that is put aside."""
-    kept = {key: PutAside.of(life, life.aside) for key, life in lives.items() if life.aside is not None}
-    found: JsonValue = _ALL.dump_python(kept, mode="json")
+    return aside_again({key: PutAside.of(life, life.aside) for key, life in lives.items() if life.aside is not None})
+
+
+def aside_again(kept: Mapping[str, PutAside]) -> dict[str, JsonValue]:
+    """The content of a record of what such a record has said."""
+    found: JsonValue = _ALL.dump_python(dict(kept), mode="json")
     assert isinstance(found, dict)
     return {"aside": found}
 

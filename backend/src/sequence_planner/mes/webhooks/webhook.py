@@ -67,12 +67,14 @@ def make(
 ) -> tuple[str, Webhook]:
     """A new webhook, told of the events after that one (None: after the last that there is), and its secret.
 
-    `url` must be one that may be sent to. Raises `OrderRefused` (`too-many-webhooks`, 409), and `IdentityRefused`
-    (`unfit-name`, 422).
+    `url` must be one that may be sent to. Raises `OrderRefused` (`too-many-webhooks`, 409; `events-gone`, 410), and
+    `IdentityRefused` (`unfit-name`, 422).
     """
     if (connection.execute(select(func.count()).select_from(WEBHOOKS)).scalar_one()) >= MOST_WEBHOOKS:
         detail = f"There are {MOST_WEBHOOKS} webhooks. Delete one that is not needed."
         raise OrderRefused("too-many-webhooks", "There are too many webhooks", detail)
+    if after is not None:
+        events.require_kept(connection, after)
     id, secret, last = new_id(), new_secret(), events.last(connection)
     asked = " ".join(each for each in EventKind if each in kinds)
     row = {

@@ -21,5 +21,6 @@ export const pages = {
 	people: 'People',
 	keys: 'Keys',
 	webhooks: 'Webhooks',
-	backups: 'Backups'
+	backups: 'Backups',
+	storage: 'Storage'
 };

@@ -22,5 +22,6 @@ export const pages: Text['pages'] = {
 	people: 'Personer',
 	keys: 'Nycklar',
 	webhooks: 'Webhooks',
-	backups: 'Säkerhetskopior'
+	backups: 'Säkerhetskopior',
+	storage: 'Lagring'
 };
