@@ -65,6 +65,34 @@ test('a backup is made and checked by keyboard, damage to one is seen, and the c
 	rmSync(join(folder, file));
 });
 
+test('what is kept is told, and is archived by keyboard', async ({ browse }) => {
+	const eva = await browse(EVA, '/storage');
+	await expect(eva.getByRole('heading', { name: 'This page needs the role administrator' })).toBeVisible();
+
+	const ada = await browse(ADA, '/storage');
+	await expect(ada.locator('[data-standing]')).toContainText('Old records leave the database by themselves');
+	const kept = ada.getByRole('region', { name: 'What is kept' });
+	await expect(kept).toContainText('30 days in the database, or 10 GB if that is less');
+	const folder = await kept.locator('dd code').innerText();
+	await expect(ada.getByRole('region', { name: 'Size' })).toContainText('What happened, in the database');
+	await examine(ada, 'storage');
+
+	await ada.getByRole('button', { name: 'Archive now' }).press('Enter');
+	const work = ada.getByTestId('storage-work');
+	await expect(work).toContainText('Last done just now: nothing was old enough', { timeout: 60_000 });
+	await expect(ada.getByRole('region', { name: 'Files of the archive' })).toContainText('There are none yet');
+
+	// A folder that cannot be made is told with what to do, and is gone from the page when it can.
+	rmSync(folder, { recursive: true, force: true });
+	writeFileSync(folder, 'in the way');
+	await ada.getByRole('button', { name: 'Archive now' }).press('Enter');
+	await expect(ada.locator('[data-standing="trouble"]')).toContainText('Nothing is cut and nothing is lost', { timeout: 60_000 });
+	await examine(ada, 'storage-trouble');
+	rmSync(folder);
+	await ada.getByRole('button', { name: 'Archive now' }).press('Enter');
+	await expect(ada.locator('[data-standing="fine"]')).toBeVisible({ timeout: 60_000 });
+});
+
 test('sign-in and account are free of barriers, on every screen and in both themes', async ({ browse }) => {
 	const door = await browse(null, '/sign-in?to=/people');
 	await door.getByRole('button', { name: 'Sign in' }).click();

@@ -175,7 +175,7 @@ def test_a_check_looks_whether_what_is_named_is_there_and_fit(tmp_path: Path) ->
     file = written(
         tmp_path,
         'model = "missing"\ncertificate = "press.pem"\nprivate_key = "press.key"\ndatabase_file = "url"\n'
-        'oidc_client_secret_file = "empty"\nbackup_folder = "backups"\n',
+        'oidc_client_secret_file = "empty"\nbackup_folder = "backups"\narchive_folder = "old"\n',
     )
     code, out, err = command("configuration", "check", file)
     assert (code, out) == (2, "")
@@ -186,6 +186,7 @@ def test_a_check_looks_whether_what_is_named_is_there_and_fit(tmp_path: Path) ->
         f"{file}:4: {tmp_path}/url cannot be read: No such file or directory",
         f"{file}:5: {tmp_path}/empty is empty: write the secret there",
         f"{file}:6: {tmp_path}/backups cannot hold backups: there is no folder {tmp_path}/backups",
+        f"{file}:7: {tmp_path}/old cannot hold the archive: there is no folder {tmp_path}/old",
     ]
 
 

@@ -266,12 +266,35 @@ def test_killed_at_any_moment_it_has_lost_nothing(database: Database, database_u
             assert program.stdout.readline() == "ended\n"
             assert whole(database) == before
         program.stdin.close()
-    archive_file.clear(folder)
     trim(database, 2990.0, EVA, folder)
+    retention.clear(database, folder)
     assert within(database) == list(range(2980, 3001))
     assert whole(database) == before
     with database.reading() as connection:
         archive = Archive()
         index = archive.index(connection)
         assert [broken_at(archive, each) for each in index.segments] == [None] * len(index.segments)
-        assert {each.file for each in index.segments} == set(files(folder))
+        assert [each.file for each in index.segments] == files(folder), "nothing else is left"
+
+
+def test_a_file_that_nothing_counts_goes_only_where_all_of_it_is_elsewhere(
+    database: Database, tmp_path: Path, folder: Path
+) -> None:
+    happened(database, range(1, 96))
+    trim(database, 38.0, EVA, folder)
+    [counted] = folder.iterdir()
+    another = Database.open(f"sqlite:///{tmp_path}/another.sqlite")
+    try:
+        another.upgrade()
+        happened(another, [1])
+        happened(another, range(2, 96))
+        trim(another, 58.0, EVA, folder)
+    finally:
+        another.close()
+    [double] = {*folder.iterdir()} - {counted}  # as of a pass that was killed, when more was old enough
+    (strange := folder / "run-000000000001-000000000029-11111111.jsonl.gz").write_bytes(b"what is this")
+    (part := folder / f".{double.name}.partial").write_bytes(b"half")
+    retention.clear(database, folder)
+    assert {*folder.iterdir()} == {counted, strange}
+    assert not part.exists()
+    assert len(whole(database)) == 95

@@ -172,6 +172,8 @@ DECLARED: dict[str, tuple[str, str | None]] = {
     "GET /api/v1/backups": ("administrator", None),
     "POST /api/v1/backups": ("administrator", None),
     "POST /api/v1/backups/{file}/check": ("administrator", None),
+    "GET /api/v1/storage": ("administrator", None),
+    "POST /api/v1/storage/archive": ("administrator", None),
     "GET /api/v1/people": ("administrator", None),
     "POST /api/v1/people": ("administrator", None),
     "PATCH /api/v1/people/{person}": ("administrator", None),

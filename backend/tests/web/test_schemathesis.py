@@ -32,6 +32,8 @@ NOT_GUESSED = {
     "POST /api/v1/webhooks",  # to no host may be sent here
     "GET /api/v1/backups",  # there is no model to go with the database
     "POST /api/v1/backups",
+    "GET /api/v1/storage",  # as of backups
+    "POST /api/v1/storage/archive",
     "GET /api/v1/watches/self",
 }
 

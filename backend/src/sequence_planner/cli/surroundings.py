@@ -10,6 +10,7 @@ from pathlib import Path
 from sequence_planner.cli.loading import load_model
 from sequence_planner.configuration import Configuration, ConfigurationError, Told, as_told, options_in, url_in
 from sequence_planner.model.source import ModelError
+from sequence_planner.retention.settings import NO_ARCHIVE
 from sequence_planner.storage.address import SqliteFile, address
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
@@ -21,7 +22,7 @@ _READ_WHOLE = ("oidc_client_secret_file",)
 
 def unfit(told: Mapping[str, Told]) -> Iterator[str]:
     """What `run` would not start with, each with where it was told. Nothing is made, written or upgraded."""
-    for check in (_model, _endpoint, _database, _secrets, _backup_folder):
+    for check in (_model, _endpoint, _database, _secrets, _folders):
         yield from check(told)
 
 
@@ -92,11 +93,14 @@ def _secrets(told: Mapping[str, Told]) -> Iterator[str]:
                 yield f"{file.where}: {file.value} is no text in UTF-8"
 
 
-def _backup_folder(told: Mapping[str, Told]) -> Iterator[str]:
-    if (folder := told.get("backup_folder")) is not None:
+def _folders(told: Mapping[str, Told]) -> Iterator[str]:
+    for name, what in (("backup_folder", "backups"), ("archive_folder", "the archive")):
+        folder = told.get(name)
+        if folder is None or (name, folder.value) == ("archive_folder", NO_ARCHIVE):
+            continue
         why = _unusable_folder(Path(str(folder.value)))
         if why is not None:
-            yield f"{folder.where}: {folder.value} cannot hold backups: {why}"
+            yield f"{folder.where}: {folder.value} cannot hold {what}: {why}"
 
 
 def _unusable_folder(folder: Path) -> str | None:

@@ -7,6 +7,7 @@ not finished is made anew, and one that is not counted yet holds what the databa
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -23,6 +24,7 @@ from sequence_planner.journal.archive_file import ArchiveError
 from sequence_planner.journal.chain import Position
 from sequence_planner.journal.entry import Entry
 from sequence_planner.journal.run_tables import RUN, RUN_BEGIN, RUN_CHECKPOINTS
+from sequence_planner.journal.whole_run import WholeRun
 from sequence_planner.storage.database import Database, StorageError
 
 SNAPSHOT: Final = "snapshot"  # the kind of the records that hold all that comes after needs
@@ -117,6 +119,29 @@ def remove(database: Database) -> int:
     with database.reading() as connection:
         begin = run_journal.begin(connection).number
     return _remove(database, RUN, RUN.c.number, begin)
+
+
+def clear(database: Database, folder: Path) -> None:
+    """Take away what others have left in the folder that did not come to their end: parts of files, and files that
+    nothing counts and whose records are all elsewhere. Raises `StorageError`.
+    """
+    archive_file.clear(folder)
+    with database.reading() as connection:
+        run = WholeRun(connection)
+        counted = {each.file for each in run.index.segments}
+        for file in sorted(folder.glob(f"run-*{archive_file.ENDING}")):
+            if file.name not in counted and _is_double(run, file):
+                file.unlink(missing_ok=True)
+
+
+def _is_double(run: WholeRun, file: Path) -> bool:
+    """Whether all that a file has is in the database, or in files that count: the last hash is over all before it."""
+    try:
+        said = json.loads(next(archive_file.lines(file)))
+        last = run.get(said["last"])
+        return last is not None and last.hash == said["hash"] and run.begin.number < said["first"]
+    except (ArchiveError, StopIteration, ValueError, LookupError, TypeError):
+        return False  # whatever it is, it is nobody's to throw away
 
 
 def sign(database: Database) -> None:

@@ -17,7 +17,7 @@ from pydantic import JsonValue
 from sqlalchemy import Connection, select
 
 from sequence_planner.actor import Actor
-from sequence_planner.journal import archive_file, audit, retention, run_journal
+from sequence_planner.journal import audit, retention, run_journal
 from sequence_planner.journal.archive import REMOVED, Archive, Segment
 from sequence_planner.journal.entry import Entry
 from sequence_planner.journal.retention import MOST_IN_FILE
@@ -60,7 +60,7 @@ def do(task: Task, tell: Callable[[object], None] = lambda _: None) -> Done:
         database.check()
         folder = usable(settings.folder, task.url, task.model) if settings.archived else None
         if folder is not None:
-            archive_file.clear(folder)
+            retention.clear(database, folder)
         retention.remove(database)  # what a pass has left that did not come to its end
         records = files = orders = batches = 0
         while files < MOST_FILES and (snapshot := _due(database, settings, now, task.everything)) is not None:

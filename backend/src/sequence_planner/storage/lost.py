@@ -14,7 +14,7 @@ _MOST_NAMED: Final = 3
 
 
 def left_of(place: SqliteFile | PostgresqlServer) -> list[Path]:
-    """What a station with this database has left beside it: keys, its last word, revisions of its model."""
+    """What a station with this database has left beside it: keys, its last word, revisions of its model, its archive."""
     if isinstance(place, PostgresqlServer):
         mark = hashlib.sha256(str(place).encode()).hexdigest()[:8]
         return sorted(state_folder().glob(f"*-{mark}*")) if state_folder().is_dir() else []
@@ -23,8 +23,8 @@ def left_of(place: SqliteFile | PostgresqlServer) -> list[Path]:
         return []
     beside = [each for each in file.parent.glob(f"{_literal(file.name)}-*") if each.suffix in (".pem", ".key")]
     beside += [each for name in ("-last-word", "-wal") if (each := Path(f"{file}{name}")).is_file()]
-    revisions = file.with_name(f"{file.stem}.revisions.git")
-    return sorted(each for each in [*beside, revisions] if _holds_something(each))
+    folders = [file.with_name(f"{file.stem}.{name}") for name in ("revisions.git", "archive")]
+    return sorted(each for each in [*beside, *folders] if _holds_something(each))
 
 
 def require_meant(place: SqliteFile | PostgresqlServer) -> None:
