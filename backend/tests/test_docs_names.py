@@ -17,7 +17,7 @@ REPOSITORY = Path(__file__).parents[2]
 PAGES = [REPOSITORY / "README.md", *sorted((REPOSITORY / "docs").glob("*.md"))]
 SOURCES = "".join(each.read_text(encoding="utf-8") for each in (REPOSITORY / "backend" / "src").rglob("*.py"))
 # Of `docker compose`, curl, pip and the like, which stand on a line with a command of ours.
-OF_OTHERS = {"--pty", "--uid", "--setenv", "--url", "--require-hashes", "--no-deps"}
+OF_OTHERS = {"--system", "--home-dir", "--pty", "--uid", "--setenv", "--url", "--require-hashes", "--no-deps"}
 
 
 def options(command: Any) -> set[str]:  # noqa: ANN401 - of a class that typer does not show

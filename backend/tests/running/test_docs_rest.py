@@ -36,8 +36,8 @@ def test_what_the_page_types_leads_from_the_first_administrator_to_a_stop(tmp_pa
     shutil.copytree(REPOSITORY / "models" / "bolt_tightening", model)
     arguments, lines = walk(model, port)
     with process(log, *arguments, "--port", str(port)) as running:
-        eventually(lambda: "runs: open" in log.read_text())
-        printed = typed(lines, tmp_path, seconds=200, **environment())
+        eventually(lambda: "runs: open" in log.read_text(), 150)
+        printed = typed(lines, tmp_path, seconds=300, **environment())
         station = EditedStation(running, port, log, model)
         station.__dict__["browser"] = signed_in(model, port)
         seen = station.station()
