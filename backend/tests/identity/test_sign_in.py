@@ -115,7 +115,13 @@ def test_nobody_is_told_who_there_is(door: Door) -> None:
     tries = [("Eva", PASSWORD), ("Adam", "wrong horse battery"), ("Nobody", PASSWORD), ("", ""), ("\0\ud800", "\ud800")]
     told = [door.refused(name, password) for name, password in tries]
     assert {(each.slug, each.title, each.detail, each.status, each.retry_after) for each in told} == {
-        ("wrong-name-or-password", "Not signed in", "The name or the password is wrong.", 401, None)
+        (
+            "wrong-name-or-password",
+            "Not signed in",
+            "The name or the password is wrong. Try again, or ask an administrator for another password.",
+            401,
+            None,
+        )
     }
     recorded = entries(door.database, "sign-in")
     assert [entry.actor.name for entry in recorded] == ["unknown", "unknown", "unknown", "Adam", "Eva"]

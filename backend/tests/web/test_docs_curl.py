@@ -44,15 +44,15 @@ def snippet(page: str, part: str) -> str:
     return str(found)
 
 
-def typed(lines: str, folder: Path, **environment: str) -> str:
-    """What is printed when all of `lines` are typed; every request must be granted."""
+def typed(lines: str, folder: Path, *, seconds: float = 30, **environment: str) -> str:
+    """What is printed when all of `lines` are typed; every request must be granted but those that are waited for."""
     done = subprocess.run(
         ["bash", "-e", "-c", CURL + lines],
         cwd=folder,
         env={**os.environ, **environment},
         capture_output=True,
         text=True,
-        timeout=30,
+        timeout=seconds,
         check=False,
     )
     assert done.returncode == 0, done.stdout + done.stderr

@@ -1141,7 +1141,8 @@ export interface paths {
          *
          *     The controller begins anew with it: what was believed comes back, nothing is published, and a person starts
          *     production. Where it cannot be started with it the model before comes back: `deployment` in `GET /station` says what
-         *     has become of it.
+         *     has become of it. 409 `not-checked` while the check of the draft has not ended, `check-found-errors` with the first
+         *     of the errors and its place, `no-supervisor` where nothing of it could be started.
          */
         post: operations["deploy"];
         delete?: never;
@@ -1484,6 +1485,9 @@ export interface paths {
         /**
          * Transfer
          * @description Whether the station could take the draft as it is now, or with the simulation reset.
+         *
+         *     Where no station may run the draft, as its check has not ended or has found errors, `obstacle` says what a
+         *     deployment would be refused with.
          */
         get: operations["transfer"];
         put?: never;
@@ -7812,6 +7816,7 @@ export interface components {
          *     `changes` are the variables that are new, gone, or of other values; they begin as the model says. Where it is not
          *     legal, `violated` are the specifications that the state would violate, `under_way` the abilities that run now and
          *     would go on as other ones or as none, and `ways` the starts, first to last, of ways into the safe states.
+         *     `obstacle` says why no station may run the model at all; null where one may.
          */
         TransferView: {
             /** Changes */

@@ -122,7 +122,7 @@ class Approvals:
     def _answerable(self, command: ApproveRequest | DeclineRequest, moment: Moment) -> _Request:
         request = self._waiting(moment).get(command.request)
         if request is None:
-            detail = "Nobody waits for this any more: it was answered, took too long, or the state has moved."
+            detail = "Nobody waits for this any more: it was answered, took too long, or the state has moved. Ask anew."
             raise CommandRefused("request-gone", "The request is gone", detail)
         if command.act.model_dump_json() != request.act.model_dump_json():
             detail = "What was answered is not what the request asks for. Look at it again, then answer that."

@@ -105,7 +105,11 @@ class Corrections:
     def _undo(self, command: UndoCorrection, moment: Moment) -> None:
         last = self._last
         if last is None:
-            raise CommandRefused("nothing-to-undo", "There is nothing to undo", "No correction can be taken back.")
+            raise CommandRefused(
+                "nothing-to-undo",
+                "There is nothing to undo",
+                "There is no correction that could be taken back: correct what is not true once more.",
+            )
         self._require_allowed()
         if command.revision != last.revision:
             detail = f"The last correction is another one by now, made by {last.by}. Look at it, then decide."

@@ -72,5 +72,5 @@ def no_plan(aimed: Aimed, out_of_service: Collection[str]) -> CommandRefused:
     elif aimed.proven:
         detail = "There is no plan at all from the present state: that is proven."
     else:
-        detail = "No plan was found in the time there is; that there is none is not proven."
+        detail = "No plan was found in the time there is; that there is none is not proven. Try again."
     return CommandRefused("no-plan", "There is no plan", detail)

@@ -118,7 +118,7 @@ class TaskDesk:
             raise CommandRefused(
                 "task-gone",
                 "This task is gone",
-                f"Task {id_} is not open: it was done or withdrawn. Nothing was changed.",
+                f"Task {id_} is not open: it was done or withdrawn. Look at what is asked for now.",
             )
         if task.revision != revision:
             raise CommandRefused(

@@ -161,7 +161,9 @@ def revoke_key(connection: Connection, id: str, by: Actor, now: float) -> None:
 def _row(connection: Connection, id: str) -> Row[tuple[object, ...]]:
     row = connection.execute(select(KEYS).where(KEYS.c.id == id)).first() if is_id(id) else None
     if row is None:
-        raise IdentityRefused("no-key", "No such key", "There is no key with this id.", 404)
+        raise IdentityRefused(
+            "no-key", "No such key", "There is no key with this id. Look at those that there are.", 404
+        )
     return row
 
 

@@ -204,7 +204,9 @@ def known(connection: Connection, id: str) -> Person:
     """The person with this id. Raises `IdentityRefused` (`no-person`, 404)."""
     person = find(connection, id)
     if person is None:
-        raise IdentityRefused("no-person", "No such person", "There is no person with this id.", 404)
+        raise IdentityRefused(
+            "no-person", "No such person", "There is no person with this id. Look at who there is.", 404
+        )
     return person
 
 

@@ -89,7 +89,7 @@ class SignIn:
             entered = None
             await asyncio.to_thread(self._record, attempt, known)
         if entered is None:
-            detail = "The name or the password is wrong."
+            detail = "The name or the password is wrong. Try again, or ask an administrator for another password."
             raise IdentityRefused("wrong-name-or-password", "Not signed in", detail, 401)
         return entered
 
@@ -104,7 +104,9 @@ class SignIn:
         """
         person = signed_in.person
         if signed_in.kind is not ActorKind.PERSON:
-            raise IdentityRefused("no-password", "No password", "A demonstration has no password.", 403)
+            raise IdentityRefused(
+                "no-password", "No password", "A demonstration has no password that could be changed.", 403
+            )
         check_password(new, person.name)
         if new == old:
             detail = "This cannot be the password: it is the one that was to be changed."
@@ -115,11 +117,16 @@ class SignIn:
             right = await self._passwords.verify_in_place(known.password_hash if known else None, old)
             hashed = await self._passwords.hash_in_place(new) if right else None
         if known is not None and not known.password_hash:
-            detail = "You sign in with a provider, and have no password here."
+            detail = "You sign in with a provider, and have no password here: change it there."
             raise IdentityRefused("no-password", "No password", detail, 403)
         if known is None or hashed is None:
             await asyncio.to_thread(self._record, attempt, known)
-            raise IdentityRefused("wrong-password", "Wrong password", "The old password is wrong.", 403)
+            raise IdentityRefused(
+                "wrong-password",
+                "Wrong password",
+                "The old password is wrong: type the one that you sign in with now.",
+                403,
+            )
         return await asyncio.to_thread(self._replace, attempt, known, hashed, signed_in, agent)
 
     async def _newer_hash(self, known: _Known, password: str) -> str | None:

@@ -94,7 +94,8 @@ def change(
         detail = f"Somebody or the station has changed it since: it has the revision {order.revision}. Read it again."
         raise OrderRefused("job-order-changed", "The job order has changed", detail, 412)
     if order.state not in BEFORE_START or order.handed_over is not None:
-        detail = f"It is {order.state.value}: an order can be changed until the station works on it."
+        state = order.state.value
+        detail = f"It is {state}, and an order can be changed until the station works on it. Store another one instead."
         raise OrderRefused("job-order-started", "The job order has started", detail)
     told = content.model_dump(mode="json")
     changed = _set(connection, order, now, content.model_dump())
@@ -196,7 +197,12 @@ def get(connection: Connection, id: str) -> JobOrder:
     if order is None:
         require_kept(connection, id)
     if order is None or order.removed is not None:
-        raise OrderRefused("no-job-order", "There is no such job order", "There is no job order with this id.", 404)
+        raise OrderRefused(
+            "no-job-order",
+            "There is no such job order",
+            "There is no job order with this id. Look at those that there are.",
+            404,
+        )
     return order
 
 

@@ -94,7 +94,10 @@ def _address(scope: Scope) -> ProblemFound | None:
     """Refuse what nothing is called: control characters, and what is no UTF-8. Not every database can keep these."""
     if _NO_NAME.search(scope["path"]):
         return ProblemFound(
-            404, "not-found", "Not Found", "Nothing has a control character, or no UTF-8, in its address."
+            404,
+            "not-found",
+            "Not Found",
+            "Nothing has a control character, or no UTF-8, in its address. Leave that out.",
         )
     question = parse_qsl(scope["query_string"].decode("latin-1"), keep_blank_values=True)
     if odd := [name for name, value in question if "\x00" in name + value]:
@@ -110,7 +113,7 @@ def _length(headers: Headers, largest: int) -> ProblemFound | None:
 
 
 def _too_large(largest: int) -> ProblemFound:
-    detail = f"A body may have {largest} bytes at most."
+    detail = f"A body may have {largest} bytes at most: send less."
     return ProblemFound(413, "body-too-large", "The body is too large", detail)
 
 
@@ -141,7 +144,7 @@ def _bounded(receive: Receive, largest: int) -> Receive:
             async with asyncio.timeout_at(None if complete else due):
                 message = await receive()
         except TimeoutError:
-            detail = f"A body must be there within {BODY_SECONDS:g} s."
+            detail = f"A body must be there within {BODY_SECONDS:g} s. Send it again, all at once."
             raise ProblemFound(408, "body-too-slow", "The body did not come in time", detail) from None
         complete = not message.get("more_body", False)
         size += len(message.get("body", b""))

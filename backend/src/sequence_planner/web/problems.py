@@ -40,7 +40,7 @@ SLUGS = {
     500: "internal-error",
 }
 DETAILS = {
-    404: "There is nothing at this address.",
+    404: "There is nothing at this address. GET /api/v1/openapi.json describes what there is.",
     405: "This address does not know the method; the header Allow names those it knows.",
 }
 

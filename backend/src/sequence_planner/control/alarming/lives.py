@@ -63,7 +63,8 @@ class Lives:
         """A person has seen the alarm that came then."""
         life = self._find(key)
         if life.aside is not None:
-            raise _refused("alarm-aside", "The alarm is put aside", f"It is {life.state}, so it waits for nobody.")
+            detail = f"It is {life.state}, so nobody has to acknowledge it."
+            raise _refused("alarm-aside", "The alarm is put aside", detail)
         if life.since != since:
             raise _refused("alarm-came-again", "The alarm has come again", "Look at it, then acknowledge this one.")
         if not life.acknowledged:
@@ -86,14 +87,18 @@ class Lives:
         """It is told again."""
         life = self._find(key)
         if life.aside is None or life.aside.until is None:
-            raise _refused("alarm-not-shelved", "The alarm is not shelved", f"It is {life.state}.")
+            raise _refused(
+                "alarm-not-shelved", "The alarm is not shelved", f"It is {life.state}: nothing has to be done."
+            )
         self._take_back(key, life, "unshelved")
 
     def restore(self, key: str) -> None:
         """What is out of service is told again."""
         life = self._find(key)
         if life.aside is None or life.aside.until is not None:
-            raise _refused("alarm-in-service", "The alarm is in service", f"It is {life.state}.")
+            raise _refused(
+                "alarm-in-service", "The alarm is in service", f"It is {life.state}: nothing has to be done."
+            )
         self._take_back(key, life, "put back in service")
 
     def _find(self, key: str) -> Life:

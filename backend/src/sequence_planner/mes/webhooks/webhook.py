@@ -99,7 +99,9 @@ def get(connection: Connection, id: str) -> Webhook:
     """The webhook with this id. Raises `OrderRefused` (`no-webhook`, 404)."""
     row = connection.execute(select(WEBHOOKS).where(WEBHOOKS.c.id == id)).mappings().first() if is_id(id) else None
     if row is None:
-        raise OrderRefused("no-webhook", "No such webhook", "There is no webhook with this id.", 404)
+        raise OrderRefused(
+            "no-webhook", "No such webhook", "There is no webhook with this id. Look at those that there are.", 404
+        )
     return _webhook(row, _counts(connection))
 
 
