@@ -136,10 +136,10 @@ def test_an_ability_that_was_given_up_is_named() -> None:
 
 def test_each_of_two_that_are_needed_is_named_and_one_of_no_use_is_not() -> None:
     rig = bolted()
-    for name in ("robot", "end_effector", "agv"):
+    for name in ("robot", "scene", "agv"):
         out(rig, ServiceKind.RESOURCE, name)
     titles = rig.station.automaton.resources
-    assert nobody(found(rig.execution, rig.now))["take_filter_tool"] == [titles["end_effector"], titles["robot"]]
+    assert nobody(found(rig.execution, rig.now))["take_filter_tool"] == [titles["robot"], titles["scene"]]
 
 
 def test_it_is_looked_at_seldom_while_the_same_is_absent() -> None:
