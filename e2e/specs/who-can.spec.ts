@@ -28,12 +28,12 @@ test('without the robot it is said at once who can still do what, and the bolts 
 	station,
 	browse
 }) => {
-	test.setTimeout(300_000);
+	test.setTimeout(480_000);
 	await expect(operate.getByTestId('mode')).toContainText('production started', { timeout: 120_000 });
 	await takeControl(operate);
 	await order(operate, station.url);
 	const tightened = operate.locator('[data-variable^="bolts["][data-value="tightened"]');
-	await expect(tightened).not.toHaveCount(0, { timeout: 180_000 });
+	await expect(tightened).not.toHaveCount(0, { timeout: 300_000 });
 	await expect(operate.getByTestId('who-can')).toHaveCount(0);
 	await station.fault('robot offline');
 	const said = operate.getByTestId('who-can');
