@@ -16,7 +16,6 @@ export interface Hands {
 const REASON = 'as the page says';
 /** Milliseconds within which a press has its effect, unless the station has moved since. */
 const PRESS = 5000;
-/** Milliseconds without anything to do but wait, after which it is stuck. */
 const PATIENCE = 30_000;
 
 export class Back {
@@ -26,13 +25,15 @@ export class Back {
 
 	constructor(
 		readonly restart: Page,
-		readonly hands: Hands
+		readonly hands: Hands,
+		/** Milliseconds without anything to do but wait, after which it is stuck. */
+		readonly patience = PATIENCE
 	) {}
 
 	/** Until nothing is left to do; an error when it does not come to that. */
 	async toWork(): Promise<void> {
 		let since = Date.now();
-		while (Date.now() - since < PATIENCE) {
+		while (Date.now() - since < this.patience) {
 			const next = (await this.restart.getByTestId('next-act').getAttribute('data-next')) ?? '';
 			if (next === 'nothing') return;
 			if (await this.#do(next)) {

@@ -8,7 +8,7 @@ from sequence_planner.control.alarming.consequence import Consequences
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.who_can import WhoCan
+from sequence_planner.control.who_can import WhoCan, at_once
 from sequence_planner.control.who_can_view import WhoCanView
 from sequence_planner.emulation.faults import Fault, FaultKind
 from sequence_planner.emulation.truck_station.poses import PAIRS
@@ -136,10 +136,10 @@ def test_an_ability_that_was_given_up_is_named() -> None:
 
 def test_each_of_two_that_are_needed_is_named_and_one_of_no_use_is_not() -> None:
     rig = bolted()
-    for name in ("robot", "end_effector", "agv"):
+    for name in ("robot", "scene", "agv"):
         out(rig, ServiceKind.RESOURCE, name)
     titles = rig.station.automaton.resources
-    assert nobody(found(rig.execution, rig.now))["take_filter_tool"] == [titles["end_effector"], titles["robot"]]
+    assert nobody(found(rig.execution, rig.now))["take_filter_tool"] == [titles["robot"], titles["scene"]]
 
 
 def test_it_is_looked_at_seldom_while_the_same_is_absent() -> None:
@@ -147,7 +147,7 @@ def test_it_is_looked_at_seldom_while_the_same_is_absent() -> None:
     rig.start_production()
     out(rig, ServiceKind.RESOURCE, "robot")
     seconds = iter([0.0, 0.1] * 1000)
-    who_can = WhoCan(rig.execution, lambda: next(seconds))  # each look takes a tenth of a second
+    who_can = WhoCan(rig.execution, at_once, lambda: next(seconds))  # each look takes a tenth of a second
     looks, last = 0, None
     for _ in range(100):
         rig.run(0.1)

@@ -59,6 +59,7 @@ from sequence_planner.control.trials import Trials
 from sequence_planner.control.view import Production, StationIdentity, StationView
 from sequence_planner.control.view_part import View
 from sequence_planner.control.viewing import Doubts, Viewing
+from sequence_planner.control.who_can import in_thread
 from sequence_planner.control.why_not import WhyNot
 from sequence_planner.control.work_masters import work_masters_view
 from sequence_planner.expressions.types import Value
@@ -113,7 +114,7 @@ class Controller:
         self._jobs = KeptJobs(self.execution, lambda: self._recorder.last)
         self.desk = TaskDesk(automaton, station.pipelines.feeds)
         self._outside = Outside(self.execution)
-        self._alarms = Alarms(self.execution, self._outside, feeds, network, commander, self._note, known)
+        self._alarms = Alarms(self.execution, self._outside, feeds, network, commander, self._note, known, in_thread)
         self._standing = StandingNotes(self._note)
         self._beliefs = Beliefs(self.execution, known.beginning, known.beliefs, partial(self._note, BELIEFS))
         self._recorder.know(BELIEFS, self._beliefs.document())

@@ -6,9 +6,15 @@ hand, which advice proposes.
 
 from __future__ import annotations
 
+import asyncio
 import time
 from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
 
+import structlog
+
+from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.who_can_view import AbsenceReason, AbsenceView, DoableView, NobodyView, WhoCanView
@@ -19,35 +25,151 @@ from sequence_planner.planning.relaxed.remaining import Absent, Remaining
 _SHARE = 50.0
 _AT_MOST_EVERY = 1.0  # seconds
 
+LOG = structlog.get_logger(__name__)
+
+Found = tuple[WhoCanView, Mapping[str, frozenset[str]]]
+Work = Callable[[], tuple[Found, float]]
+Take = Callable[[tuple[Found, float] | None], None]
+Run = Callable[[Work, Take], None]
+
+
+def at_once(work: Work, take: Take) -> None:
+    """Wait for it."""
+    take(work())
+
+
+def in_thread(work: Work, take: Take) -> None:
+    """In a thread of the running event loop, which goes on meanwhile."""
+
+    async def done() -> None:
+        try:
+            take(await asyncio.to_thread(work))
+        except Exception:
+            LOG.exception("who can do what was not found out")
+            take(None)
+
+    _RUNNING.add(task := asyncio.get_running_loop().create_task(done()))
+    task.add_done_callback(_RUNNING.discard)
+
+
+_RUNNING: set[asyncio.Task[None]] = set()  # an event loop itself does not keep its tasks
+
+
+@dataclass(frozen=True)
+class _Look:
+    """All that an answer depends on, none of which ever changes; `wanted` are the operations that it is about."""
+
+    automaton: Automaton
+    state: State
+    active: frozenset[str]
+    wanted: tuple[str, ...]
+    absent: Absent
+    silent: frozenset[str]
+
+    def found(self) -> Found:
+        """The answer."""
+        now = self._remaining(self.absent)
+        beyond = [name for name in self.wanted if not self._may(now, name)]
+        lacking = self._lacking(beyond) if beyond else {}
+        others = [self._doable(now, name) for name in self.wanted if name not in beyond]
+        nobody = [
+            NobodyView(
+                operation=name,
+                title=self.automaton.operations[name].title,
+                active=name in self.active,
+                lacks=[self._title(each) for each in sorted(needed)],
+            )
+            for name, needed in lacking.items()
+        ]
+        return WhoCanView(absent=list(self._absences()), nobody=nobody, others=others), lacking
+
+    def _lacking(self, beyond: list[str]) -> dict[str, frozenset[str]]:
+        """Of operations that nobody can complete: what has to be there again for each, whatever else is."""
+        # What could not be done with everything there is not for the want of anything that is absent.
+        whole = self._remaining(Absent())
+        lacks: dict[str, set[str]] = {name: set() for name in beyond if self._may(whole, name)}
+        for each in self.absent.names if lacks else ():
+            alone = self._remaining(self.absent.only(each))
+            for name, needed in lacks.items():
+                if not self._may(alone, name):
+                    needed.add(each)
+        return {name: frozenset(needed or self.absent.names) for name, needed in lacks.items()}
+
+    def _remaining(self, absent: Absent) -> Remaining:
+        return Remaining(self.automaton, self.state, absent, self.silent & absent.resources)
+
+    def _may(self, remaining: Remaining, name: str) -> bool:
+        return remaining.may_complete(self.automaton.operations[name], name in self.active)
+
+    def _doable(self, now: Remaining, name: str) -> DoableView:
+        doing = now.doing(self.automaton.operations[name], name in self.active)
+        return DoableView(
+            operation=name,
+            title=self.automaton.operations[name].title,
+            active=name in self.active,
+            by=[self.automaton.resources[each] for each in doing.by],
+            once={each: value for each, value in doing.once if self.state[each] != value},
+        )
+
+    def _absences(self) -> Iterator[AbsenceView]:
+        for of, names in (("resource", self.absent.resources), ("ability", self.absent.abilities)):
+            for name in sorted(names):
+                why = AbsenceReason.SILENT if name in self.silent else AbsenceReason.OUT_OF_SERVICE
+                yield AbsenceView(of=of, name=name, title=self._title(name), why=why)
+
+    def _title(self, name: str) -> str:
+        automaton = self.automaton
+        return automaton.resources[name] if name in automaton.resources else automaton.abilities[name].title
+
 
 class WhoCan:
-    """Looks at `execution`. `found` is None while all that there is takes part."""
+    """Looks at `execution`, with `run` in the place where that may take time; `found` is None while all take part."""
 
-    def __init__(self, execution: Execution, clock: Callable[[], float] = time.perf_counter) -> None:
+    def __init__(
+        self, execution: Execution, run: Run = at_once, clock: Callable[[], float] = time.perf_counter
+    ) -> None:
         self._execution = execution
+        self._run = run
         self._clock = clock
         self._absent = Absent()
         self._about: tuple[object, ...] = ()
+        self._runs = False
+        self._next = 0.0  # when it is looked at again, although nothing else is absent
+        self._took = 0.0  # seconds
         self.found: WhoCanView | None = None
         self.lacking: Mapping[str, frozenset[str]] = {}  # by operation that nobody can complete, what it lacks
-        self._next = 0.0  # when it is looked at again, although nothing else is absent
 
     def look(self, untold: Collection[str], monotonic: float) -> None:
         """Find out. The silence of resources in `untold` is too young to be told."""
-        conduct = self._execution.conduct
-        resources = (conduct.silent - frozenset(untold)) | conduct.out_of(ServiceKind.RESOURCE)
-        absent = Absent(resources, conduct.out_of(ServiceKind.ABILITY) & self._execution.automaton.abilities.keys())
-        wanted = tuple(self._wanted())
-        about = (wanted, self._execution.active, self._execution.revision)
-        if absent == self._absent and (about == self._about or monotonic < self._next):
+        execution, conduct = self._execution, self._execution.conduct
+        silent = conduct.silent - frozenset(untold)
+        abilities = conduct.out_of(ServiceKind.ABILITY) & execution.automaton.abilities.keys()
+        absent = Absent(silent | conduct.out_of(ServiceKind.RESOURCE), abilities)
+        if not absent.names:
+            self._absent, self.found, self.lacking = absent, None, {}
             return
+        if self._runs or (absent == self._absent and monotonic < self._next):
+            return
+        about = (execution.active, execution.revision)
+        if absent == self._absent and about == self._about:
+            return
+        self._absent, self._about, self._runs = absent, about, True
+        look = _Look(execution.automaton, execution.state, execution.active, tuple(self._wanted()), absent, silent)
+        self._run(partial(self._timed, look), partial(self._take, absent))
+        self._next = monotonic + max(_AT_MOST_EVERY, _SHARE * self._took)
+
+    def _timed(self, look: _Look) -> tuple[Found, float]:
         before = self._clock()
-        self._absent, self._about = absent, about
-        if absent.names:
-            self.found = self._view(absent, wanted)
-        else:
-            self.found, self.lacking = None, {}
-        self._next = monotonic + max(_AT_MOST_EVERY, _SHARE * (self._clock() - before))
+        found = look.found()
+        return found, self._clock() - before
+
+    def _take(self, absent: Absent, answer: tuple[Found, float] | None) -> None:
+        """None where it failed: then it is looked at again."""
+        self._runs = False
+        if answer is None:
+            self._about = ()
+        elif absent == self._absent:
+            (self.found, self.lacking), self._took = answer
 
     def _wanted(self) -> Iterator[str]:
         """The operations that are active, and those that are still to come: of jobs under way, or of no job at all."""
@@ -65,64 +187,3 @@ class WhoCan:
                     yield name
             elif evaluate(operation.goal, execution.state) is not True:
                 yield name
-
-    def _view(self, absent: Absent, wanted: tuple[str, ...]) -> WhoCanView:
-        automaton, active = self._execution.automaton, self._execution.active
-        now = self._remaining(absent)
-        beyond = [name for name in wanted if not self._may(now, name)]
-        self.lacking = self._lacking(absent, beyond) if beyond else {}
-        return WhoCanView(
-            absent=list(self._absences(absent)),
-            nobody=[
-                NobodyView(
-                    operation=name,
-                    title=automaton.operations[name].title,
-                    active=name in active,
-                    lacks=[self._title(each) for each in sorted(needed)],
-                )
-                for name, needed in self.lacking.items()
-            ],
-            others=[self._doable(now, name) for name in wanted if name not in beyond],
-        )
-
-    def _lacking(self, absent: Absent, beyond: list[str]) -> dict[str, frozenset[str]]:
-        """Of operations that nobody can complete: what has to be there again for each, whatever else is."""
-        # What could not be done with everything there is not for the want of anything that is absent.
-        whole = self._remaining(Absent())
-        lacks: dict[str, set[str]] = {name: set() for name in beyond if self._may(whole, name)}
-        for each in absent.names if lacks else ():
-            alone = self._remaining(absent.only(each))
-            for name, needed in lacks.items():
-                if not self._may(alone, name):
-                    needed.add(each)
-        return {name: frozenset(needed or absent.names) for name, needed in lacks.items()}
-
-    def _remaining(self, absent: Absent) -> Remaining:
-        execution = self._execution
-        return Remaining(execution.automaton, execution.state, absent, execution.conduct.silent & absent.resources)
-
-    def _may(self, remaining: Remaining, name: str) -> bool:
-        return remaining.may_complete(self._execution.automaton.operations[name], name in self._execution.active)
-
-    def _doable(self, now: Remaining, name: str) -> DoableView:
-        execution, automaton = self._execution, self._execution.automaton
-        doing = now.doing(automaton.operations[name], name in execution.active)
-        return DoableView(
-            operation=name,
-            title=automaton.operations[name].title,
-            active=name in execution.active,
-            by=[automaton.resources[each] for each in doing.by],
-            once={each: value for each, value in doing.once if execution.state[each] != value},
-        )
-
-    def _absences(self, absent: Absent) -> Iterator[AbsenceView]:
-        out = self._execution.conduct.out_of(ServiceKind.RESOURCE)
-        for of, names in ((ServiceKind.RESOURCE, absent.resources), (ServiceKind.ABILITY, absent.abilities)):
-            for name in sorted(names):
-                away = of is ServiceKind.ABILITY or name in out
-                why = AbsenceReason.OUT_OF_SERVICE if away else AbsenceReason.SILENT
-                yield AbsenceView(of=of, name=name, title=self._title(name), why=why)
-
-    def _title(self, name: str) -> str:
-        automaton = self._execution.automaton
-        return automaton.resources[name] if name in automaton.resources else automaton.abilities[name].title

@@ -31,7 +31,7 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.who_can import WhoCan
+from sequence_planner.control.who_can import Run, WhoCan, at_once
 
 Tell = Callable[[str, Mapping[str, JsonValue]], None]
 KEEP_EVERY = 86400.0  # seconds after which what is aside is told again, so that it is among what the journal keeps
@@ -40,7 +40,8 @@ KEEP_EVERY = 86400.0  # seconds after which what is aside is told again, so that
 class Alarms(StationAlarms):
     """The alarms of a station. `tell` hears what becomes of each, for the journal.
 
-    `known` has those that were shelved or out of service before the controller was started.
+    `known` has those that were shelved or out of service before the controller was started. `run` is where it is found
+    out who can do what.
     """
 
     def __init__(
@@ -52,11 +53,12 @@ class Alarms(StationAlarms):
         commander: Commander,
         tell: Tell,
         known: Known | None = None,
+        run: Run = at_once,
     ) -> None:
         known = known or Known()
         undone = known.deployment if known.deployment and known.deployment.why is not None else None
         super().__init__(execution, outside, known, undone)
-        self.who_can = WhoCan(execution)
+        self.who_can = WhoCan(execution, run)
         self._devices = DeviceAlarms(execution, feeds, network, commander, self.who_can)
         self._plans = PlanAlarms(execution, feeds, lambda: bool(self._touched()), self.who_can)
         self._following = Following(execution.automaton, self._touched)

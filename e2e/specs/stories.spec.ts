@@ -1,0 +1,191 @@
+/** Six faults, each at two stations: what the page says is what is done, from the alarm to production again. */
+import { Back, served, type Hands } from '../station/back-to-work.ts';
+import { Judged } from '../station/judged.ts';
+import { completed, picture, takeControl, variable } from '../station/seen.ts';
+import type { Station } from '../station/station.ts';
+import { expect, test } from '../station/test.ts';
+import type { Page } from '@playwright/test';
+
+interface Place {
+	readonly station: Station;
+	readonly operate: Page;
+	readonly watch: Page;
+	readonly restart: Page;
+	readonly plant: Plant;
+}
+
+/** What stories need to know of a station. */
+interface Plant {
+	readonly model: string;
+	/** A pair of bolts that is told of, and the pose at it. */
+	readonly pairs: readonly string[];
+	/** How the tool is told to run. */
+	readonly turning: string;
+	/** A pose that no story of the pair has. */
+	readonly aside: string;
+}
+
+const PLANTS: readonly Plant[] = [
+	{
+		model: 'bolt_tightening',
+		pairs: ['bolt_pair_1', 'bolt_pair_2', 'bolt_pair_3'],
+		turning: 'nutrunner.tool_is_running_forward',
+		aside: 'home'
+	},
+	{
+		model: 'truck_engine_station',
+		pairs: [1, 2, 3, 4, 5, 6].map((n) => `AtBoltPair${n}TCPPose`),
+		turning: 'nutrunner.tool_is_running_forward',
+		aside: 'HomeJOINTPose'
+	}
+];
+
+interface Story {
+	readonly name: string;
+	/** Something goes wrong at a station that works. */
+	readonly strike: (at: Place) => Promise<void>;
+	/** What a person does at the devices as soon as the page asks them for something there. */
+	readonly hands: (at: Place) => Hands;
+}
+
+const shows = (page: Page, name: string, value: string): Promise<boolean> =>
+	variable(page, name)
+		.getAttribute('data-value')
+		.then((seen) => seen === value);
+
+/** How often bolts were tightened, over all pairs. */
+async function tightenings({ operate, plant }: Place): Promise<number> {
+	const each = await Promise.all(plant.pairs.map((pair) => completed(operate, `tighten_bolt_pair(${pair})`)));
+	return each.reduce((sum, n) => sum + n, 0);
+}
+
+/** The robot is told to go down to placed bolts. */
+async function goesDown(at: Place): Promise<void> {
+	const { operate, watch, plant } = at;
+	await served(
+		watch,
+		async () => {
+			const target = (await variable(operate, 'robot.target_pose').getAttribute('data-value')) ?? '';
+			return plant.pairs.includes(target) && (await shows(operate, `bolts[${target}]`, 'placed'));
+		},
+		240
+	);
+}
+
+/** It is there with the tool turning, for so long that what strikes then strikes while it does. */
+async function tightens(at: Place): Promise<void> {
+	const { operate, watch, plant, station } = at;
+	await goesDown(at);
+	await station.fault('nutrunner slow 10');
+	await served(
+		watch,
+		async () => {
+			const pose = (await variable(operate, 'robot.pose').getAttribute('data-value')) ?? '';
+			return plant.pairs.includes(pose) && (await shows(operate, plant.turning, 'true'));
+		},
+		120
+	);
+}
+
+const mends = ({ station }: Place): Hands => ({ mend: () => station.fault('clear'), truth: 'placed' });
+
+const STORIES: readonly Story[] = [
+	{
+		name: 'the robot is stuck on its way to placed bolts',
+		strike: async (at) => {
+			await goesDown(at);
+			await at.station.fault('robot stuck');
+		},
+		hands: mends
+	},
+	{
+		name: 'the nutrunner fails on the bolts',
+		strike: async (at) => {
+			await tightens(at);
+			await at.station.fault('clear');
+			await at.station.fault('nutrunner stuck');
+		},
+		hands: mends
+	},
+	{
+		name: 'the robot is dead, and comes back',
+		strike: async (at) => {
+			await goesDown(at);
+			await at.station.fault('robot offline');
+		},
+		hands: mends
+	},
+	{
+		name: 'the robot is moved by hand',
+		strike: async (at) => {
+			await tightens(at);
+			await at.station.byHand(`robot.pose := ${at.plant.aside}`);
+			await at.station.fault('clear');
+		},
+		hands: mends
+	},
+	{
+		name: 'held in the middle of the bolts',
+		strike: async (at) => {
+			await tightens(at);
+			await at.restart.getByRole('button', { name: 'Hold', exact: true }).click();
+			await at.station.fault('clear');
+		},
+		hands: mends
+	},
+	{
+		name: 'the controller is killed in the middle of the bolts',
+		strike: async (at) => {
+			await tightens(at);
+			at.station.server.killPart('controller');
+			await at.station.fault('clear');
+		},
+		hands: mends
+	}
+];
+
+/** Milliseconds from a fault until bolts are tightened again. */
+const LONGEST = 300_000;
+
+/** A story by a part of its name; all without. */
+const NAMED = process.env['STORY'] ?? '';
+
+for (const plant of PLANTS)
+	test.describe(plant.model, () => {
+		test.use({ shared: null, copied: plant.model });
+
+		for (const { name, strike, hands } of STORIES.filter((each) => each.name.includes(NAMED)))
+			test(`${name}, and the page leads back to production @long`, async ({ operate, watch, station }) => {
+				test.setTimeout(600_000);
+				await expect(operate.getByTestId('mode')).toContainText('production started', { timeout: 120_000 });
+				await takeControl(operate);
+				const restart = await operate.context().newPage();
+				restart.setDefaultTimeout(15_000);
+				const judged = new Judged(restart);
+				await restart.goto(new URL('/restart', operate.url()).href);
+				await expect(restart.getByTestId('next-act')).toBeVisible();
+				const at: Place = { station, operate, watch, restart, plant };
+				await strike(at);
+				// What nobody need do anything about is over by itself.
+				const before = await tightenings(at);
+				const back = new Back(restart, hands(at), 90_000);
+				const goesOn = async (): Promise<boolean> => (await tightenings(at)) > before;
+				const end = Date.now() + LONGEST;
+				try {
+					// It takes some time until the page knows of it; until then it says that there is nothing to do.
+					while (!(await goesOn())) {
+						expect(Date.now(), `after ${back.acts.join(', ')}`).toBeLessThan(end);
+						await back.toWork();
+						await served(watch, goesOn, 2).catch(() => undefined);
+					}
+				} finally {
+					await judged.look(watch);
+					test.info().annotations.push(
+						{ type: 'acts', description: back.acts.join(', ') },
+						{ type: 'proposed', description: judged.proposed.join(' | ') }
+					);
+					await picture(restart, `story-${plant.model}-${name.replaceAll(/\W+/g, '-')}`);
+				}
+				expect(judged.wrong).toEqual([]);
+			});
+	});
