@@ -2,13 +2,17 @@
 
 Run with `make bench`. The bolt tightening station runs as its users run it, with emulated devices and a database of
 SQLite on the disk. An operator holds and pauses it every 50 ms, one request after the other, while somebody else does
-one kind of work again and again. Times are on the wall, of the operator.
+one kind of work again and again. Then the server is killed again and again, each time once it has a spare, and the
+operator pauses at once. Times are on the wall, of the operator. With `killed` it is that alone.
 """
 
 from __future__ import annotations
 
 import os
 import shutil
+import signal
+import statistics
+import subprocess
 import sys
 import tempfile
 import threading
@@ -22,6 +26,10 @@ from access import GIVEN, NAME, PASSWORD, STATION, add_administrator, station
 
 SECONDS = 15.0  # of each kind of work
 EVERY = 0.05  # seconds between two stops
+KILLS = 20
+SPARED = 2  # processes: the server, and its spare
+SETTLING = 5.0  # seconds in which a spare has imported what it needs
+PATIENCE = 120.0  # seconds
 VARIABLES = 20_000
 # A short text that stands for millions of entries.
 BOMB = "a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
@@ -67,15 +75,17 @@ def main() -> None:
         shutil.copytree(STATION, model)
         add_administrator()
         with (
-            station(model) as (address, _),
+            station(model) as (address, launcher),
             httpx.Client(base_url=f"{address}/api/v1", timeout=60) as operator,
             httpx.Client(base_url=f"{address}/api/v1", timeout=60) as engineer,
         ):
             operator.post("/session", json={"name": NAME, "password": GIVEN}).raise_for_status()
             operator.put("/session/password", json={"old": GIVEN, "new": PASSWORD}).raise_for_status()
             engineer.post("/session", json={"name": NAME, "password": PASSWORD}).raise_for_status()
-            for what, work in works(engineer).items():
-                measure(operator, what, work)
+            if sys.argv[1:] != ["killed"]:
+                for what, work in works(engineer).items():
+                    measure(operator, what, work)
+            say_how_long([pause_after_kill(operator, launcher) for _ in range(KILLS)])
 
 
 def works(client: httpx.Client) -> dict[str, Callable[[int], None]]:
@@ -131,6 +141,42 @@ def measure(operator: httpx.Client, what: str, work: Callable[[int], None]) -> N
         print(f"  it failed: {wrong[0][:300]}")
     print(
         f"{what}, {turns[0]} times: a stop takes {half:.0f} ms, 99 % {most:.0f} ms, at most {last:.0f} ms", flush=True
+    )
+
+
+def pause_after_kill(operator: httpx.Client, launcher: int) -> float:
+    """Seconds from when the server is killed until a Pause is accepted, whatever becomes of requests meanwhile."""
+    end = time.monotonic() + PATIENCE
+    while len(servers(launcher)) < SPARED:
+        if time.monotonic() > end:
+            raise TimeoutError("the server gets no spare")
+        time.sleep(0.2)
+    time.sleep(SETTLING)
+    os.kill(servers(launcher)[0], signal.SIGKILL)
+    began = time.perf_counter()
+    while True:
+        try:
+            if operator.put("/mode", json={"mode": "paused"}).is_success:
+                return time.perf_counter() - began
+        except httpx.HTTPError:
+            pass  # the connection was the one of the server that is gone
+        time.sleep(0.01)
+
+
+def servers(launcher: int) -> list[int]:
+    """The process ids of the server and of its spare, the oldest first."""
+    asked = ["ps", "-ww", "--ppid", str(launcher), "--sort=start_time", "-o", "pid=,args="]
+    listed = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
+    return [int(line.split()[0]) for line in listed.splitlines() if "sequence_planner.cli server " in line]
+
+
+def say_how_long(times: list[float]) -> None:
+    """Print how long it took."""
+    times = sorted(times)
+    print(
+        f"killed {len(times)} times: the first Pause is accepted after {statistics.median(times):.2f} s, "
+        f"at most {times[-1]:.2f} s",
+        flush=True,
     )
 
 

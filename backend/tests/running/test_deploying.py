@@ -108,6 +108,7 @@ def test_a_start_that_fails_brings_the_model_before_back(tmp_path: Path) -> None
         begin(station)
         eventually(lambda: "deployment-undone" not in alarms(station))
         # Whoever puts the files of before there now, once it went well, has changed the model: nothing was undone.
+        assert station.asked("GET", "model")["files"][ROBOT]["state"] == "same"
         (station.model / ROBOT).write_text(before)
         assert station.asked("GET", f"model/files?path={ROBOT}")["files"][ROBOT]["text"] == before
         assert station.asked("GET", "model")["files"][ROBOT]["state"] == "same"

@@ -15,7 +15,7 @@ from running.mortal import Mortal
 from running.pairs import standby
 from running.signing_in import signed_in
 from running.stations import eventually, free_port, process
-from running.test_deploying import TITLED, deployed, title
+from running.test_deploying import TITLED, deployed
 from running.workshops import SINGLE_BOLT, EditedStation
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.environment import DATABASE
@@ -80,25 +80,25 @@ def kept_while_it_stands_by(station: EditedStation, other: Mortal) -> None:
     try:
         controller = part_of(station, "controller", controller)
         other.wait(lambda: standby(other)["holder"] == "press-a" and standby(other)["trouble"] is None, "not held anew")
-        assert station.station()["deployment"]["state"] == "starting"
+        assert station.get("deployment", "station")["state"] == "starting"
         os.kill(controller, signal.SIGSTOP)
         other.wait(lambda: standby(other)["active"] is True, "nobody takes over")
         os.kill(controller, signal.SIGCONT)
         # It is overtaken, and the next one stands by while it starts.
         part_of(station, "controller", controller)
         eventually(lambda: (station.station().get("standby") or {}).get("holder") == "press-b", LONG)
-        seen = station.station()
-        assert (seen["deployment"]["state"], seen["production"]) == ("starting", "preparing")
+        assert station.get("deployment", "station")["state"] == "starting"
+        assert station.get("production", "station") == "preparing"
     finally:
         os.kill(devices, signal.SIGCONT)
     eventually(lambda: (station.station().get("deployment") or {}).get("state") == "runs", LONG)
-    assert station.station()["standby"]["active"] is False
+    assert station.get("standby", "station")["active"] is False
     refused = station.browser.post("production/start", json={})
     assert (refused.status_code, refused.json()["type"]) == (503, "/problems/stands-by")
     # Later it commands again, with the model that was deployed.
     other.kill("controller")
     eventually(lambda: (station.station().get("standby") or {}).get("active") is True, LONG)
     eventually(station.up, LONG)
-    assert station.station()["deployment"]["revision"] == revision
-    assert title(station) == "Another title"
+    assert station.get("deployment", "station")["revision"] == revision
+    assert station.get("station")["title"] == "Another title"
     assert "is brought back" not in station.log.read_text()
