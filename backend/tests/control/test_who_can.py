@@ -142,26 +142,29 @@ def test_each_of_two_that_are_needed_is_named_and_one_of_no_use_is_not() -> None
     assert nobody(found(rig.execution, rig.now))["take_filter_tool"] == [titles["robot"], titles["scene"]]
 
 
-def test_it_is_looked_at_seldom_while_the_same_is_absent() -> None:
+def test_it_is_looked_at_seldom_but_at_once_when_something_else_is_absent_or_active() -> None:
     rig = Rig()
     rig.start_production()
     out(rig, ServiceKind.RESOURCE, "robot")
-    seconds = iter([0.0, 0.1] * 1000)
-    who_can = WhoCan(rig.execution, at_once, lambda: next(seconds))  # each look takes a tenth of a second
-    looks, last = 0, None
+    asked: list[float] = []
+
+    def clock() -> float:
+        """Each look takes a tenth of a second."""
+        asked.append(len(asked) * 0.1)
+        return asked[-1]
+
+    who_can, others = WhoCan(rig.execution, at_once, clock), 1
+    active = rig.execution.active
     for _ in range(100):
-        active = rig.execution.active
         rig.run(0.1)
-        if rig.execution.active == active:
-            who_can.look((), rig.now)
-            looks += who_can.found is not last
-            last = who_can.found
-        else:
-            before = last
-            who_can.look((), rig.now)
-            last = who_can.found
-            assert last is not before, "an operation that is over is not named any longer"
-    assert 1 <= looks <= 6, "a twentieth of ten seconds is five looks"
+        others += rig.execution.active != active
+        active = rig.execution.active
+        who_can.look((), rig.now)
+        assert who_can.found is not None
+        told = {each.operation for each in (*who_can.found.nobody, *who_can.found.others) if each.active}
+        assert told == active
+    assert len(asked) / 2 <= others + 5, "a twentieth of ten seconds is five looks"
+    last = who_can.found
     out(rig, ServiceKind.RESOURCE, "nutrunner")
     who_can.look((), rig.now)
     assert who_can.found is not last, "something else is absent"
