@@ -161,7 +161,8 @@ def test_it_is_looked_at_seldom_but_at_once_when_something_else_is_absent_or_act
         active = rig.execution.active
         who_can.look((), rig.now)
         assert who_can.found is not None
-        told = {each.operation for each in (*who_can.found.nobody, *who_can.found.others) if each.active}
+        told = {each.operation for each in who_can.found.nobody if each.active}
+        told |= {each.operation for each in who_can.found.others if each.active}
         assert told == active
     assert len(asked) / 2 <= others + 5, "a twentieth of ten seconds is five looks"
     last = who_can.found
