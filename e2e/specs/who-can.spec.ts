@@ -23,7 +23,7 @@ async function order(page: Page, url: string): Promise<void> {
 	expect(stored.ok(), await stored.text()).toBe(true);
 }
 
-test('without the robot it is said at once who can still do what, and the bolts are tightened by hand @theme', async ({
+test('without the robot it is said at once who can still do what, and the bolts are tightened by hand @theme @long', async ({
 	operate,
 	station,
 	browse
