@@ -142,19 +142,30 @@ def test_each_of_two_that_are_needed_is_named_and_one_of_no_use_is_not() -> None
     assert nobody(found(rig.execution, rig.now))["take_filter_tool"] == [titles["robot"], titles["scene"]]
 
 
-def test_it_is_looked_at_seldom_while_the_same_is_absent() -> None:
+def test_it_is_looked_at_seldom_but_at_once_when_something_else_is_absent_or_active() -> None:
     rig = Rig()
     rig.start_production()
     out(rig, ServiceKind.RESOURCE, "robot")
-    seconds = iter([0.0, 0.1] * 1000)
-    who_can = WhoCan(rig.execution, at_once, lambda: next(seconds))  # each look takes a tenth of a second
-    looks, last = 0, None
+    asked: list[float] = []
+
+    def clock() -> float:
+        """Each look takes a tenth of a second."""
+        asked.append(len(asked) * 0.1)
+        return asked[-1]
+
+    who_can, others = WhoCan(rig.execution, at_once, clock), 1
+    active = rig.execution.active
     for _ in range(100):
         rig.run(0.1)
+        others += rig.execution.active != active
+        active = rig.execution.active
         who_can.look((), rig.now)
-        looks += who_can.found is not last
-        last = who_can.found
-    assert 1 <= looks <= 3, "a fiftieth of ten seconds is two looks"
+        assert who_can.found is not None
+        told = {each.operation for each in who_can.found.nobody if each.active}
+        told |= {each.operation for each in who_can.found.others if each.active}
+        assert told == active
+    assert len(asked) / 2 <= others + 5, "a twentieth of ten seconds is five looks"
+    last = who_can.found
     out(rig, ServiceKind.RESOURCE, "nutrunner")
     who_can.look((), rig.now)
     assert who_can.found is not last, "something else is absent"

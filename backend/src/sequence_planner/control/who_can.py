@@ -21,8 +21,8 @@ from sequence_planner.control.who_can_view import AbsenceReason, AbsenceView, Do
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.planning.relaxed.remaining import Absent, Remaining
 
-# It is looked at in between ticks: at once when something else is absent, else so seldom that it takes a fiftieth.
-_SHARE = 50.0
+# It is looked at at once when something else is absent or active, else so seldom that it takes a twentieth of a core.
+_SHARE = 20.0
 _AT_MOST_EVERY = 1.0  # seconds
 
 LOG = structlog.get_logger(__name__)
@@ -125,16 +125,15 @@ class _Look:
 class WhoCan:
     """Looks at `execution`, with `run` in the place where that may take time; `found` is None while all take part."""
 
-    def __init__(
-        self, execution: Execution, run: Run = at_once, clock: Callable[[], float] = time.perf_counter
-    ) -> None:
+    def __init__(self, execution: Execution, run: Run = at_once, clock: Callable[[], float] = time.thread_time) -> None:
         self._execution = execution
         self._run = run
         self._clock = clock
         self._absent = Absent()
-        self._about: tuple[object, ...] = ()
+        self._active: frozenset[str] = frozenset()
+        self._revision: int | None = None  # of the state that was looked at last
         self._runs = False
-        self._next = 0.0  # when it is looked at again, although nothing else is absent
+        self._next = 0.0  # when it is looked at again, although nothing else is absent or active
         self._took = 0.0  # seconds
         self.found: WhoCanView | None = None
         self.lacking: Mapping[str, frozenset[str]] = {}  # by operation that nobody can complete, what it lacks
@@ -148,12 +147,10 @@ class WhoCan:
         if not absent.names:
             self._absent, self.found, self.lacking = absent, None, {}
             return
-        if self._runs or (absent == self._absent and monotonic < self._next):
+        same = absent == self._absent and execution.active == self._active
+        if self._runs or (same and (monotonic < self._next or execution.revision == self._revision)):
             return
-        about = (execution.active, execution.revision)
-        if absent == self._absent and about == self._about:
-            return
-        self._absent, self._about, self._runs = absent, about, True
+        self._absent, self._active, self._revision, self._runs = absent, execution.active, execution.revision, True
         look = _Look(execution.automaton, execution.state, execution.active, tuple(self._wanted()), absent, silent)
         self._run(partial(self._timed, look), partial(self._take, absent))
         self._next = monotonic + max(_AT_MOST_EVERY, _SHARE * self._took)
@@ -167,7 +164,7 @@ class WhoCan:
         """None where it failed: then it is looked at again."""
         self._runs = False
         if answer is None:
-            self._about = ()
+            self._revision = None
         elif absent == self._absent:
             (self.found, self.lacking), self._took = answer
 

@@ -167,8 +167,7 @@ export const operate = {
 		by: (whom: string): string => `by ${whom}`,
 		goesOn: 'by what is already under way',
 		once: (what: string): string => `as soon as ${what}`,
-		later: (n: number): string => (n === 1 ? '1 more that comes later' : `${n} more that come later`),
-		none: 'Nothing of what is to be done now.',
+		later: (n: number): string => (n === 1 ? '1 that comes later' : `${n} that come later`),
 		absent: { silent: 'is not heard', 'out of service': 'is out of service' } as Readonly<Record<string, string>>
 	},
 	topics: {

@@ -166,8 +166,7 @@ export const operate: Text['operate'] = {
 		by: (whom) => `av ${whom}`,
 		goesOn: 'av det som redan pågår',
 		once: (what) => `så snart ${what}`,
-		later: (n) => (n === 1 ? '1 till som kommer senare' : `${n} till som kommer senare`),
-		none: 'Inget av det som ska göras nu.',
+		later: (n) => (n === 1 ? '1 som kommer senare' : `${n} som kommer senare`),
 		absent: { silent: 'hörs inte', 'out of service': 'är ur drift' }
 	},
 	topics: {
