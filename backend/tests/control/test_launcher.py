@@ -143,11 +143,12 @@ def test_a_spare_that_has_died_too_does_no_harm(monkeypatch: pytest.MonkeyPatch)
     watched, alive, spare = spared(monkeypatch)
     for each in (spare, alive):
         os.kill(each, signal.SIGKILL)
-    after = starts(watched, 1)
-    assert after
-    eventually(lambda: looked_after(watched) == 0 and watched.process is not None)
-    assert watched.process is not None
-    assert watched.process.pid not in (alive, spare)
+
+    def goes_on() -> bool:
+        assert looked_after(watched) == 0
+        return watched.process is not None and watched.process.pid not in (alive, spare)
+
+    eventually(goes_on)
     end(watched)
 
 
