@@ -19,6 +19,7 @@ from cli.commands import command
 from control.journalling import journal
 from control.rig import TRUCK_ENGINE, ready
 from history.journalled import NOW, life, worked
+from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.structure import Kind, VariableDeclaration
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.happenings import Confirmed
@@ -35,6 +36,8 @@ from sequence_planner.history.replay import Replayed, replay
 from sequence_planner.history.restoring import beginning
 from sequence_planner.immutable import replace
 from sequence_planner.journal import run_journal
+from sequence_planner.journal.archive_file import ArchiveError
+from sequence_planner.journal.retention import trim
 from sequence_planner.journal.whole_run import WholeRun
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
@@ -68,6 +71,26 @@ def test_the_work_is_replayed_bit_for_bit(past: Worked) -> None:
     assert found[-1].execution.state == execution.state
     assert found[-1].execution.plan.order == execution.plan.order
     assert any(json.loads(each.record.content).get("started") for each in found), "it has worked"
+
+
+def test_what_is_in_the_archive_is_replayed_as_before(tmp_path: Path) -> None:
+    (folder := tmp_path / "archive").mkdir()
+    with worked(40.0) as (database, execution):
+        before = replayed(database)
+        trimmed = trim(database, NOW.epoch + 40.0, SYSTEM, folder)
+        assert 0 < trimmed.begin < len(before)
+        after = replayed(database)
+        assert [each.record for each in after] == [each.record for each in before]
+        assert [each.difference for each in after if each.difference] == []
+        assert after[-1].execution.state == execution.state
+        with database.reading() as connection:
+            run = WholeRun(connection)
+            for number in (2, trimmed.begin, trimmed.begin + 1):
+                moment = looking_back(run, AUTOMATON, SUPERVISOR, number)
+                assert moment.record == before[number - 1].record
+        next(folder.iterdir()).unlink()
+        with database.reading() as connection, pytest.raises(ArchiveError, match="is not there: put it back"):
+            looking_back(WholeRun(connection), AUTOMATON, SUPERVISOR, 2)
 
 
 def test_another_process_replays_it_too(past: Worked) -> None:

@@ -78,7 +78,7 @@ def test_what_is_old_is_archived_and_read_as_before(lonely_server: Server, ada: 
     assert before["settings"]["folder"] == str(folder)
     history = ada.get("/api/v1/history", params={"limit": 50}).json()
     exported = ada.get("/api/v1/history/export").text
-    line = ada.get("/api/v1/history/line", params={"since": 20, "until": 80}).json()
+    moments = [ada.get("/api/v1/history/at", params={"time": each}).json() for each in (0, 20, 88.5, 93)]
 
     after = archive(ada)
     assert (after["trouble"], after["last"]["records"], after["last"]["orders"]) == (None, 89, 3)
@@ -91,9 +91,9 @@ def test_what_is_old_is_archived_and_read_as_before(lonely_server: Server, ada: 
 
     assert ada.get("/api/v1/history", params={"limit": 50}).json() == history
     assert ada.get("/api/v1/history/export").text == exported
-    assert ada.get("/api/v1/history/line", params={"since": 20, "until": 80}).json() == line
+    assert [ada.get("/api/v1/history/at", params={"time": each}).json() for each in (0, 20, 88.5, 93)] == moments
     older = ada.get("/api/v1/history", params={"before": 11, "limit": 5, "kinds": "snapshot,ticked"}).json()
-    assert [each["number"] for each in older["records"]] == [9, 8, 7, 6, 5]
+    assert [each["number"] for each in older["records"]] == [10, 9, 8, 7, 6]
     figures = ada.get("/metrics").text
     assert f'sequence_planner_storage_bytes{{of="archive"}} {float(after["sizes"]["archive"])}' in figures
     assert "sequence_planner_retention_in_trouble 0.0" in figures

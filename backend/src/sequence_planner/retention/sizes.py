@@ -125,10 +125,18 @@ def folder_size(folder: Path) -> int:
 
 def free_on_disk(path: Path) -> int | None:
     """Bytes that are free on the disk of a path, or of the first folder above it that is there."""
-    for each in (path, *path.parents):
-        with contextlib.suppress(OSError):
-            return shutil.disk_usage(each).free
-    return None
+    there = _there(path)
+    return None if there is None else shutil.disk_usage(there).free
+
+
+def are_on_one_disk(path: Path, other: Path) -> bool:
+    """Whether what takes room from one takes it from the other."""
+    first, second = _there(path), _there(other)
+    return first is not None and second is not None and first.stat().st_dev == second.stat().st_dev
+
+
+def _there(path: Path) -> Path | None:
+    return next((each for each in (path, *path.parents) if each.exists()), None)
 
 
 def _size(file: Path) -> int:

@@ -14,7 +14,7 @@ _MOST_NAMED: Final = 3
 
 
 def left_of(place: SqliteFile | PostgresqlServer) -> list[Path]:
-    """What a station with this database has left beside it: keys, last word, revisions of its model, archive."""
+    """What a station with this database has left beside it: keys, last word, archive, revisions of its model."""
     if isinstance(place, PostgresqlServer):
         mark = hashlib.sha256(str(place).encode()).hexdigest()[:8]
         return sorted(state_folder().glob(f"*-{mark}*")) if state_folder().is_dir() else []

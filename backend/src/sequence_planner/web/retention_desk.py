@@ -24,6 +24,7 @@ from sequence_planner.retention.keeping import Done, Task
 from sequence_planner.retention.settings import Retention
 from sequence_planner.retention.sizes import (
     Day,
+    are_on_one_disk,
     database_size,
     folder_size,
     free_on_disk,
@@ -156,6 +157,8 @@ class RetentionDesk:
         size, unused = database_size(connection, place)
         index, orders = self._archive.index(connection), order_files(connection)
         paths = [*(self._archive.path(each) for each in index.segments), *(each.path() for each in orders)]
+        free = free_on_disk(place.path) if isinstance(place, SqliteFile) else None
+        same_disk = isinstance(place, SqliteFile) and are_on_one_disk(place.path, self.folder)
         sizes = Sizes(
             database=size,
             unused=unused,
@@ -163,8 +166,8 @@ class RetentionDesk:
             orders=orders_size(connection),
             archive=sum(each.size for each in index.segments) + sum(each.size for each in orders),
             backups=folder_size(backups_folder(self._url, self._model)),
-            free=free_on_disk(place.path) if isinstance(place, SqliteFile) else None,
-            archive_free=free_on_disk(self.folder),
+            free=free,
+            archive_free=free if same_disk else free_on_disk(self.folder),
         )
         missing = tuple(str(path) for path in paths if not path.is_file())
         days = growth(connection, self._office.now(), blocks)
