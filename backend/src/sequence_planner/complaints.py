@@ -7,12 +7,18 @@ from typing import Any
 
 from pydantic import ValidationError
 
+# What pydantic says of these is about Python.
+_WORDS = {
+    "model_attributes_type": "Input should be an object with named members",
+    "string_unicode": "Input should be text that UTF-8 can write, without half of a surrogate pair",
+}
+
 
 def complained(details: Mapping[str, Any]) -> str:
     """The message of one of pydantic's errors, as in its `ErrorDetails`; without the name of the exception, which it
-    writes before what our own validators say.
+    writes before what our own validators say, and without words of Python.
     """
-    message = str(details["msg"])
+    message = _WORDS.get(details["type"], str(details["msg"]))
     return message.partition(", ")[2] if details["type"] in ("value_error", "assertion_error") else message
 
 

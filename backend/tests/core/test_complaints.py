@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Annotated
 
 import pytest
-from pydantic import AfterValidator, BaseModel, ValidationError
+from pydantic import AfterValidator, BaseModel, Field, ValidationError
 
 from sequence_planner.complaints import complained, in_a_line
 
@@ -36,3 +36,16 @@ def test_what_a_validator_says_is_told_as_it_says_it(value: object, told: str) -
     (details,) = error.value.errors()
     assert complained(details) == told
     assert in_a_line(error.value) == f"number: {told}"
+
+
+class Named(BaseModel):
+    name: Annotated[str, Field(min_length=1)]
+
+
+def test_nothing_is_said_of_python() -> None:
+    with pytest.raises(ValidationError) as error:
+        Named.model_validate({"name": "\ud800"})
+    assert in_a_line(error.value).endswith("without half of a surrogate pair")
+    with pytest.raises(ValidationError) as error:
+        Named.model_validate("x", from_attributes=True)
+    assert in_a_line(error.value) == "it: Input should be an object with named members"

@@ -114,3 +114,9 @@ def test_a_command_about_the_longest_name_can_be_recorded(of: ServiceKind) -> No
     entry = entry_of(command)
     assert len(entry.subject) == LONGEST_SUBJECT
     assert entry.details["name"] == command.name
+
+
+@pytest.mark.parametrize("body", [b'{"a": "\xff"}', b"[" * 50_000, b'{"a":' * 5_000 + b"1" + b"}" * 5_000])
+def test_a_body_that_cannot_be_read_says_what_it_has_to_be(client: httpx.Client, body: bytes) -> None:
+    answer = client.post("/api/v1/job-orders", content=body, headers={"Content-Type": "application/json"})
+    assert problem(answer, 400, "bad-request")["detail"].startswith("The body cannot be read: it has to be JSON")

@@ -44,7 +44,7 @@ def snippet(page: str, part: str) -> str:
     return str(found)
 
 
-def typed(lines: str, folder: Path, *, seconds: float = 30, **environment: str) -> str:
+def typed(lines: str, folder: Path, seconds: float = 30, /, **environment: str) -> str:
     """What is printed when all of `lines` are typed; every request must be granted but those that are waited for."""
     done = subprocess.run(
         ["bash", "-e", "-c", CURL + lines],

@@ -39,6 +39,9 @@ SLUGS = {
     413: "body-too-large",
     500: "internal-error",
 }
+# What FastAPI says of a body that Python's parser of JSON gives up.
+UNREAD = "There was an error parsing the body"
+UNREADABLE = "The body cannot be read: it has to be JSON in UTF-8, and not nested more than some hundred times."
 DETAILS = {
     404: "There is nothing at this address. GET /api/v1/openapi.json describes what there is.",
     405: "This address does not know the method; the header Allow names those it knows.",
@@ -139,7 +142,7 @@ async def _http(request: Request, error: Exception) -> Response:
         )
     status = error.status_code
     title = HTTPStatus(status).phrase
-    detail = DETAILS.get(status, str(error.detail))
+    detail = DETAILS.get(status, UNREADABLE if error.detail == UNREAD else str(error.detail))
     headers = dict(error.headers or {})
     if status == 405 and (methods := _methods(request)):
         headers["Allow"] = ", ".join(sorted(methods))
