@@ -94,6 +94,7 @@ class Discovery:
                 seen.participant_key == self._own,
                 self._node(seen),
                 vendor_of(seen.participant_key),
+                names.tells_mapping(user_data(seen.qos)),
             )
             for direction, known in self._known.items()
             for seen in known.values()
