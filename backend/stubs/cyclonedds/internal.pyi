@@ -1,3 +1,5 @@
+from ctypes import CDLL
+
 class SampleInfo:
     instance_state: int
     valid_data: bool
@@ -17,3 +19,5 @@ class IncompatibleQosStatus(CountedStatus):
 class LivelinessChangedStatus:
     not_alive_count: int
     not_alive_count_change: int
+
+def load_cyclonedds() -> CDLL: ...

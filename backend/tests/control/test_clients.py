@@ -8,10 +8,15 @@ import time
 from pathlib import Path
 
 import pytest
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
 
 from control.asking import Asking, Stirrer
 from control.mixing import (
+    DOMAIN,
     FLUSH,
+    FLUSH_TYPE,
     LEVEL,
     LEVEL_TYPE,
     MIXER,
@@ -26,6 +31,8 @@ from control.mixing import (
     value,
 )
 from sequence_planner.ros.actions import GoalStatus
+from sequence_planner.ros.cyclone_network import release
+from sequence_planner.ros.cyclone_types import raw_types
 from sequence_planner.station import prepare_station
 
 KINDS = ["memory", "cyclonedds"]
@@ -48,6 +55,26 @@ def test_an_operation_is_carried_out_with_services_and_an_action(kind: str) -> N
         assert alarms(controller) == []
 
     play(kind, scenario)
+
+
+def test_a_server_of_another_mapping_is_an_alarm_before_anything_is_asked_of_it() -> None:
+    """It stands where rmw_fastrtps has a server: on the topic of requests, with nothing that tells its mapping."""
+
+    async def scenario(plant: Plant) -> None:
+        controller = plant.controller(mixer()[1])
+        participant, registry = DomainParticipant(DOMAIN), plant.station.registry
+        raw = raw_types(registry)(f"{FLUSH_TYPE}_Request")
+        reader = DataReader(participant, Topic(participant, f"rq{FLUSH}Request", raw))
+
+        def told() -> list[str]:
+            return [each for each in alarms(controller) if "nothing is asked of it" in each]
+
+        await until(told, "it is told")
+        assert told()[0].startswith(f"another node serves {FLUSH} on Eclipse Cyclone DDS (rmw_cyclonedds_cpp)")
+        release(reader)
+        await until(lambda: not told(), "it is not told any more")
+
+    play("cyclonedds", scenario)
 
 
 @pytest.mark.parametrize("kind", KINDS)

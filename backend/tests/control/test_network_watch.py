@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from control.bench import COMMAND, COMMAND_TYPE, STATE, STATE_TYPE, cell
+from control.mixing import FLUSH, FLUSH_TYPE, STIR, STIR_TYPE, mixer
 from sequence_planner.control.network_watch import NetworkWatch
+from sequence_planner.ros.service_graph import ServiceEnd
 from sequence_planner.ros.transport import Endpoint
 
 REPORTS = Endpoint(
@@ -75,3 +77,29 @@ def test_devices_are_those_of_one_node_when_nobody_else_speaks_or_obeys() -> Non
         f"/devices is not yet on {STATE}",
         f"another node is on {STATE}",
     ]
+
+
+def test_a_server_that_writes_calls_otherwise_is_told_until_it_has_gone() -> None:
+    station = mixer()[0]
+    network = NetworkWatch(station.pipelines, station.registry)
+    flush = ServiceEnd(FLUSH, FLUSH_TYPE, "server", False, "/tank", "eProsima Fast DDS", understood=False)
+    stir = replace(
+        flush, service=f"{STIR}/_action/send_goal", type_name=f"{STIR_TYPE}_SendGoal", node=None, vendor=None
+    )
+    harmless = (
+        replace(flush, understood=True),
+        replace(flush, own=True),
+        replace(flush, role="client"),
+        replace(flush, service="/else"),
+    )
+    network.look([], harmless)
+    assert not network.troubles
+    network.look([], [*harmless, flush, stir])
+    says = "whose calls are written otherwise than this station's: nothing is asked of it"
+    assert network.troubles == {
+        f"{FLUSH} response": f"/tank serves {FLUSH} on eProsima Fast DDS (rmw_fastrtps_cpp), {says}",
+        f"{STIR} status": f"another node carries out {STIR} on another DDS, {says}",
+    }
+    assert {network.resource_of(each) for each in network.troubles} == {"tank"}
+    network.look([], [])
+    assert not network.troubles

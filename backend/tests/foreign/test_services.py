@@ -23,11 +23,13 @@ from sequence_planner.ros import names
 from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.cyclone_network import loopback_configuration
 from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.service_graph import TellsServices
 from sequence_planner.ros.transport import NoAnswerError, NoServerError, Transport
 
 DOMAIN = 1 + (os.getpid() + 25) % 100
 Role = tuple[str, ...]
 ASKS_AS_WE_DO, SERVES_AS_WE_DO = (ROS2_CLIENT, "call", "cyclone"), (ROS2_CLIENT, "serve", "cyclone")
+VENDORS = {FAST_DDS: "eProsima Fast DDS", ROS2_CLIENT: "RustDDS"}
 LOOKING = "asked 0 + 0"
 SERVICE, TYPE = "/add_two_ints", "example_interfaces/srv/AddTwoInts"
 
@@ -73,6 +75,10 @@ def test_a_server_that_does_not_tell_its_mapping_is_not_called(registry: Message
         with pytest.raises(NoServerError, match="it would execute garbage, so nothing was sent"):
             await station.call(SERVICE, TYPE, request, PATIENCE)
         assert peer.lines == []
+        station.graph()
+        assert isinstance(station, TellsServices)
+        [server] = [end for end in station.services() if end.role == "server"]
+        assert (server.service, server.vendor, server.understood) == (SERVICE, VENDORS[role[0]], False)
 
     play(registry, role, scenario)
 
@@ -114,9 +120,34 @@ def test_a_client_that_does_not_tell_its_mapping_is_not_answered(registry: Messa
                 await eventually(lambda: log, "the request is noticed")
             await asyncio.sleep(2)  # in which the client asks some ten times
         assert (asked, peer.lines) == ([], [])
-        assert ["(no clientid)" in event["event"] for event in log] == [True] * (role == ASKS_AS_WE_DO)
+        dropped = [event for event in log if "(no clientid)" in event["event"]]
+        assert len(dropped) == (role == ASKS_AS_WE_DO)
 
     play(registry, role, scenario)
+
+
+def test_a_client_on_fast_dds_is_named_once_and_does_not_fill_the_log(
+    registry: MessageRegistry, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """What it sends has no header, and Cyclone writes a line for each request that it cannot read."""
+
+    async def scenario(station: Transport, peer: Peer) -> None:
+        async def add(request: bytes) -> bytes:
+            raise AssertionError(request)
+
+        with capture_logs() as log:
+            station.serve(SERVICE, TYPE, add)
+            await eventually(lambda: log, "the client is noticed")
+            capfd.readouterr()
+            await asyncio.sleep(3)  # in which it asks some thirty times
+        [told] = log
+        assert "neither asked nor answered: run both with the same RMW_IMPLEMENTATION" in told["event"]
+        assert (told["service"], told["role"]) == (SERVICE, "client")
+        assert (told["peer"], told["middleware"]) == ("not named", "eProsima Fast DDS (rmw_fastrtps_cpp)")
+        assert capfd.readouterr().err == ""
+        assert peer.lines == []
+
+    play(registry, (FAST_DDS, "ask"), scenario)
 
 
 @pytest.mark.usefixtures("vouched")

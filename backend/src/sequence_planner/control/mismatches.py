@@ -11,7 +11,9 @@ from sequence_planner.ros.actions import ActionNames
 from sequence_planner.ros.derived import GOAL_STATUSES
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.quality import Direction, QualityOfService, disagreements
+from sequence_planner.ros.service_graph import ServiceEnd
 from sequence_planner.ros.transport import Endpoint
+from sequence_planner.ros.vendors import worded as worded_vendor
 
 Policy = Literal["reliability", "durability", "deadline", "liveliness"]
 
@@ -56,6 +58,31 @@ def uses(pipelines: StationPipelines, registry: MessageRegistry) -> dict[str, Us
     for name, outgoing in pipelines.outgoing.items():
         found[name] = Use(outgoing.topic, "publisher", registry.type_hash(outgoing.topic.type_name))
     return found
+
+
+@dataclass(frozen=True)
+class CallUse:
+    """What the station makes of a service or an action: `part` is the name of the pipeline that its answers come by."""
+
+    part: str
+    resource: str
+
+
+def call_uses(pipelines: StationPipelines) -> dict[str, CallUse]:
+    """The services that the station calls, by name; an action's is the one that takes its goals."""
+    services = {name: use.response for name, use in pipelines.services.items()}
+    goals = {ActionNames(name).send_goal: use.status for name, use in pipelines.actions.items()}
+    return {name: CallUse(part.name, part.topic.resource) for name, part in (services | goals).items()}
+
+
+def not_understood(end: ServiceEnd) -> str:
+    """What to say of a server that puts the numbers of calls elsewhere than the station does."""
+    name, is_action, _ = end.service.partition("/_action/")
+    does = "carries out" if is_action else "serves"
+    return (
+        f"{end.node or 'another node'} {does} {name} on {worded_vendor(end.vendor)}, whose calls are written otherwise "
+        "than this station's: nothing is asked of it"
+    )
 
 
 def mismatches(endpoint: Endpoint, use: Use) -> list[Mismatch]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from sequence_planner.control.mismatches import mismatches, uses
+from sequence_planner.control.mismatches import call_uses, mismatches, not_understood, uses
 from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.service_graph import ServiceEnd
@@ -14,14 +14,15 @@ from sequence_planner.ros.transport import Endpoint
 class NetworkWatch:
     """The last look at the graph, as it concerns the station's topics.
 
-    `peers` counts those that can be understood, `troubles` and `rivals` say in words what is wrong with others. As long
-    as the station only listens (`commands` is false), whoever commands its devices is no rival, unless the station
-    `waits` for that one to end.
+    `peers` counts those that can be understood, `troubles` and `rivals` say in words what is wrong with others. They go
+    by topic, or by the part of a service or action that answers. As long as the station only listens (`commands` is
+    false), whoever commands its devices is no rival, unless the station `waits` for that one to end.
     `seen` is all that there was, also on other topics, and of services where the transport can tell.
     """
 
     def __init__(self, pipelines: StationPipelines, registry: MessageRegistry) -> None:
         self.uses = uses(pipelines, registry)
+        self._calls = call_uses(pipelines)
         self.commands = self.waits = False
         self._speaking: set[str] = set()  # incoming topics that had a publisher
         self.seen: tuple[Sequence[Endpoint], Sequence[ServiceEnd] | None] = ((), None)
@@ -48,8 +49,18 @@ class NetworkWatch:
                 (self.rivals if each.kind == "rival" else self.troubles)[endpoint.topic] = each.text
             if not found and endpoint.direction == use.peer:
                 self.peers[endpoint.topic] += 1
+        for end in ends or ():
+            call = self._calls.get(end.service)
+            if call is not None and end.role == "server" and not (end.own or end.understood):
+                self.troubles[call.part] = not_understood(end)
         gone, self._speaking = self._speaking - speaking, speaking
         return frozenset(gone)
+
+    def resource_of(self, trouble: str) -> str:
+        """The resource whose topic, or whose service or action, has trouble."""
+        if trouble in self.uses:
+            return self.uses[trouble].topic.resource
+        return next(call.resource for call in self._calls.values() if call.part == trouble)
 
     def strangers(self, graph: Sequence[Endpoint], node: str) -> list[str]:
         """What speaks against the devices being those of `node` alone: topics it is missing on, and who else is there.

@@ -25,6 +25,7 @@ from sequence_planner.ros.cyclone_network import join, release
 from sequence_planner.ros.cyclone_qos import endpoint_qos
 from sequence_planner.ros.cyclone_receiver import Receiver
 from sequence_planner.ros.cyclone_services import CycloneServices
+from sequence_planner.ros.cyclone_strangers import Strangers
 from sequence_planner.ros.cyclone_types import RawSample, raw_types
 from sequence_planner.ros.delivery import Delivery
 from sequence_planner.ros.messages import MessageRegistry
@@ -87,6 +88,7 @@ class CycloneTransport:
         self._services = CycloneServices(
             self._participant, registry, self._raw, self._receiver, loop, self._discovery.told_on
         )
+        self._strangers = Strangers(loop, self._discovery.services_now)
         self._announce()
 
     def advertise(self, topic: str, type_name: str, qos: QualityOfService) -> None:
@@ -139,6 +141,7 @@ class CycloneTransport:
         self._check_open()
         if not self._services.has_client(service, type_name):
             self._services.add_client(service, type_name)
+            self._strangers.add(service)
             self._announce()
         return await self._services.call(service, type_name, request, within, sending)
 
@@ -146,6 +149,7 @@ class CycloneTransport:
         """Answer requests; see `Transport.serve`."""
         self._check_open()
         self._services.serve(service, type_name, handler)
+        self._strangers.add(service)
         self._announce()
 
     async def describe(self, endpoint: Endpoint, within: float) -> TypeDescription | None:
@@ -174,6 +178,7 @@ class CycloneTransport:
         for _, delivery in self._readers:
             delivery.close()
         self._watchers.clear()
+        self._strangers.close()
         self._services.close()
         self._receiver.close()
         self._events.close()

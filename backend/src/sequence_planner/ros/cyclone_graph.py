@@ -6,7 +6,7 @@ node it belongs. We publish that too, which makes this process a node that `ros2
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Container, Iterable
 from uuid import UUID
 
 import structlog
@@ -85,8 +85,18 @@ class Discovery:
             if (topic := names.ros_topic(seen.topic_name)) is not None
         ]
 
-    def services(self) -> list[ServiceEnd]:
-        """Return the servers and clients of ROS 2 services that were on the network at the last look at endpoints."""
+    def services_now(self, services: Collection[str]) -> list[ServiceEnd]:
+        """Return the servers and clients of these services that are on the network now."""
+        for direction in self._known:
+            self._refresh(direction)
+        self._refresh_nodes()
+        return self.services(set(map(names.dds_requests, services)))
+
+    def services(self, among: Container[str] | None = None) -> list[ServiceEnd]:
+        """Return the servers and clients of ROS 2 services that were on the network at the last look at endpoints.
+
+        With `among`, those alone whose DDS topic of requests is among these.
+        """
         return [
             ServiceEnd(
                 *service,
@@ -94,9 +104,11 @@ class Discovery:
                 seen.participant_key == self._own,
                 self._node(seen),
                 vendor_of(seen.participant_key),
+                names.tells_mapping(user_data(seen.qos)),
             )
             for direction, known in self._known.items()
             for seen in known.values()
+            if among is None or seen.topic_name in among
             if (service := names.ros_service(seen.topic_name, seen.type_name)) is not None
         ]
 

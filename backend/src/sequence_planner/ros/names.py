@@ -55,7 +55,12 @@ def ros_topic(dds_name: str) -> str | None:
 def dds_service(service: str) -> tuple[str, str]:
     """Return the DDS topics of requests and of replies of a ROS 2 service; raises ValueError for a bad name."""
     check_topic(service)
-    return f"rq{service}Request", f"rr{service}Reply"
+    return dds_requests(service), f"rr{service}Reply"
+
+
+def dds_requests(service: str) -> str:
+    """Return the DDS topic of requests of a ROS 2 service that is there, whatever its name."""
+    return f"rq{service}Request"
 
 
 def ros_service(dds_name: str, dds_type_name: str) -> tuple[str, str] | None:
@@ -88,6 +93,11 @@ def client_of(user_data: bytes) -> str | None:
     """Return the identity of the client an endpoint belongs to, or None when it does not say."""
     match = _CLIENT.search(user_data)
     return match.group(1).decode() if match else None
+
+
+def tells_mapping(user_data: bytes) -> bool:
+    """Return whether an endpoint says that it belongs to a server or a client of rmw_cyclonedds."""
+    return server_of(user_data) is not None or client_of(user_data) is not None
 
 
 def _dotted(identity: bytes) -> str:

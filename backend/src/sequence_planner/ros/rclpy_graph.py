@@ -17,16 +17,16 @@ from rclpy.topic_endpoint_info import TopicEndpointInfo
 from sequence_planner.ros import names
 from sequence_planner.ros.derived import ServiceType
 from sequence_planner.ros.rclpy_qos import seconds
-from sequence_planner.ros.service_graph import ServiceEnd
+from sequence_planner.ros.service_graph import Role, ServiceEnd
 from sequence_planner.ros.serving import check_hashes
 from sequence_planner.ros.transport import Direction, Endpoint, NoServerError
-from sequence_planner.ros.vendors import vendor_of
+from sequence_planner.ros.vendors import vendor_of, worded
 
 #: What the middleware calls a node that has not told its name yet.
 _UNNAMED = "_NODE_NAME_UNKNOWN_"
 
 #: What every rclpy node publishes unasked.
-_UNASKED = {"/parameter_events"}
+_UNASKED = "/parameter_events"
 
 
 def endpoints(node: Node, own_name: str, published: Set[str], subscribed: Mapping[str, int]) -> list[Endpoint]:
@@ -37,20 +37,36 @@ def endpoints(node: Node, own_name: str, published: Set[str], subscribed: Mappin
     """
     found = []
     for topic, _ in node.get_topic_names_and_types():
-        publishers = int(topic in published or topic in _UNASKED)
+        publishers = int(topic in published or topic == _UNASKED)
         found += _of_topic(topic, "publisher", node.get_publishers_info_by_topic(topic), own_name, publishers)
         subscribers = subscribed.get(topic, 0)
         found += _of_topic(topic, "subscriber", node.get_subscriptions_info_by_topic(topic), own_name, subscribers)
     return found
 
 
-def service_ends(node: Node) -> list[ServiceEnd]:
-    """Return a server for each service that `node` knows; rclpy does not say whose it is, nor who calls it."""
-    return [
-        ServiceEnd(service, type_name, "server", False, None)
-        for service, type_names in node.get_service_names_and_types()
-        for type_name in type_names
-    ]
+def service_ends(node: Node, own_name: str, served: Set[str], called: Mapping[str, int]) -> list[ServiceEnd]:
+    """Return the servers and clients of all services that `node` knows.
+
+    `own_name` is the node's full name, `served` are the services that it serves, and `called` counts its clients by
+    service. A server reads the topic of requests, and a client writes it.
+    """
+    unasked = _of_topic(_UNASKED, "publisher", node.get_publishers_info_by_topic(_UNASKED), own_name, 1)
+    vendor = next((each.vendor for each in unasked if each.own), None)
+    found = []
+    for service, _ in node.get_service_names_and_types():
+        requests = names.dds_requests(service)
+        readers = node.get_subscriptions_info_by_topic(requests, no_mangle=True)
+        writers = node.get_publishers_info_by_topic(requests, no_mangle=True)
+        ends: list[tuple[Role, list[Endpoint]]] = [
+            ("server", _of_topic(requests, "subscriber", readers, own_name, int(service in served))),
+            ("client", _of_topic(requests, "publisher", writers, own_name, called.get(service, 0))),
+        ]
+        for role, endpoints_ in ends:
+            for each in endpoints_:
+                named = names.ros_service(requests, each.type_name)
+                if named is not None:
+                    found.append(ServiceEnd(*named, role, each.own, each.node, each.vendor, each.vendor == vendor))
+    return found
 
 
 def check_servers(node: Node, service: str, type_name: str, hash_of: Callable[[str], str]) -> None:
@@ -66,8 +82,8 @@ def check_servers(node: Node, service: str, type_name: str, hash_of: Callable[[s
     for info in node.get_subscriptions_info_by_topic(requests, no_mangle=True):
         if vendors and _vendor(info) not in vendors:
             raise NoServerError(
-                f"{service} is served by a program on {_vendor(info) or 'another DDS'}, which cannot tell apart calls "
-                f"that come from {' or '.join(sorted(map(str, vendors)))}; it would execute garbage, so nothing was "
+                f"{service} is served by a program on {worded(_vendor(info))}, which cannot tell apart calls "
+                f"that come from {' or '.join(sorted(map(worded, vendors)))}; it would execute garbage, so nothing was "
                 "sent. Run both with the same RMW_IMPLEMENTATION"
             )
         check_hashes(service, types.request, _hash(info), hash_of(types.request))

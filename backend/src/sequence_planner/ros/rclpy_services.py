@@ -11,6 +11,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
+from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
@@ -50,6 +51,16 @@ class RclpyServices:
         self._servers: dict[str, Service] = {}
         self._waiting: set[asyncio.Future[bytes]] = set()
         self._serving = Serving()
+
+    @property
+    def served(self) -> set[str]:
+        """The services that are served here."""
+        return set(self._servers)
+
+    @property
+    def called(self) -> Counter[str]:
+        """The clients here, by service."""
+        return Counter(service for service, _ in self._clients)
 
     async def call(
         self, service: str, type_name: str, request: bytes, within: float, sending: Sending = unhindered

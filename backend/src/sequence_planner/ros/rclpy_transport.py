@@ -169,7 +169,7 @@ class RclpyTransport:
     def services(self) -> list[ServiceEnd]:
         """Return the services known; see `TellsServices`."""
         self._check_open()
-        return service_ends(self._node)
+        return service_ends(self._node, f"/{self._node_name}", self._services.served, self._services.called)
 
     def close(self) -> None:
         """Leave the domain; see `Transport.close`."""

@@ -12,7 +12,8 @@ Role = Literal["server", "client"]
 class ServiceEnd:
     """A server or a client of a service, `type_name` as in `package/srv/Name`; `own` is this transport's.
 
-    `node` and `vendor` (of its middleware) are None where it does not tell.
+    `node` and `vendor` (of its middleware) are None where it does not tell. It is `understood` where it puts the number
+    of a call in the same place as this transport does.
     """
 
     service: str
@@ -21,6 +22,7 @@ class ServiceEnd:
     own: bool
     node: str | None
     vendor: str | None = None
+    understood: bool = True
 
 
 @runtime_checkable

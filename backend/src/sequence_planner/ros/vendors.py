@@ -18,6 +18,24 @@ _VENDORS = {
     0x0114: "Dust DDS",
 }
 
+#: The middleware of ROS 2 that each runs under, as RMW_IMPLEMENTATION names it.
+_MIDDLEWARES = {
+    "RTI Connext DDS": "rmw_connextdds",
+    "eProsima Fast DDS": "rmw_fastrtps_cpp",
+    "Eclipse Cyclone DDS": "rmw_cyclonedds_cpp",
+    "GurumDDS": "rmw_gurumdds_cpp",
+}
+
+
+def worded(vendor: str | None) -> str:
+    """Return what to call a vendor's DDS, with ROS 2's name for it.
+
+    >>> worded("eProsima Fast DDS")
+    'eProsima Fast DDS (rmw_fastrtps_cpp)'
+    """
+    middleware = _MIDDLEWARES.get(vendor or "")
+    return f"{vendor} ({middleware})" if middleware else vendor or "another DDS"
+
 
 def vendor_of(participant: UUID) -> str | None:
     """Return the vendor in the first two bytes of a participant's identifier, where RTPS puts it; None if unknown."""

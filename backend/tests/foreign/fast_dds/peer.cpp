@@ -4,6 +4,8 @@
 //   peer DOMAIN echo            says the text of /ping twice on /pong, /joints/in turned round on /joints/out, and
 //                               what it hears on /kept/in on /kept/out, which late joiners get as well
 //   peer DOMAIN serve           is where rmw_fastrtps would have a server of /add_two_ints, and prints what reaches it
+//   peer DOMAIN ask             is where rmw_fastrtps would have a client of it, asks ten times a second, and prints
+//                               what it is answered
 //   peer DOMAIN robot NAME      is robot_1 or robot_2 of the station with two robots and a buffer
 //
 // It stays on the loopback interface, prints a line per event and ends with its standard input.
@@ -225,6 +227,19 @@ void serve(Peer& peer) {
   peer.live([] {});
 }
 
+void ask(Peer& peer) {
+  auto send = peer.writer<AddRequest>("rq/add_two_intsRequest");
+  peer.reader<AddResponse>("rr/add_two_intsReply", [](const AddResponse& response) {
+    std::cout << "answered " << response.sum << std::endl;
+  });
+  auto asked = Clock::now();
+  peer.live([&] {
+    if (Clock::now() - asked < std::chrono::milliseconds(100)) return;
+    asked = Clock::now();
+    send({2, 3});
+  });
+}
+
 // A robot with a gripper between its own conveyor and the buffer. Parts come to the conveyor of robot_1, and leave that
 // of robot_2, in their own time.
 void robot(Peer& peer, const std::string& name) {
@@ -265,13 +280,14 @@ void robot(Peer& peer, const std::string& name) {
 
 int main(int count, char** words) {
   const std::string role = count > 2 ? words[2] : "";
-  if (!((role == "echo" || role == "serve") && count == 3) && !(role == "robot" && count == 4)) {
-    std::cerr << "peer DOMAIN echo | peer DOMAIN serve | peer DOMAIN robot NAME" << std::endl;
+  if (!((role == "echo" || role == "serve" || role == "ask") && count == 3) && !(role == "robot" && count == 4)) {
+    std::cerr << "peer DOMAIN echo | peer DOMAIN serve | peer DOMAIN ask | peer DOMAIN robot NAME" << std::endl;
     return 2;
   }
   Peer peer(std::stoi(words[1]));
   if (role == "echo") echo(peer);
   else if (role == "serve") serve(peer);
+  else if (role == "ask") ask(peer);
   else robot(peer, words[3]);
   return 0;
 }

@@ -134,14 +134,14 @@ class DeviceAlarms:
         """Of each resource one: what was built from other definitions is so on every topic."""
         troubles: dict[str, list[str]] = {}
         for topic, trouble in self._network.troubles.items():
-            troubles.setdefault(self._network.uses[topic].topic.resource, []).append(trouble)
+            troubles.setdefault(self._network.resource_of(topic), []).append(trouble)
         for resource, texts in troubles.items():
             yield Cause(
                 _mismatch_key(resource),
                 Priority.MEDIUM,
-                texts[0] if len(texts) == 1 else f"{len(texts)} topics of {resource} are not understood: {texts[0]}",
+                texts[0] if len(texts) == 1 else f"{len(texts)} links to {resource} are not understood: {texts[0]}",
                 "Nothing passes between that node and the station there.",
-                "Check which nodes run, and how they were built.",
+                "Check which nodes run, how they were built, and with which RMW_IMPLEMENTATION they were started.",
                 parts=() if len(texts) == 1 else tuple(texts),
                 past=f"Something on the topics of {resource} was not understood",
             )

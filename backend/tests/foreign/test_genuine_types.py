@@ -1,0 +1,60 @@
+"""Types that colcon has built, of all models and of ROS 2 itself, have the hashes that we give them."""
+
+from __future__ import annotations
+
+import importlib.util
+import json
+import os
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from running.stations import REPOSITORY
+from sequence_planner.ros.messages import MessageRegistry
+
+MODELS = sorted(path.parent for path in (REPOSITORY / "models").glob("*/messages"))
+
+
+def built() -> Iterator[tuple[str, Path]]:
+    """Yield each package that is installed in this ROS 2, and its folder."""
+    for prefix in os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep):
+        for marker in sorted(Path(prefix, "share/ament_index/resource_index/rosidl_interfaces").glob("*")):
+            yield marker.name, Path(prefix, "share", marker.name)
+
+
+def hashes_of(package: Path) -> dict[str, str]:
+    """What rosidl wrote of the types of a package, beside the code that it generated of them."""
+    described = [path for kind in ("msg", "srv", "action") for path in sorted(package.glob(f"{kind}/*.json"))]
+    return {
+        each["type_name"]: each["hash_string"]
+        for path in described
+        for each in json.loads(path.read_text(encoding="utf-8"))["type_hashes"]
+        if each["type_name"].startswith(f"{package.name}/")
+    }
+
+
+@pytest.mark.parametrize("model", MODELS, ids=lambda path: str(path.name))
+def test_the_messages_of_a_model_have_the_hashes_that_colcon_built(model: Path) -> None:
+    registry, folders = MessageRegistry.from_folder(model / "messages"), dict(built())
+    for package in sorted(path.name for path in (model / "messages").iterdir()):
+        if package not in folders or importlib.util.find_spec(package) is None:
+            pytest.skip(f"{package} is not built here: `sequence-planner messages {model}`, then colcon build")
+        theirs = hashes_of(folders[package])
+        ours = {name: registry.type_hash(name) for name in registry.type_names() if name.startswith(f"{package}/")}
+        assert ours
+        assert ours == theirs
+
+
+def test_the_types_of_ros_have_our_hashes() -> None:
+    registry, compared = MessageRegistry.from_folder(None), 0
+    known = {*registry.type_names(), *registry.service_names(), *registry.action_names()}
+    for package, folder in built():
+        for name, theirs in hashes_of(folder).items():
+            if name in known:
+                assert registry.type_hash(name) == theirs, name
+                compared += 1
+        assert package
+    if not compared:
+        pytest.skip("no interfaces of ROS 2 are installed here: run this suite where ROS 2 Jazzy is sourced")
+    assert compared > 100
