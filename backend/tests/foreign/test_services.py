@@ -23,7 +23,7 @@ from sequence_planner.ros import names
 from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.cyclone_network import loopback_configuration
 from sequence_planner.ros.messages import MessageRegistry
-from sequence_planner.ros.service_graph import TellsServices
+from sequence_planner.ros.service_graph import ServiceEnd, TellsServices
 from sequence_planner.ros.transport import NoAnswerError, NoServerError, Transport
 
 DOMAIN = 1 + (os.getpid() + 25) % 100
@@ -44,6 +44,12 @@ def vouched(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whoever serves or asks is taken to speak the station's mapping."""
     monkeypatch.setattr(names, "server_of", lambda data: b"vouched")
     monkeypatch.setattr(names, "client_of", lambda data: b"vouched")
+
+
+def servers(station: Transport) -> list[ServiceEnd]:
+    station.graph()
+    assert isinstance(station, TellsServices)
+    return [end for end in station.services() if end.role == "server"]
 
 
 def play(
@@ -75,9 +81,8 @@ def test_a_server_that_does_not_tell_its_mapping_is_not_called(registry: Message
         with pytest.raises(NoServerError, match="it would execute garbage, so nothing was sent"):
             await station.call(SERVICE, TYPE, request, PATIENCE)
         assert peer.lines == []
-        station.graph()
-        assert isinstance(station, TellsServices)
-        [server] = [end for end in station.services() if end.role == "server"]
+        await eventually(lambda: servers(station), "the server is seen")
+        [server] = servers(station)
         assert (server.service, server.vendor, server.understood) == (SERVICE, VENDORS[role[0]], False)
 
     play(registry, role, scenario)

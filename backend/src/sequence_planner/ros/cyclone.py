@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 from contextlib import suppress
 from dataclasses import dataclass
+from functools import partial
 
 from cyclonedds.core import DDSException
 from cyclonedds.pub import DataWriter
@@ -21,16 +22,17 @@ from sequence_planner.ros.both_sides import both_sides
 from sequence_planner.ros.cyclone_events import Change, EventWatch, Watched
 from sequence_planner.ros.cyclone_found import fetch_description
 from sequence_planner.ros.cyclone_graph import Discovery
+from sequence_planner.ros.cyclone_log import hush
 from sequence_planner.ros.cyclone_network import join, release
 from sequence_planner.ros.cyclone_qos import endpoint_qos
 from sequence_planner.ros.cyclone_receiver import Receiver
 from sequence_planner.ros.cyclone_services import CycloneServices
-from sequence_planner.ros.cyclone_strangers import Strangers
 from sequence_planner.ros.cyclone_types import RawSample, raw_types
 from sequence_planner.ros.delivery import Delivery
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.quality import Direction
 from sequence_planner.ros.service_graph import ServiceEnd
+from sequence_planner.ros.strangers import Strangers
 from sequence_planner.ros.transport import (
     Endpoint,
     Handler,
@@ -88,7 +90,7 @@ class CycloneTransport:
         self._services = CycloneServices(
             self._participant, registry, self._raw, self._receiver, loop, self._discovery.told_on
         )
-        self._strangers = Strangers(loop, self._discovery.services_now)
+        self._strangers = Strangers(loop, self._discovery.services_now, partial(hush, self._discovery))
         self._announce()
 
     def advertise(self, topic: str, type_name: str, qos: QualityOfService) -> None:

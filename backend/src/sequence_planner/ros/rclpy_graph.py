@@ -7,7 +7,7 @@ The endpoints of a service are found as those of the topics of DDS that it is ma
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Set
+from collections.abc import Callable, Collection, Mapping, Set
 from uuid import UUID
 
 from rclpy.node import Node
@@ -44,16 +44,19 @@ def endpoints(node: Node, own_name: str, published: Set[str], subscribed: Mappin
     return found
 
 
-def service_ends(node: Node, own_name: str, served: Set[str], called: Mapping[str, int]) -> list[ServiceEnd]:
-    """Return the servers and clients of all services that `node` knows.
+def service_ends(
+    node: Node, own_name: str, served: Set[str], called: Mapping[str, int], among: Collection[str] | None = None
+) -> list[ServiceEnd]:
+    """Return the servers and clients of all services that `node` knows, or of those `among` these.
 
     `own_name` is the node's full name, `served` are the services that it serves, and `called` counts its clients by
     service. A server reads the topic of requests, and a client writes it.
     """
+    services = [name for name, _ in node.get_service_names_and_types()] if among is None else among
     unasked = _of_topic(_UNASKED, "publisher", node.get_publishers_info_by_topic(_UNASKED), own_name, 1)
     vendor = next((each.vendor for each in unasked if each.own), None)
     found = []
-    for service, _ in node.get_service_names_and_types():
+    for service in services:
         requests = names.dds_requests(service)
         readers = node.get_subscriptions_info_by_topic(requests, no_mangle=True)
         writers = node.get_publishers_info_by_topic(requests, no_mangle=True)

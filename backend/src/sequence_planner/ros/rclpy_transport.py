@@ -13,6 +13,7 @@ import os
 import threading
 import time
 from collections import Counter
+from collections.abc import Collection
 from contextlib import suppress
 from typing import Literal
 
@@ -36,6 +37,7 @@ from sequence_planner.ros.rclpy_qos import Tell, profile, publisher_events, subs
 from sequence_planner.ros.rclpy_services import RclpyServices
 from sequence_planner.ros.rclpy_types import guarded, message_class
 from sequence_planner.ros.service_graph import ServiceEnd
+from sequence_planner.ros.strangers import Strangers
 from sequence_planner.ros.transport import (
     Endpoint,
     Handler,
@@ -95,6 +97,7 @@ class RclpyTransport:
             self._context.try_shutdown()
             raise TransportError(f"ROS 2 cannot start on domain {domain}: {error}") from error
         self._services = RclpyServices(self._node, registry, loop)
+        self._strangers = Strangers(loop, self._service_ends)
         self._executor.add_node(self._node)
         self._thread = threading.Thread(target=self._spin, name=f"rclpy-{node_name}", daemon=True)
         self._thread.start()
@@ -153,12 +156,14 @@ class RclpyTransport:
     ) -> bytes:
         """Call a service; see `Transport.call`."""
         self._check_open()
+        self._strangers.add(service)
         return await self._services.call(service, type_name, request, within, sending)
 
     def serve(self, service: str, type_name: str, handler: Handler) -> None:
         """Answer requests; see `Transport.serve`."""
         self._check_open()
         self._services.serve(service, type_name, handler)
+        self._strangers.add(service)
 
     def graph(self) -> list[Endpoint]:
         """Return all endpoints; see `Transport.graph`."""
@@ -169,7 +174,7 @@ class RclpyTransport:
     def services(self) -> list[ServiceEnd]:
         """Return the services known; see `TellsServices`."""
         self._check_open()
-        return service_ends(self._node, f"/{self._node_name}", self._services.served, self._services.called)
+        return self._service_ends()
 
     def close(self) -> None:
         """Leave the domain; see `Transport.close`."""
@@ -178,6 +183,7 @@ class RclpyTransport:
         for _, delivery in self._subscriptions:
             delivery.close()
         self._watchers.clear()
+        self._strangers.close()
         self._services.close()
         self._closing = True
         self._executor.create_task(lambda: None)  # Work of any kind lets `spin_once` return.
@@ -188,6 +194,10 @@ class RclpyTransport:
         self._context.try_shutdown()
         self._publishers.clear()
         self._subscriptions.clear()
+
+    def _service_ends(self, among: Collection[str] | None = None) -> list[ServiceEnd]:
+        services = self._services
+        return service_ends(self._node, f"/{self._node_name}", services.served, services.called, among)
 
     def _check_open(self) -> None:
         if self._closing:

@@ -1,6 +1,6 @@
 """Peers at our services whose middleware writes calls otherwise: they are neither asked nor answered, and named once.
 
-They match our endpoints all the same, and Cyclone cannot read what they send.
+DDS brings them together with our endpoints all the same, and cannot read what they send.
 """
 
 from __future__ import annotations
@@ -10,7 +10,6 @@ from collections.abc import Callable, Collection
 
 import structlog
 
-from sequence_planner.ros.cyclone_log import hush
 from sequence_planner.ros.service_graph import ServiceEnd
 from sequence_planner.ros.vendors import worded
 
@@ -23,11 +22,19 @@ class Strangers:
     """Looks for them as long as there are services. All methods belong on the event loop's thread."""
 
     def __init__(
-        self, loop: asyncio.AbstractEventLoop, ends_of: Callable[[Collection[str]], Collection[ServiceEnd]]
+        self,
+        loop: asyncio.AbstractEventLoop,
+        ends_of: Callable[[Collection[str]], Collection[ServiceEnd]],
+        there_are: Callable[[bool], None] = lambda _: None,
     ) -> None:
-        """Begin without services; `ends_of` gives the ends of those named that are on the network now."""
+        """Begin without services.
+
+        `ends_of` gives the ends of those named that are on the network now; `there_are` is told at each look whether
+        any of them is such a peer.
+        """
         self._loop = loop
         self._ends_of = ends_of
+        self._there_are = there_are
         self._services: set[str] = set()
         self._seen: set[ServiceEnd] = set()
         self._told: set[ServiceEnd] = set()
@@ -43,12 +50,12 @@ class Strangers:
         """Look no more."""
         if self._next is not None:
             self._next.cancel()
-        hush(self, False)
+        self._there_are(False)
 
     def _look(self) -> None:
         self._next = self._loop.call_later(_EVERY, self._look)
         there = {end for end in self._ends_of(self._services) if not (end.own or end.understood)}
-        hush(self, bool(there))
+        self._there_are(bool(there))
         # Its name comes a moment later than the peer itself.
         news = {end for end in there if end.node is not None or end in self._seen} - self._told
         for end in news:
