@@ -212,7 +212,7 @@ def test_a_full_disk_loses_nothing_and_says_what_to_do(
         return descriptor
 
     with monkeypatch.context() as patch:
-        patch.setattr(archive_file.os, "open", full)
+        patch.setattr(os, "open", full)
         with pytest.raises(ArchiveFullError, match=r"no room on the disk of .*archive: make room, .* nothing is lost"):
             trim(database, 28.0, EVA, folder)
     assert (files(folder), len(within(database))) == ([], 35)
