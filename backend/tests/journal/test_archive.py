@@ -20,7 +20,7 @@ from cli.commands import command
 from core.budget import examples
 from journal.acts import EVA
 from journal.happened import content, happened, kind
-from sequence_planner.journal import archive_file, audit, retention, run_journal
+from sequence_planner.journal import audit, retention, run_journal
 from sequence_planner.journal.archive import Archive, broken_at, verified
 from sequence_planner.journal.archive_file import ArchiveError, ArchiveFullError
 from sequence_planner.journal.chain import START
