@@ -6,12 +6,13 @@ import importlib.util
 import json
 import os
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
 from running.stations import REPOSITORY
-from sequence_planner.ros.messages import MessageRegistry
+from sequence_planner.ros.messages import MessageRegistry, UnknownMessageTypeError
 
 MODELS = sorted(path.parent for path in (REPOSITORY / "models").glob("*/messages"))
 
@@ -47,14 +48,13 @@ def test_the_messages_of_a_model_have_the_hashes_that_colcon_built(model: Path) 
 
 
 def test_the_types_of_ros_have_our_hashes() -> None:
+    """Its messages, services and actions, and what is derived of those."""
     registry, compared = MessageRegistry.from_folder(None), 0
-    known = {*registry.type_names(), *registry.service_names(), *registry.action_names()}
-    for package, folder in built():
+    for _, folder in built():
         for name, theirs in hashes_of(folder).items():
-            if name in known:
+            with suppress(UnknownMessageTypeError):
                 assert registry.type_hash(name) == theirs, name
                 compared += 1
-        assert package
     if not compared:
         pytest.skip("no interfaces of ROS 2 are installed here: run this suite where ROS 2 Jazzy is sourced")
     assert compared > 100

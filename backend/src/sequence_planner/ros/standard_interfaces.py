@@ -30,11 +30,13 @@ GoalInfo[] goals_canceling
     "lifecycle_msgs/srv/GetAvailableTransitions": "---\nTransitionDescription[] available_transitions\n",
     "lifecycle_msgs/srv/GetState": "---\nState current_state\n",
     "rcl_interfaces/srv/DescribeParameters": "string[] names\n---\nParameterDescriptor[] descriptors\n",
+    "rcl_interfaces/srv/GetLoggerLevels": "string[] names\n---\nLoggerLevel[] levels\n",
     "rcl_interfaces/srv/GetParameterTypes": "string[] names\n---\nuint8[] types\n",
     "rcl_interfaces/srv/GetParameters": "string[] names\n---\nParameterValue[] values\n",
     "rcl_interfaces/srv/ListParameters": (
         "uint64 DEPTH_RECURSIVE=0\nstring[] prefixes\nuint64 depth\n---\nListParametersResult result\n"
     ),
+    "rcl_interfaces/srv/SetLoggerLevels": "LoggerLevel[] levels\n---\nSetLoggerLevelsResult[] results\n",
     "rcl_interfaces/srv/SetParameters": f"{_SET_PARAMETERS}SetParametersResult[] results\n",
     "rcl_interfaces/srv/SetParametersAtomically": f"{_SET_PARAMETERS}SetParametersResult result\n",
     "std_srvs/srv/Empty": "---\n",
