@@ -89,8 +89,8 @@ def smallest(schema: dict[str, Any], document: dict[str, Any]) -> Any:  # noqa: 
             named, least = schema.get("properties", {}), schema.get("minProperties", 0)
             needed = schema.get("required") or list(named)[:least]
             told = {name: smallest(named[name], document) for name in needed}
-            rest: Any = schema.get("additionalProperties")
-            return told if told or not least else {"x": smallest(rest, document)}
+            rest = schema.get("additionalProperties")
+            return {"x": smallest(rest, document)} if rest and least and not told else told
         case "array":
             return [smallest(schema["items"], document)] * schema.get("minItems", 0)
         case "string":
