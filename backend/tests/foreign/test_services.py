@@ -101,7 +101,7 @@ def test_a_server_on_another_dds_is_not_called_over_rclpy_either(
 
     async def scenario(station: Transport, peer: Peer) -> None:
         request = registry.encode(f"{TYPE}_Request", {"a": 2, "b": 3})
-        with pytest.raises(NoServerError, match=r"on eProsima Fast DDS, .* so nothing was sent"):
+        with pytest.raises(NoServerError, match=r"on eProsima Fast DDS \(rmw_fastrtps_cpp\), .* so nothing was sent"):
             await station.call(SERVICE, TYPE, request, PATIENCE)
         assert peer.lines == []
 
