@@ -118,6 +118,23 @@ def test_no_decision_leads_out_of_the_safe_states() -> None:
         decide(execution, robot__target_pose="bolt_pair_1")
     assert refused.value.slug == "output-unsafe"
     assert execution.state["robot.target_pose"] == "home"
+    moved = come_back({"bolts[bolt_pair_1]": "placed"}, robot__pose="bolt_pair_2")
+    assert "bolt_pair_1" in Undecided(moved).views()["robot.target_pose"].unsafe
+
+
+def test_what_is_said_to_be_unsafe_is_refused_and_nothing_else() -> None:
+    for pose in ("above_engine", "bolt_pair_1", "bolt_pair_2"):
+        execution = come_back({"bolts[bolt_pair_1]": "placed"}, robot__pose=pose)
+        view = Undecided(execution).views()["robot.target_pose"]
+        assert not set(execution.automaton.types["robot.target_pose"].domain) <= set(view.unsafe)
+        for value in execution.automaton.types["robot.target_pose"].domain:
+            again = come_back({"bolts[bolt_pair_1]": "placed"}, robot__pose=pose)
+            if value not in view.unsafe:
+                decide(again, robot__target_pose=value)
+                continue
+            with pytest.raises(CommandRefused) as refused:
+                decide(again, robot__target_pose=value)
+            assert refused.value.slug == "output-unsafe"
 
 
 def test_once_production_is_started_abilities_decide() -> None:

@@ -83,7 +83,7 @@ def example_view(**changes: object) -> StationView:
         unconfirmed=False,
         undecided={
             "robot.target_pose": UndecidedOutputView(
-                value="home", reacts=["robot reacts: robot.moving"], quiet=["above"]
+                value="home", reacts=["robot reacts: robot.moving"], quiet=["above"], unsafe=["at_bolt"]
             )
         },
         resources={

@@ -7960,13 +7960,16 @@ export interface components {
          * UndecidedOutputView
          * @description An output that came back from the journal, and would make its device react as soon as it is published.
          *
-         *     `reacts` says how; with each of `quiet` its device would stay as it is.
+         *     `reacts` says how; with each of `quiet` its device would stay as it is. With each of `unsafe` the station would
+         *     leave its safe states, unless other outputs change as well.
          */
         UndecidedOutputView: {
             /** Quiet */
             quiet: (boolean | number | string)[];
             /** Reacts */
             reacts: string[];
+            /** Unsafe */
+            unsafe: (boolean | number | string)[];
             /** Value */
             value: boolean | number | string;
         };

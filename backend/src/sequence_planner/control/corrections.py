@@ -18,7 +18,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.heard import Heard
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.offer_refusals import errand_under_way
-from sequence_planner.control.outside import surely_outside
+from sequence_planner.control.outside import leaves
 from sequence_planner.control.restart_commands import (
     ConfirmEstimates,
     CorrectEstimates,
@@ -142,9 +142,7 @@ class Corrections:
         if decided := sorted(values.keys() - execution.conduct.returned):
             detail = f"Nobody has to decide on {' and '.join(decided)}."
             raise CommandRefused("nothing-to-decide", "There is nothing to decide", detail)
-        safe, before, after = execution.supervisor.safe, execution.state, execution.corrected(values)
-        leaves = surely_outside(safe, after) and not surely_outside(safe, before)  # whatever is not heard yet
-        if leaves or (safe.includes(before) and not safe.includes(after)):
+        if leaves(execution.supervisor.safe, execution.state, execution.corrected(values)):
             detail = (
                 "With these values the station would be outside its safe states. Choose others, or several at once."
             )

@@ -54,6 +54,13 @@ def surely_outside(safe: StateSet, state: State) -> bool:
     return any(state[name] is not None for name in safe.nearest(state) or ())
 
 
+def leaves(safe: StateSet, before: State, after: State) -> bool:
+    """Whether a change leads out of the safe states, whatever is not heard yet."""
+    if surely_outside(safe, after) and not surely_outside(safe, before):
+        return True
+    return safe.includes(before) and not safe.includes(after)
+
+
 class Outside:
     """Looks at the state of `execution`, asks for a way back where one is wanted, and remembers the last answer."""
 

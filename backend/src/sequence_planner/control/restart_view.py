@@ -56,12 +56,14 @@ class LastErrandView(View):
 class UndecidedOutputView(View):
     """An output that came back from the journal, and would make its device react as soon as it is published.
 
-    `reacts` says how; with each of `quiet` its device would stay as it is.
+    `reacts` says how; with each of `quiet` its device would stay as it is. With each of `unsafe` the station would
+    leave its safe states, unless other outputs change as well.
     """
 
     value: Value
     reacts: list[str]
     quiet: list[Value]
+    unsafe: list[Value]
 
 
 class QuestionView(View):

@@ -12,6 +12,7 @@ from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Automaton, Effect, State, target
 from sequence_planner.control.conduct import Conduct
 from sequence_planner.control.execution import Execution
+from sequence_planner.control.outside import leaves
 from sequence_planner.control.restart_view import UndecidedOutputView
 from sequence_planner.control.value_text import value_text
 from sequence_planner.expressions.evaluation import evaluate
@@ -68,7 +69,14 @@ class Undecided:
             if reacts := self._reactions(name, state):
                 others = (other for other in automaton.types[name].domain if other != value)
                 quiet = [v for v in others if not self._reactions(name, self._execution.corrected({**real, name: v}))]
-                yield name, UndecidedOutputView(value=value, reacts=reacts, quiet=quiet)
+                yield name, UndecidedOutputView(value=value, reacts=reacts, quiet=quiet, unsafe=self._unsafe(name))
+
+    def _unsafe(self, name: str) -> list[Value]:
+        """The values that would lead out of the safe states while all else is as it is."""
+        execution = self._execution
+        safe, state = execution.supervisor.safe, execution.state
+        domain = execution.automaton.types[name].domain
+        return [value for value in domain if leaves(safe, state, execution.corrected({name: value}))]
 
     def _reactions(self, name: str, state: State) -> list[str]:
         found = (_reaction(self._execution.automaton, effect, state) for effect in self._readers.get(name, ()))

@@ -5,7 +5,7 @@ import { alarm, view } from '#lib/testing/view.ts';
 import { nextAct, type Next, type Standing } from './next.ts';
 
 const QUESTION = { variable: 'b', believed: 'placed', possible: ['empty'], because: [] };
-const UNDECIDED = { 'robot.go': { value: true, reacts: [], quiet: [false] } };
+const UNDECIDED = { 'robot.go': { value: true, reacts: [], quiet: [false], unsafe: [] } };
 const ERRAND = { kind: 'reset', title: '', by: 'Eva', why: '', since: 0, ends: null, into_safe: true, ability: null } as const;
 const HANDS = offer({ kind: 'physical', online: ['robot'] });
 const TAKE = offer({ kind: 'restart', errand: preview('back') });

@@ -20,7 +20,7 @@ describe('the page speaks of a restart', () => {
 	const cases: [string, Partial<StationView>][] = [
 		['in any mode but the automatic one', { mode: 'hold' }],
 		['while estimates are not confirmed', { unconfirmed: true }],
-		['while outputs are not decided', { undecided: { 'robot.go': { value: true, reacts: [], quiet: [false] } } }],
+		['while outputs are not decided', { undecided: { 'robot.go': { value: true, reacts: [], quiet: [false], unsafe: [] } } }],
 		['while belief and measurement disagree', { questions: [{ variable: 'b', believed: 1, possible: [2], because: [] }] }],
 		['when there is no plan for what is active', { plan: { ...PLAN, status: 'none' }, operations: { tighten: active } }]
 	];

@@ -106,7 +106,8 @@ export const restart = {
 		nothing: 'Nothing is sent by this. It is when production is started.',
 		each: 'Choose a value for each.',
 		stays: 'its device stays as it is',
-		before: 'as before: its device reacts'
+		before: 'as before: its device reacts',
+		unsafe: 'alone, it would lead out of the safe states'
 	},
 
 	ways: {

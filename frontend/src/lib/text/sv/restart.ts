@@ -104,7 +104,8 @@ export const restart: Text['restart'] = {
 		nothing: 'Inget skickas av detta. Det sker när produktionen startas.',
 		each: 'Välj ett värde för var och en.',
 		stays: 'enheten förblir som den är',
-		before: 'som förut: enheten reagerar'
+		before: 'som förut: enheten reagerar',
+		unsafe: 'ensamt skulle det leda ut ur de säkra tillstånden'
 	},
 
 	ways: {
