@@ -28,7 +28,7 @@ SECONDS = 15.0  # of each kind of work
 EVERY = 0.05  # seconds between two stops
 KILLS = 20
 SPARED = 2  # processes: the server, and its spare
-SETTLING = 5.0  # seconds in which a spare has imported what it needs
+SETTLING = 15.0  # seconds in which a spare has imported what it needs, on a busy machine too
 PATIENCE = 120.0  # seconds
 VARIABLES = 20_000
 # A short text that stands for millions of entries.
