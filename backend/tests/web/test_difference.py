@@ -56,7 +56,7 @@ def entries(name: str) -> st.SearchStrategy[dict[str, Any]]:
         "undecided": st.fixed_dictionaries({"value": VALUES, "quiet": st.lists(VALUES, max_size=2)}),
         "alarms": st.fixed_dictionaries({"text": NAMES}),
     }[name]
-    return st.dictionaries(NAMES, member.map(lambda update: entry.model_copy(update=update)))
+    return st.dictionaries(NAMES, member.map(lambda update: entry.model_copy(update=update)), max_size=3)
 
 
 VIEWS = st.fixed_dictionaries(

@@ -55,11 +55,16 @@ def written(text: str, file: str = MANY) -> dict[str, Any]:
     return {"kind": "text", "file": file, "was": None, "text": text}
 
 
+def called(name: str) -> list[int]:
+    """The ids of the processes with names that end so."""
+    return [each.pid for each in multiprocessing.active_children() if each.name.endswith(name) and each.pid]
+
+
 @contextmanager
 def standing_still(name: str) -> Iterator[None]:
-    """While the process of the workshop that is called so does nothing."""
-    [pid] = [each.pid for each in multiprocessing.active_children() if each.name.endswith(name)]
-    assert pid is not None
+    """While the process of the workshop that is called so does nothing; those of servers before take time to end."""
+    until(lambda: len(called(name)) == 1)
+    [pid] = called(name)
     os.kill(pid, signal.SIGSTOP)
     try:
         yield
