@@ -36,9 +36,10 @@ def test_a_station_works_with_devices_over_genuine_ros(ours: str, theirs: str, t
         eventually(lambda: running.value("robot.pose") is None)
         with process(log, *devices):
             eventually(lambda: running.value("robot.pose") is not None)
-            os.kill(running.child("controller"), signal.SIGKILL)
-            eventually(lambda: not running.up())
-            eventually(lambda: running.up() and running.value("robot.pose") is not None)
-            assert running.get("production", "station") == "waiting"
+            killed = running.child("controller")
+            os.kill(killed, signal.SIGKILL)
+            eventually(lambda: killed not in running.children("controller"))
+            eventually(lambda: running.up() and running.get("production", "station") == "waiting")
+            eventually(lambda: running.value("robot.pose") is not None)
     assert "Traceback" not in log.read_text() + running.log.read_text()
     assert "[WARN]" not in log.read_text() + running.log.read_text()
