@@ -164,3 +164,13 @@ def test_a_part_alone_does_without_a_broken_rclpy_too(tmp_path: Path, monkeypatc
     assert refused.returncode == 2
     [line] = refused.stderr.splitlines()
     assert "wrong ELF class" in line
+
+
+@pytest.mark.parametrize("kind", ["a library is missing"])
+def test_emulated_devices_that_do_without_a_broken_rclpy_say_so_once(broken_rclpy: str, tmp_path: Path) -> None:
+    log = tmp_path / "devices.log"
+    with process(log, "emulate", str(MODEL)):
+        eventually(lambda: "emulated devices are up" in log.read_text())
+    [line] = [line for line in log.read_text().splitlines() if "rclpy" in line]
+    assert "cyclonedds is used instead of the rclpy at " in line
+    assert broken_rclpy in line

@@ -14,6 +14,7 @@ import platform
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import cache
 from typing import TYPE_CHECKING, Literal
 
 import structlog
@@ -92,9 +93,15 @@ def _rclpy_transport(choice: Literal["auto", "rclpy"]) -> type[RclpyTransport] |
         reason = f"{type(error).__name__}: {error}".splitlines()[0]
         if choice == "rclpy":
             raise TransportError(_refusal(reason)) from error
-        _log.warning(_fallback(reason))
+        _warn_once(_fallback(reason))
         return None
     return RclpyTransport
+
+
+@cache
+def _warn_once(text: str) -> None:
+    """Log what holds for all nodes of a process; emulated devices are one for each resource."""
+    _log.warning(text)
 
 
 def _is_here(choice: Literal["auto", "rclpy"]) -> bool:
