@@ -76,3 +76,26 @@ def test_once_it_is_over_it_reads_so() -> None:
     assert alarm.text.startswith("Robot UR10 did not do what it should")
     assert any(part == "Move to bolt pair 3 did not finish within 30 s" for part in alarm.parts)
     assert not any(" has not " in part for part in alarm.parts)
+
+
+def test_what_waited_for_a_device_that_works_again_is_no_alarm_of_its_own() -> None:
+    """The nutrunner runs, and waits for a robot that is stuck between two pairs, at the one that is done."""
+    rig = Watched()
+    rig.start_production()
+    up = "robot.move_to_position(above_engine)"
+
+    def is_on_its_way() -> bool:
+        runs = rig.value("nutrunner.tool_is_running_forward") is True
+        return runs and rig.started[-1] == up and "tightened" in rig.execution.state.values()
+
+    assert rig.run(240, until=is_on_its_way)
+    rig.faulty.begin(Fault(FaultKind.STUCK, "robot"), rig.now)
+    rig.run(45)
+    (while_it_lasts,) = rig.shown.values()
+    assert "Run the nutrunner has not finished within 30 s" in while_it_lasts.parts
+    rig.faulty.clear(Clear())
+    for _ in range(30):
+        rig.run(1)
+        assert len(rig.shown) == 1, [alarm.text for alarm in rig.shown.values()]
+    (alarm,) = rig.shown.values()
+    assert alarm.state is AlarmState.RETURNED

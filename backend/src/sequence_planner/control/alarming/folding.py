@@ -28,6 +28,7 @@ class Folding:
     def __init__(self) -> None:
         self._had_parts: dict[str, Cause] = {}
         self._over: dict[str, float] = {}
+        self._part_of: dict[str, str] = {}
 
     def fold(self, causes: Iterable[Cause], alone: Collection[str], monotonic: float) -> Folded:
         """What is an alarm now. To those that stand `alone` nothing is added."""
@@ -37,15 +38,21 @@ class Folding:
         parts: dict[str, list[Cause]] = {}
         folded: set[str] = set()
         for key, cause in present.items():
-            top = _top(cause, bearing)
+            top = _top(self._as_before(cause, lingering), bearing)
             # Of causes that follow from one another one is told.
             if top != key and top not in folded and key not in parts:
                 parts.setdefault(top, []).append(cause)
                 folded.add(key)
+        self._part_of = {cause.key: top for top, every in parts.items() for cause in every}
         self._had_parts = {key: bearing[key] for key in parts}
         alarms = {key: _with(cause, parts.get(key, ())) for key, cause in present.items() if key not in folded}
         over = {key: _with(_over(cause, parts[key]), parts[key]) for key, cause in lingering.items() if key in parts}
         return Folded({**alarms, **over}, frozenset(folded))
+
+    def _as_before(self, cause: Cause, lingering: Collection[str]) -> Cause:
+        """The cause, which still follows from what is over: of that nobody says any more what follows from it."""
+        before = self._part_of.get(cause.key)
+        return cause if before is None or before not in lingering else replace(cause, follows=(*cause.follows, before))
 
     def _lingering(self, present: Mapping[str, Cause], monotonic: float) -> dict[str, Cause]:
         gone = {key: cause for key, cause in self._had_parts.items() if key not in present}
