@@ -7,6 +7,8 @@ from control.faulty import FaultyRig
 from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.restart_view import QuestionView
+from sequence_planner.control.view import Mode
 from sequence_planner.emulation.faults import Clear, Fault, FaultKind
 
 ROBOT_IS_STILL = "still:robot"
@@ -65,6 +67,32 @@ def test_why_the_state_is_unsafe_is_told_as_soon_as_it_can_be_known() -> None:
     assert rig.shown.keys() == {ROBOT_IS_STILL}
     came = [key for key, event in rig.told.events if event == "came"]
     assert came[-1] == ROBOT_IS_STILL and len(came) <= 2, came
+
+
+def test_what_the_station_asks_about_because_of_it_is_a_part_of_it() -> None:
+    rig = stuck()
+    rig.run(30)
+    because = ["bolts[bolt_pair_3] == placed never goes together with robot.target_pose == bolt_pair_3"]
+    rig.alarms.questions = [
+        QuestionView(variable="bolts[bolt_pair_3]", believed="placed", possible=["empty"], because=because)
+    ]
+    rig.run(1)
+    (alarm,) = rig.shown.values()
+    assert "bolts[bolt_pair_3] is believed to be placed" in " ".join(alarm.parts)
+
+
+def test_what_outlasts_it_is_told_with_it_for_some_time() -> None:
+    """The state is still unsafe, and there still is no plan: these do not follow from one another alone."""
+    rig = stuck()
+    rig.run(45)
+    rig.execution.change_mode(Mode.HOLD, "Eva", Moment(rig.now, rig.now))  # so the tool stands on the bolts
+    rig.run(2)
+    rig.faulty.clear(Clear())
+    rig.run(3)
+    (alarm,) = rig.shown.values()
+    assert alarm.text.startswith("Robot UR10 did not do what it should")
+    assert alarm.text.endswith("This is over, but not all that followed")
+    assert any("outside its safe states" in part for part in alarm.parts)
 
 
 def test_once_it_is_over_it_reads_so() -> None:
