@@ -7,6 +7,8 @@ from control.faulty import FaultyRig
 from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.restart_view import QuestionView
+from sequence_planner.control.view import Mode
 from sequence_planner.emulation.faults import Clear, Fault, FaultKind
 
 ROBOT_IS_STILL = "still:robot"
@@ -67,6 +69,32 @@ def test_why_the_state_is_unsafe_is_told_as_soon_as_it_can_be_known() -> None:
     assert came[-1] == ROBOT_IS_STILL and len(came) <= 2, came
 
 
+def test_what_the_station_asks_about_because_of_it_is_a_part_of_it() -> None:
+    rig = stuck()
+    rig.run(30)
+    because = ["bolts[bolt_pair_3] == placed never goes together with robot.target_pose == bolt_pair_3"]
+    rig.alarms.questions = [
+        QuestionView(variable="bolts[bolt_pair_3]", believed="placed", possible=["empty"], because=because)
+    ]
+    rig.run(1)
+    (alarm,) = rig.shown.values()
+    assert "bolts[bolt_pair_3] is believed to be placed" in " ".join(alarm.parts)
+
+
+def test_what_outlasts_it_is_told_with_it_for_some_time() -> None:
+    """The state is still unsafe, and there still is no plan: these do not follow from one another alone."""
+    rig = stuck()
+    rig.run(45)
+    rig.execution.change_mode(Mode.HOLD, "Eva", Moment(rig.now, rig.now))  # so the tool stands on the bolts
+    rig.run(2)
+    rig.faulty.clear(Clear())
+    rig.run(3)
+    (alarm,) = rig.shown.values()
+    assert alarm.text.startswith("Robot UR10 did not do what it should")
+    assert alarm.text.endswith("This is over, but not all that followed")
+    assert any("outside its safe states" in part for part in alarm.parts)
+
+
 def test_once_it_is_over_it_reads_so() -> None:
     rig = stuck()
     rig.run(45)
@@ -76,3 +104,26 @@ def test_once_it_is_over_it_reads_so() -> None:
     assert alarm.text.startswith("Robot UR10 did not do what it should")
     assert any(part == "Move to bolt pair 3 did not finish within 30 s" for part in alarm.parts)
     assert not any(" has not " in part for part in alarm.parts)
+
+
+def test_what_waited_for_a_device_that_works_again_is_no_alarm_of_its_own() -> None:
+    """The nutrunner runs, and waits for a robot that is stuck between two pairs, at the one that is done."""
+    rig = Watched()
+    rig.start_production()
+    up = "robot.move_to_position(above_engine)"
+
+    def is_on_its_way() -> bool:
+        runs = rig.value("nutrunner.tool_is_running_forward") is True
+        return runs and rig.started[-1] == up and "tightened" in rig.execution.state.values()
+
+    assert rig.run(240, until=is_on_its_way)
+    rig.faulty.begin(Fault(FaultKind.STUCK, "robot"), rig.now)
+    rig.run(45)
+    (while_it_lasts,) = rig.shown.values()
+    assert "Run the nutrunner has not finished within 30 s" in while_it_lasts.parts
+    rig.faulty.clear(Clear())
+    for _ in range(30):
+        rig.run(1)
+        assert len(rig.shown) == 1, [alarm.text for alarm in rig.shown.values()]
+    (alarm,) = rig.shown.values()
+    assert alarm.state is AlarmState.RETURNED

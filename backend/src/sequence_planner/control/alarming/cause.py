@@ -14,7 +14,8 @@ class Cause:
     """`key` stays the same as long as it is the same alarm; `parts` are what it consists of, where that is several.
 
     It is no alarm of its own but a part of another as long as one of those is there that it `follows` from. `past` is
-    its `text` once it is over, `past_parts` are its parts then, and `of` the resources whose devices fail with it.
+    its `text` once it is over, `past_parts` are its parts then, `of` the resources whose devices fail with it, and
+    `about` the variables of which it is doubted what is believed.
     """
 
     key: str
@@ -27,6 +28,7 @@ class Cause:
     past: str = field(kw_only=True)
     past_parts: tuple[str, ...] = field(default=(), kw_only=True)
     of: frozenset[str] = field(default=frozenset(), kw_only=True)
+    about: frozenset[str] = field(default=frozenset(), kw_only=True)
 
 
 def urgency(priority: Priority) -> int:

@@ -28,11 +28,13 @@ class Folding:
     def __init__(self) -> None:
         self._had_parts: dict[str, Cause] = {}
         self._over: dict[str, float] = {}
+        self._part_of: dict[str, str] = {}
 
     def fold(self, causes: Iterable[Cause], alone: Collection[str], monotonic: float) -> Folded:
         """What is an alarm now. To those that stand `alone` nothing is added."""
         present = {cause.key: cause for cause in causes}
         lingering = self._lingering(present, monotonic)
+        present = {key: self._as_before(cause, lingering) for key, cause in present.items()}
         bearing = {key: cause for key, cause in {**present, **lingering}.items() if key not in alone}
         parts: dict[str, list[Cause]] = {}
         folded: set[str] = set()
@@ -42,10 +44,18 @@ class Folding:
             if top != key and top not in folded and key not in parts:
                 parts.setdefault(top, []).append(cause)
                 folded.add(key)
-        self._had_parts = {key: bearing[key] for key in parts}
+        self._part_of = {cause.key: top for top, every in parts.items() for cause in every}
         alarms = {key: _with(cause, parts.get(key, ())) for key, cause in present.items() if key not in folded}
         over = {key: _with(_over(cause, parts[key]), parts[key]) for key, cause in lingering.items() if key in parts}
-        return Folded({**alarms, **over}, frozenset(folded))
+        told = {**alarms, **over}
+        # What followed, and is over before the alarm is, is told once it is over too.
+        self._had_parts = {key: replace(bearing[key], past_parts=told[key].past_parts) for key in parts}
+        return Folded(told, frozenset(folded))
+
+    def _as_before(self, cause: Cause, lingering: Collection[str]) -> Cause:
+        """The cause, which still follows from what is over: of that nobody says any more what follows from it."""
+        before = self._part_of.get(cause.key)
+        return cause if before is None or before not in lingering else replace(cause, follows=(*cause.follows, before))
 
     def _lingering(self, present: Mapping[str, Cause], monotonic: float) -> dict[str, Cause]:
         gone = {key: cause for key, cause in self._had_parts.items() if key not in present}

@@ -38,6 +38,8 @@ class Following:
         if cause.key == UNSAFE:
             about = self._resources(self._touched())
             found = [each.key for each in others if each.of & about]
+        elif cause.about:
+            found = [UNSAFE] if unsafe and not cause.about.isdisjoint(self._touched()) else []
         elif cause.key in _PLANS:
             found = [each.key for each in others] + ([UNSAFE] if unsafe else [])
         elif cause.key.startswith(LATE):

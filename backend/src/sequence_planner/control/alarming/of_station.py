@@ -182,6 +182,7 @@ class StationAlarms:
                 parts=() if len(texts) == 1 else tuple(texts),
                 past=f"{past[0]}, which did not go together with what was measured",
                 past_parts=() if len(past) == 1 else tuple(past),
+                about=frozenset(each.variable for each in self.questions),
             )
         if self._left_out and self._execution.production is not Production.STARTED:
             left_out, *others = self._left_out
