@@ -39,7 +39,7 @@ LONGEST_FILE = 1_000_000  # characters
 MOST_FILES = 2_000
 MOST_CHARACTERS = 10_000_000  # of all files together
 STAGES = "stages"
-_FOLDERS = ("resources", "messages")  # where files are looked for
+FOLDERS = ("resources", "messages")  # where files are looked for
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
@@ -116,7 +116,7 @@ def _found(folder: Path | str, below: str = "") -> Iterator[tuple[str, os.DirEnt
     with contextlib.suppress(FileNotFoundError, NotADirectoryError, PermissionError), os.scandir(folder) as entries:
         for entry in entries:
             name = f"{below}{entry.name}"
-            if (below or name in _FOLDERS) and entry.is_dir(follow_symlinks=False):
+            if (below or name in FOLDERS) and entry.is_dir(follow_symlinks=False):
                 yield from _found(entry.path, f"{name}/")
             elif _PATH.fullmatch(name) and entry.is_file():
                 yield name, entry
