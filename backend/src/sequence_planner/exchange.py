@@ -15,7 +15,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
-from sequence_planner.workshop.files import FOLDERS, Contents, read_contents, restore_contents, write_contents
+from sequence_planner.workshop.files import (
+    FOLDERS,
+    Contents,
+    forget_unfinished,
+    read_contents,
+    restore_contents,
+    write_contents,
+)
 
 FOLDER: Final = ".deploying"
 _NEW, _OLD = f"{FOLDER}.new", f"{FOLDER}.old"
@@ -75,6 +82,7 @@ def _kept(model: Path, before: Contents, note: str) -> Iterator[None]:
 
 
 def _bring_back(model: Path) -> None:
+    forget_unfinished(model)
     restore_contents(read_contents(model / FOLDER / _BEFORE), model)
     _sync_folders(model)
     _remove(model)

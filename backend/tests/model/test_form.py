@@ -49,6 +49,12 @@ DURATION = "expected seconds, or the fewest and the most as in `[0.5, 1.5]`"
             "    every: 1.0\n    quality: {deadline: ‹0.0001}\n",
             "expected a number of at least 0.001, found `0.0001`",
         ),
+        (
+            ARM,
+            "    every: 1.0\n",
+            "    every: 1.0\n    pipeline:\n      - override: {name: a, fields: {x: {between: ‹[1]}}, expires: 9}\n",
+            "an entry is missing here",
+        ),
         # indentation
         (
             ARM,

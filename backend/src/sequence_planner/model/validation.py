@@ -94,7 +94,7 @@ def _said(details: ErrorDetails, kind: type[BaseModel]) -> str | None:
         case "extra_forbidden":
             return f"`{name}` is not known here{suggestion(name, _fields_at(kind, details['loc'][:-1]))}"
         case "missing":
-            return f"`{name}` is missing here"
+            return "an entry is missing here" if isinstance(details["loc"][-1], int) else f"`{name}` is missing here"
         case "value_error" | "assertion_error":
             return complained(details)
     return None
@@ -171,7 +171,7 @@ def shown(value: object) -> str:
             return f"`{text if len(text) <= 60 else text[:57] + '...'}`"
         case list():
             return "a list" if value else "an empty list"
-    return "a mapping"
+    return "an empty mapping" if value == {} else "a mapping"
 
 
 def _fields_at(kind: type[BaseModel], path: Iterable[str | int]) -> list[str]:
