@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import asyncio
+import os
 import shutil
+import signal
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import cast
 
@@ -17,10 +20,12 @@ from sequence_planner.control.deploying import Deploying, LastDeployment
 from sequence_planner.control.known import Known
 from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.view import ControlView
-from sequence_planner.deployment_folder import NAME, DeploymentFolder, DeploymentNote
+from sequence_planner.deployment_folder import NAME, DeploymentFolder, DeploymentNote, undo_what_was_cut_off
 from sequence_planner.deployment_under_way import LONGEST_START, UnderWay
+from sequence_planner.exchange import exchanging
 from sequence_planner.launcher import Part
 from sequence_planner.lifeline import DEPLOYED, OVERTAKEN
+from sequence_planner.workshop import files
 from sequence_planner.workshop.files import put_in_place, read_contents, read_files, write_files
 
 MODEL = Path(__file__).parents[2] / "models" / "single_bolt"
@@ -239,3 +244,104 @@ def test_who_has_stood_by_for_another_begins_with_what_that_one_has_done(beside:
     assert DeploymentFolder(beside).runs
     known = last.known(Known(left_out=("an estimate",)))
     assert (known.left_out, known.control) == (("an estimate",), None)
+
+
+NEW = {"station.yaml": "title: new\n", "resources/another.yaml": "title: another\n"}
+
+
+def killed(work: Callable[[], None], writes: int) -> None:
+    """Let another process do this, which is killed, as by a power failure, once it has written so many files."""
+    if (child := os.fork()) == 0:
+        left, put = iter(range(writes)), files._put
+
+        def put_or_die(path: Path, content: bytes, mode: int | None = None) -> None:
+            if next(left, None) is None:
+                patched.setattr(Path, "replace", lambda *_: os.kill(os.getpid(), signal.SIGKILL))
+            put(path, content, mode)
+
+        try:
+            with pytest.MonkeyPatch.context() as patched:
+                patched.setattr(files, "_put", put_or_die)
+                work()
+            os._exit(0)
+        finally:
+            os._exit(1)
+    assert os.waitpid(child, 0)[1] in (0, signal.SIGKILL)
+
+
+def deployed_and_killed(model: Path, beside: Path, writes: int) -> None:
+    """A deployment whose process is killed so."""
+    staged = f"deploy-{'0' * 16}"
+    write_files({**read_files(model), **NEW}, beside / staged)
+    command = Deploy(actor=EVA, reason="better", revision="1" * 40, name="New", staged=staged)
+    deploying = Deploying(model, beside / "socket", emulated=True)
+    killed(lambda: asyncio.run(deploying.carry_out(command, None, 1.0)), writes)
+
+
+@pytest.mark.parametrize("writes", [0, 1, 2])
+def test_whoever_starts_after_a_cut_off_finds_the_model_whole(model: Path, beside: Path, writes: int) -> None:
+    before = read_contents(model)
+    deployed_and_killed(model, beside, writes)
+    whole = writes == len(NEW)
+    assert (read_contents(model) == before) is (writes == 0)
+    undone = undo_what_was_cut_off(model)
+    assert (undone is None) is whole
+    if undone is not None:
+        assert (undone.name, undone.undone) == ("New", "the station was ended before all of its files were in place")
+        assert read_contents(model) == before
+    assert undo_what_was_cut_off(model) is None, "once is enough"
+    if not whole:
+        assert sorted(each.name for each in model.rglob("*")) == sorted(each.name for each in MODEL.rglob("*"))
+
+
+def test_a_model_that_is_half_brought_back_is_brought_back(model: Path, beside: Path) -> None:
+    before, folder = read_contents(model), DeploymentFolder(beside)
+    folder.begin(NOTE, before)
+    put_in_place({**read_files(model), **NEW}, model)
+    killed(lambda: folder.bring_back(model, "nobody knows it"), 0)
+    undone = undo_what_was_cut_off(model)
+    assert undone is not None
+    assert undone.undone == "nobody knows it"
+    assert read_contents(model) == before
+
+
+def test_nobody_disturbs_who_exchanges_the_files_just_now(model: Path) -> None:
+    before = read_contents(model)
+    with exchanging(model, before, NOTE.model_dump_json()):
+        put_in_place({**read_files(model), **NEW}, model)
+        assert undo_what_was_cut_off(model) is None
+    assert read_files(model)["station.yaml"] == NEW["station.yaml"]
+
+
+@pytest.mark.parametrize("writes", [0, 1, 2])
+def test_a_controller_that_dies_at_it_leaves_a_whole_model(model: Path, beside: Path, writes: int) -> None:
+    before = read_contents(model)
+    deployed_and_killed(model, beside, writes)
+    controller = Controller()
+    watch = UnderWay(model, beside, cast(Part, controller), None)
+    controller.ended = -signal.SIGKILL
+    watch.look()
+    assert controller.done == [], "it is started again as after any other end"
+    last = LastDeployment(beside / "socket").view()
+    assert last is not None
+    if writes == len(NEW):
+        assert (watch.was, last.state) == (True, "starting")
+        controller.ended = 1
+        watch.look()  # and what fails then is undone
+        assert controller.done == ["stop", "spawn"]
+        last = LastDeployment(beside / "socket").view()
+    else:
+        assert watch.was is False
+    assert read_contents(model) == before
+    assert last is not None
+    assert last.state == "undone"
+
+
+def test_a_controller_that_dies_before_it_has_begun_has_deployed_nothing(model: Path, beside: Path) -> None:
+    DeploymentFolder(beside).begin(NOTE, read_contents(model))
+    controller = Controller()
+    watch = UnderWay(model, beside, cast(Part, controller), None)
+    controller.ended = -signal.SIGKILL
+    watch.look()
+    assert not DeploymentFolder(beside).exists
+    assert LastDeployment(beside / "socket").refusal() is None

@@ -15,9 +15,11 @@ from pathlib import Path
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from sequence_planner.control.view import ControlView
+from sequence_planner.exchange import brought_back, exchanging
 from sequence_planner.workshop.files import Contents, read_contents, restore_contents, write_contents
 
 NAME = "deployment"
+CUT_OFF = "the station was ended before all of its files were in place"
 _NOTE, _BEFORE, _RUNS, _WAITS = "note.json", "before", "runs", "waits"
 
 
@@ -63,6 +65,16 @@ class DeploymentFolder:
         write_contents(before, self._folder / _BEFORE)
         self._write(note.model_copy(update={"kept": tuple(sorted(before))}))
 
+    def begin_undone(self, note: DeploymentNote) -> None:
+        """Write down that something was deployed, and the files are as before. Raises `OSError`."""
+        self.remove()
+        self._folder.mkdir(mode=0o700)
+        self._write(note)
+
+    def has_changed(self, model: Path) -> bool:
+        """Whether the files in the folder `model` are others than those that were kept. Raises `OSError`."""
+        return read_contents(model) != read_contents(self._folder / _BEFORE)
+
     def tell_that_it_runs(self) -> None:
         """The station runs the new model. Raises `OSError`."""
         (self._folder / _RUNS).touch()
@@ -94,8 +106,10 @@ class DeploymentFolder:
         before = read_contents(kept)
         if note is None or not kept.is_dir() or set(before) != set(note.kept):
             raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), str(kept))
-        restore_contents(before, model)
-        self._write(note.model_copy(update={"undone": why}))
+        undone = note.model_copy(update={"undone": why})
+        with exchanging(model, before, undone.model_dump_json()):
+            restore_contents(before, model)
+        self._write(undone)
 
     def remove(self) -> None:
         """It is over."""
@@ -105,3 +119,13 @@ class DeploymentFolder:
         new = self._folder / f"{_NOTE}.new"
         new.write_text(note.model_dump_json(), encoding="utf-8")
         new.replace(self._folder / _NOTE)
+
+
+def undo_what_was_cut_off(model: Path) -> DeploymentNote | None:
+    """Bring the model in the folder `model` back where nobody has come to the end of exchanging its files; what was
+    deployed, and why it was undone. None where nothing is cut off. Raises `OSError`.
+    """
+    if (told := brought_back(model)) is None:
+        return None
+    note = DeploymentNote.model_validate_json(told)
+    return note if note.undone is not None else note.model_copy(update={"undone": CUT_OFF})

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import structlog
 
-from sequence_planner.deployment_folder import DeploymentFolder
+from sequence_planner.deployment_folder import DeploymentFolder, undo_what_was_cut_off
 from sequence_planner.emulation.standing import standing_file
 from sequence_planner.lifeline import DEPLOYED, OVERTAKEN
 
@@ -40,7 +40,8 @@ class UnderWay:
         if self._controller.ended == DEPLOYED:
             self._begin()
         elif self._since is None:
-            return
+            if self._controller.ended is not None:
+                self._look_what_is_left()
         elif self._folder.runs:
             self._since = None
             self._folder.remove()
@@ -53,6 +54,23 @@ class UnderWay:
                 self._since = time.monotonic()
             if (why := self._failure(self._since)) is not None:
                 self._undo(why)
+
+    def _look_what_is_left(self) -> None:
+        """See how the files are where a controller has died that may have been exchanging them."""
+        note = self._folder.note()
+        if note is None or note.undone is not None:
+            return
+        try:
+            undone = undo_what_was_cut_off(self._model)
+            if undone is not None:
+                LOG.error("a deployment was cut off, and the model before is back", because=undone.undone)
+                self._folder.begin_undone(undone)
+            elif self._folder.has_changed(self._model):
+                self._begin()  # all files are in place, and it has died as it made room
+            else:
+                self._folder.remove()
+        except OSError as error:
+            LOG.exception("the model before cannot be brought back", because=error.strerror)
 
     def _begin(self) -> None:
         """The files are in place, and the controller has made room."""

@@ -30,6 +30,7 @@ import structlog
 from sequence_planner.announcement import UNWELL, announced, first_start, health
 from sequence_planner.backup.settings import Keeping
 from sequence_planner.control.unix_socket import LONGEST_PATH
+from sequence_planner.deployment_folder import DeploymentFolder, DeploymentNote
 from sequence_planner.deployment_under_way import UnderWay
 from sequence_planner.emulation.standing import standing_file
 from sequence_planner.identity.openid.options import ProviderOptions
@@ -77,7 +78,8 @@ class Launch:
     """What to run, and how; without the URL of a `database` a demonstration, whose own is forgotten at the end.
 
     A database that is empty where a station was is used only where a `new` one is meant. `unusable` says why the model
-    means nothing: where it has a draft it can be repaired in the browser.
+    means nothing: where it has a draft it can be repaired in the browser. `cut_off` is a deployment that was undone, as
+    an earlier `run` did not come to its end.
     """
 
     model: Path
@@ -97,6 +99,7 @@ class Launch:
     new: bool = False
     memory: float = USUAL  # GB, for each process that checks a model
     unusable: str | None = None
+    cut_off: DeploymentNote | None = None
 
 
 class Part:
@@ -295,6 +298,8 @@ def launch(request: Launch) -> int:
                     for path, kept in set_aside(database.place, datetime.now(UTC)):
                         _say(f"a new station begins: the last word of another one, {path}, is kept as {kept}")
                 database.upgrade(new=request.new)
+            if request.cut_off is not None:
+                DeploymentFolder(socket.parent).begin_undone(request.cut_off)
             with contextlib.closing(bind(request.endpoint)) as listener:
                 return _Launcher(request, url, socket, listener, stop).run()
 

@@ -75,3 +75,10 @@ def test_of_an_exclusion_some_pairs_may_exclude_each_other_anyway(tmp_path: Path
     lamp = "output: {lit: {type: bool}}\nabilities: {shine: {executing: lit, start: {do: [lit := true]}}}"
     made = station(folder, {"device": DEVICE, "lamp": lamp}, specifications=three)
     assert "forbids-nothing" not in "".join(found(made))
+
+
+def test_a_file_without_specifications(tmp_path: Path) -> None:
+    assert found(device(tmp_path, specifications="# none")) == [
+        "specifications.yaml:1:1: there is no specification here, so nothing is forbidden: write one, or delete the "
+        "file [no-specification]"
+    ]

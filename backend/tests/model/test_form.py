@@ -33,7 +33,35 @@ DURATION = "expected seconds, or the fewest and the most as in `[0.5, 1.5]`"
     [
         # keys
         (ARM, "    enabled:", "    ‹enabeld:", "`enabeld` is not known here; did you mean `enabled`?"),
-        (ARM, "    executing: goto", "    ‹when: goto", "`when` is not known here"),
+        (
+            ARM,
+            "    executing: goto",
+            "    ‹when: goto",
+            "`when` is not known here; does it belong to `start`? Then indent it further",
+        ),
+        # characters that are written with an escape, and that no answer and no database could hold
+        (ARM, "title: Arm", 'title: ‹"A\\ud800rm"', "this would hold the character 0xd800, which no text does"),
+        (ARM, "title: Arm", 'title: ‹"A\\0rm"', "this would hold the character 0x0000, which no text does"),
+        # qualities of service
+        (
+            ARM,
+            "    every: 1.0\n",
+            "    every: 1.0\n    quality: {deadline: ‹0.0001}\n",
+            "expected a number of at least 0.001, found `0.0001`",
+        ),
+        (
+            ARM,
+            "    every: 1.0\n",
+            "    every: 1.0\n    pipeline:\n      - override: {name: a, fields: {x: {between: ‹[1]}}, expires: 9}\n",
+            "an entry is missing here",
+        ),
+        # indentation
+        (
+            ARM,
+            "    executing: goto",
+            "      ‹executing: goto",
+            "`executing` is not known here; does it belong to `move`? Then indent it less",
+        ),
         (ARM, "title: Arm", "‹titel: Arm", "`titel` is not known here; did you mean `title`?"),
         (STATION, "rest:", "‹rests:", "`rests` is not known here; did you mean `rest`?"),
         (STATION, "{for: {", "{‹each: {", "`each` is not known here"),

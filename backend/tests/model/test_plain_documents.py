@@ -44,7 +44,7 @@ def test_the_one_that_is_broken_below_is_fine() -> None:
         ('{"u1": "has", "n"', '{"u1": "has", ‹"m"', "unknown variable `m`"),
         ('"free": true', '"free": ‹3', "`3` is no value of `free`, which ranges over bool"),
         ('"n + 1"', '"‹idle"', "unknown variable `idle`; a value stands beside its variable, as in `u1 == idle`"),
-        ('{"min": 0, "max": 3}', '‹{"min": 0, "max": "3"}', "expected an integer, found `3`"),
+        ('{"min": 0, "max": 3}', '{"min": 0, "max": ‹"3"}', "expected an integer, found `3`"),
         ('{"min": 0, "max": 3}', "‹3", 'expected "bool", a list of values, or {"min": 0, "max": 3}, found `3`'),
         ('["idle", "has"]', "‹[]", "expected at least one entry, found an empty list"),
         ('"n": {"min": 0', '"n": ‹{"min": 7', "the range 7..3 is empty: write the smaller number as min"),

@@ -15,7 +15,9 @@ _FILE = "operations.yaml"  # has a place where it is there and holds nothing
 def check_operations(automaton: Automaton) -> Iterator[ModelWarning]:
     """A file of operations without any, and operations whose local specification reads nothing at all."""
     if not automaton.operations and _FILE in automaton.places:
-        message = "there is no operation here, so the station never does anything by itself: write one, or leave it out"
+        message = (
+            "there is no operation here, so the station never does anything by itself: write one, or delete the file"
+        )
         yield ModelWarning(automaton.places[_FILE], "no-operation", message)
     for family, names in families(automaton.operations).items():
         local = automaton.operations[names[0]].local

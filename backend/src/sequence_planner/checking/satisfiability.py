@@ -147,6 +147,19 @@ def satisfying(automaton: Automaton, predicate: Expression) -> State | None:
     return None if model is None else state.valuation(model)
 
 
+def differ(automaton: Automaton, one: Expression, other: Expression) -> bool:
+    """Whether there is a state, of any values, in which one of two predicates holds and the other does not.
+
+    Raises `UndecidedError`.
+    """
+    question = Question(automaton)
+    state, circuit = question.state(), question.circuit
+    first, second = (question.reading.truth(each, state) for each in (one, other))
+    either = (first.yes, second.no), (first.no, second.yes)
+    circuit.require(circuit.disjunction(tuple(circuit.conjunction(each) for each in either)))
+    return question.model() is not None
+
+
 def can_be_asked(automaton: Automaton, *expressions: Expression) -> bool:
     """Whether `expressions`, and the predicates of the flags that they read, are small enough for a circuit."""
     seen: set[str] = set()

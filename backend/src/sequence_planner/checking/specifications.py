@@ -10,9 +10,14 @@ from sequence_planner.automaton.structure import Automaton, Specification
 from sequence_planner.checking.satisfiability import UndecidedError, can_be_asked, satisfying
 from sequence_planner.checking.warning import ModelWarning, place
 
+_FILE = "specifications.yaml"  # has a place where it is there and holds nothing
+
 
 def check_specifications(automaton: Automaton) -> Iterator[ModelWarning]:
-    """What was written as one specification, and of which no expansion forbids any state, reachable or not."""
+    """A file of specifications without any, and those of which no expansion forbids any state, reachable or not."""
+    if not automaton.specifications and _FILE in automaton.places:
+        message = "there is no specification here, so nothing is forbidden: write one, or delete the file"
+        yield ModelWarning(automaton.places[_FILE], "no-specification", message)
     written: dict[str, list[Specification]] = defaultdict(list)
     for specification in automaton.specifications.values():
         written[without_arguments(specification.name.partition(": ")[0])].append(specification)

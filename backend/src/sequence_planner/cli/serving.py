@@ -30,6 +30,7 @@ from sequence_planner.cli.parts import (
 )
 from sequence_planner.cli.provider_options import Client, Groups, Issuer, Others, Roles, Scopes, SecretFile, Title
 from sequence_planner.configuration import ConfigurationError, has_password, url_in
+from sequence_planner.deployment_folder import DeploymentNote, undo_what_was_cut_off
 from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
 from sequence_planner.lifeline import is_needed
@@ -254,6 +255,7 @@ def run(
     if _provider(provider) is not None and demonstration:
         refuse("--demonstration is for whoever sits here, and nobody signs in: leave --oidc-issuer out, or it")
     webhooks = _targets(webhook_host, webhook_network, webhook_loopback)
+    cut_off = _undone(model)
     unusable = _unusable(model)
     url = None if demonstration else database_url(model, database)
     asked = Launch(
@@ -274,6 +276,7 @@ def run(
         new=new,
         memory=memory,
         unusable=unusable,
+        cut_off=cut_off,
     )
     try:
         raise typer.Exit(launch(asked))
@@ -287,6 +290,17 @@ def _settled(transport: TransportChoice) -> TransportChoice:
         return settled(transport, lambda text: typer.echo(text, err=True))
     except TransportError as error:
         refuse(str(error))
+
+
+def _undone(model: Path) -> DeploymentNote | None:
+    """The deployment that an earlier `run` has not come to the end of, undone; said, since it changes files."""
+    try:
+        note = undo_what_was_cut_off(model)
+    except OSError as error:
+        refuse(f"{model}: a deployment was cut off, and its files cannot be brought back: {error.strerror}")
+    if note is not None:
+        typer.echo(f"the deployment of {note.name} was cut off: the model is as it was before", err=True)
+    return note
 
 
 def _unusable(model: Path) -> str | None:

@@ -9,7 +9,6 @@ into the journal, so that the model before can take over again where the start f
 from __future__ import annotations
 
 import asyncio
-import contextlib
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,8 +19,9 @@ from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.view import ControlView, DeploymentState, DeploymentView
 from sequence_planner.deployment_folder import DeploymentFolder, DeploymentNote
 from sequence_planner.emulation.standing import standing_file
+from sequence_planner.exchange import exchanging
 from sequence_planner.journal.entry import LONGEST_REASON, Entry, Outcome
-from sequence_planner.workshop.files import Contents, Files, put_in_place, read_contents, read_files, restore_contents
+from sequence_planner.workshop.files import Contents, Files, put_in_place, read_contents, read_files
 
 ANSWERED = 0.3  # seconds in which who has asked for it gets the answer
 LOOK_EVERY = 0.1  # seconds
@@ -81,7 +81,7 @@ class Deploying:
                 raise CommandRefused("not-staged", "The files are not there", "Try once more to deploy the revision.")
             before = await asyncio.to_thread(read_contents, self._model)
             await asyncio.to_thread(folder.begin, note, before)
-            await asyncio.to_thread(_put_in_place, files, self._model, before)
+            await asyncio.to_thread(_put_in_place, files, self._model, before, note)
         except OSError as error:
             folder.remove()
             detail = f"The files of the model cannot be written: {error.strerror}. Look at who may write to its folder."
@@ -103,13 +103,9 @@ def under_way(name: str, by: str) -> CommandRefused:
     return CommandRefused("deployment-under-way", "Another model is being started", detail, 503)
 
 
-def _put_in_place(files: Files, model: Path, before: Contents) -> None:
-    try:
+def _put_in_place(files: Files, model: Path, before: Contents, note: DeploymentNote) -> None:
+    with exchanging(model, before, note.model_dump_json()):
         put_in_place(files, model)
-    except OSError:
-        with contextlib.suppress(OSError):
-            restore_contents(before, model)
-        raise
 
 
 class LastDeployment:

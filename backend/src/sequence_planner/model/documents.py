@@ -171,9 +171,9 @@ class QualityDocument(DocumentPart):
     """Whether those who come later get the last messages."""
     depth: Annotated[int, Field(ge=1, le=10_000)] = 10
     """How many messages are kept."""
-    deadline: Given[Annotated[float, Field(gt=0)]] = None
+    deadline: Given[Annotated[float, Field(ge=0.001, le=86_400)]] = None
     """Seconds within which the next message comes."""
-    liveliness: Given[Annotated[float, Field(gt=0)]] = None
+    liveliness: Given[Annotated[float, Field(ge=0.001, le=86_400)]] = None
     """Seconds within which a publisher shows that it is there."""
 
 
@@ -184,9 +184,9 @@ class TopicDocument(DocumentPart):
     """The message type, `package/msg/Name`."""
     direction: Literal["in", "out"]
     """`in`: from a device; `out`: to a device."""
-    deadline: Given[Annotated[float, Field(gt=0)]] = None
+    deadline: Given[Annotated[float, Field(gt=0, le=86_400)]] = None
     """Seconds without a message after which the topic's variables are unknown; incoming topics only."""
-    every: Given[Annotated[float, Field(gt=0)]] = None
+    every: Given[Annotated[float, Field(gt=0, le=86_400)]] = None
     """Seconds after which the message is repeated; outgoing topics only."""
     quality: Literal["reliable", "sensor_data", "latched"] | QualityDocument = "reliable"
     """The topic's quality of service, by name or in full."""

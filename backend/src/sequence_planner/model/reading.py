@@ -20,6 +20,7 @@ EntryPath = tuple[str | int, ...]
 MOST_ENTRIES, MOST_REPEATED = 100_000, 10_000
 
 # An anchor or a tag before a text: no part of it.
+_NO_TEXT = re.compile("[\0\ud800-\udfff]")
 _PROPERTIES = re.compile(r"(?:[&!]\S*\s+)+")
 
 
@@ -204,7 +205,11 @@ class _Reader:
         if raw[:1] in ("&", "!") and (properties := _PROPERTIES.match(raw)):
             raw = raw[properties.end() :]
             place = self.place_at(node.start.index + properties.end())
-        return SourceText(str(node.value), place, raw)
+        value = str(node.value)
+        if (wrong := _NO_TEXT.search(value)) is not None:
+            self._found(place, f"this would hold the character {ord(wrong[0]):#06x}, which no text does")
+            value = _NO_TEXT.sub("?", value)  # nobody could be told of it
+        return SourceText(value, place, raw)
 
     def _place(self, node: Node) -> Place:
         return Place(self._file, node.start.line + 1, node.start.column + 1)

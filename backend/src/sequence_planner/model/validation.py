@@ -5,8 +5,8 @@ pydantic finds it; here its findings get their place in the file, and those abou
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import Any
+from collections.abc import Iterable, Sequence
+from typing import Any, cast
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core import ErrorDetails
@@ -37,12 +37,13 @@ def findings_of(error: ValidationError, document: Document, at: EntryPath, kind:
     """The findings of `error`, which came of reading the entry of `document` at `at` as a `kind`."""
     findings: list[Finding] = []
     expected: dict[tuple[Place, str], dict[str, None]] = {}
-    for details in error.errors():
-        path = (*at, *map(_step, details["loc"]))
-        if message := _said(details, kind):
+    every = error.errors()
+    for details in every:
+        path = (*at, *_path(details["loc"], _content_at(document, at)))
+        if message := _misplaced(details, document, at, kind) or _said(details, kind):
             about_name = details["type"] in ("extra_forbidden", "missing")
             findings.append(Finding(document.place(path) if about_name else document.place_of_value(path), message))
-        else:
+        elif not _is_looked_into(details, every):
             place = document.place_of_value(path)
             # Each branch of a union complains; together they say what would be right.
             expected.setdefault((place, shown(details["input"])), {})[_expectation(details)] = None
@@ -64,8 +65,26 @@ def complaint(error: ValidationError, kind: type[BaseModel]) -> str:
     return "; ".join([*said, *(f"expected {' or '.join(wants)}, found {found}" for found, wants in expected.items())])
 
 
-def _step(part: str | int) -> str | int:
-    return str(part) if isinstance(part, str) else part
+def _path(loc: Sequence[str | int], content: object) -> Iterable[str | int]:
+    """The entries that lead to what is wrong, without the names of the branches of unions between them."""
+    for step in loc[:-1]:
+        try:
+            content = cast(Any, content)[step]
+        except (KeyError, IndexError, TypeError):
+            continue
+        yield str(step) if isinstance(step, str) else step
+    yield from loc[-1:]
+
+
+def _content_at(document: Document, path: EntryPath) -> object:
+    """What stands at an entry; None where there is none."""
+    content: Any = document.content
+    for step in path:
+        try:
+            content = content[step]
+        except (KeyError, IndexError, TypeError):
+            return None
+    return content
 
 
 def _said(details: ErrorDetails, kind: type[BaseModel]) -> str | None:
@@ -75,10 +94,49 @@ def _said(details: ErrorDetails, kind: type[BaseModel]) -> str | None:
         case "extra_forbidden":
             return f"`{name}` is not known here{suggestion(name, _fields_at(kind, details['loc'][:-1]))}"
         case "missing":
-            return f"`{name}` is missing here"
+            return "an entry is missing here" if isinstance(details["loc"][-1], int) else f"`{name}` is missing here"
         case "value_error" | "assertion_error":
             return complained(details)
     return None
+
+
+def _misplaced(details: ErrorDetails, document: Document, at: EntryPath, kind: type[BaseModel]) -> str | None:
+    """The message for a key that would be right with another indentation."""
+    *around, name = details["loc"] or ("",)
+    if details["type"] == "extra_forbidden":
+        what, name = f"`{name}` is not known here", str(name)
+        above, held = _entry_above(document, (*at, *around), name)
+        is_free = above is not None and not (isinstance(held, dict) and name in held)
+        if is_free and name in _fields_within(kind, (*around, str(above))):
+            return f"{what}; does it belong to `{above}`? Then indent it further"
+    elif details["input"] is None and isinstance(name, str) and name not in _fields_at(kind, around):
+        what = f"`{name}` holds nothing here"
+    else:
+        return None
+    for end in reversed(range(len(around))):
+        if name in _fields_at(kind, around[:end]):
+            whose = (*at, *around)[: len(at) + end]
+            return f"{what}; does it belong to {f'`{whose[-1]}`' if whose else 'the file itself'}? Then indent it less"
+    return None
+
+
+def _entry_above(document: Document, path: EntryPath, name: str) -> tuple[str | None, object]:
+    """The entry that stands above `name` in the mapping at `path`, if it could hold others."""
+    content = _content_at(document, path)
+    names = list(content) if isinstance(content, dict) else []
+    if name not in names[1:]:
+        return None, None
+    above = names[names.index(name) - 1]
+    held = content[above]
+    return (str(above), held) if held is None or isinstance(held, dict) else (None, None)
+
+
+def _is_looked_into(details: ErrorDetails, every: Iterable[ErrorDetails]) -> bool:
+    """Whether another branch of the union has taken this mapping for what it is, and says what is wrong in it."""
+    here = details["loc"][:-1]
+    return isinstance(details["input"], dict) and any(
+        each["loc"][: len(here)] == here and len(each["loc"]) > len(details["loc"]) for each in every
+    )
 
 
 def _expectation(details: ErrorDetails) -> str:
@@ -113,7 +171,7 @@ def shown(value: object) -> str:
             return f"`{text if len(text) <= 60 else text[:57] + '...'}`"
         case list():
             return "a list" if value else "an empty list"
-    return "a mapping"
+    return "an empty mapping" if value == {} else "a mapping"
 
 
 def _fields_at(kind: type[BaseModel], path: Iterable[str | int]) -> list[str]:
@@ -122,6 +180,17 @@ def _fields_at(kind: type[BaseModel], path: Iterable[str | int]) -> list[str]:
     for step in path:
         parts = [inner for part in parts for inner in _inner(part, step)]
     return [field.alias or name for part in parts for name, field in part.model_fields.items()]
+
+
+def _fields_within(kind: type[BaseModel], path: tuple[str | int, ...]) -> list[str]:
+    """The names that what an entry at `path` holds may have; none where that is no document part."""
+    *around, name = path
+    parts: list[Any] = [kind]
+    for step in around:
+        parts = [inner for part in parts for inner in _inner(part, step)]
+    fields = [field for part in parts for each, field in part.model_fields.items() if name == (field.alias or each)]
+    inner = [each for field in fields for each in _parts_in(field.annotation)]
+    return [field.alias or name for part in inner for name, field in part.model_fields.items()]
 
 
 def _inner(part: type[BaseModel], step: str | int) -> list[Any]:

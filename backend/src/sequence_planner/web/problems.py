@@ -178,7 +178,8 @@ async def _unexpected(request: Request, error: Exception) -> Response:
 async def _work_ended(request: Request, error: Exception) -> Response:
     assert isinstance(error, WorkEndedError)
     text = str(error)
-    detail = f"{text[:1].upper()}{text[1:]}. Try again."
+    end = "" if text.endswith("?") else "."
+    detail = f"{text[:1].upper()}{text[1:]}{end} Try again."
     return problem_response(503, "workshop-failed", "It could not be found out", detail)
 
 

@@ -39,7 +39,8 @@ LONGEST_FILE = 1_000_000  # characters
 MOST_FILES = 2_000
 MOST_CHARACTERS = 10_000_000  # of all files together
 STAGES = "stages"
-_FOLDERS = ("resources", "messages")  # where files are looked for
+_UNFINISHED = ".unfinished"
+FOLDERS = ("resources", "messages")  # where files are looked for
 
 _NAME = "[A-Za-z_][A-Za-z0-9_]{0,99}"
 _DEFINITIONS = "|".join(rf"messages/{_NAME}/{kind}/{_NAME}\.{kind}" for kind in DEFINITIONS)
@@ -116,7 +117,7 @@ def _found(folder: Path | str, below: str = "") -> Iterator[tuple[str, os.DirEnt
     with contextlib.suppress(FileNotFoundError, NotADirectoryError, PermissionError), os.scandir(folder) as entries:
         for entry in entries:
             name = f"{below}{entry.name}"
-            if (below or name in _FOLDERS) and entry.is_dir(follow_symlinks=False):
+            if (below or name in FOLDERS) and entry.is_dir(follow_symlinks=False):
                 yield from _found(entry.path, f"{name}/")
             elif _PATH.fullmatch(name) and entry.is_file():
                 yield name, entry
@@ -181,11 +182,18 @@ def restore_contents(contents: Contents, folder: Path) -> None:
         (folder / name).unlink(missing_ok=True)
 
 
+def forget_unfinished(folder: Path) -> None:
+    """Take away what whoever was killed had not written to its end of the model in `folder`. Raises `OSError`."""
+    for below in ("", *FOLDERS):
+        for path in (folder / below).rglob(f".*{_UNFINISHED}") if below else folder.glob(f".*{_UNFINISHED}"):
+            path.unlink(missing_ok=True)
+
+
 def _put(path: Path, content: bytes, mode: int | None = None) -> None:
     """Write a file at once, with this mode, or with that which it has."""
     target = path.resolve()  # a link stays a link
     target.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
+    handle, name = tempfile.mkstemp(prefix=f".{target.name}.", suffix=_UNFINISHED, dir=target.parent)
     try:
         with os.fdopen(handle, "wb") as file:
             file.write(content)

@@ -80,6 +80,12 @@ describe('the tree', () => {
 		expect(shown([], 'mov')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
 		expect(shown([], 'robot.move')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
 		expect(shown([], ' Robot.Move.leaves')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move', '5 leaves']);
+		// As a name is written in conditions, findings and plans.
+		expect(shown([], 'robot.move(home)')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
+		expect(shown([], 'robot.move(ho')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
+		expect(shown([], 'robot.move.executing')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move']);
+		expect(shown([], 'robot.move(home).leaves')).toEqual(['1 resources', '2 robot', '3 abilities', '4 move', '5 leaves']);
+		expect(shown([], 'operation.make(home).active')).toEqual(['1 operations', '2 make']);
 		expect(shown([], 'nothing like it')).toEqual([]);
 	});
 

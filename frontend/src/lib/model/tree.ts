@@ -279,11 +279,20 @@ export interface Row {
 /** The full name of a node, as expressions have it: `robot.move`. */
 const qualified = (node: Node): string | null => partOf(node)?.replace(/^\w+:/, '') ?? null;
 
+/** The part that a name means, as conditions, findings and plans write it: without arguments, and without the flag. */
+function partIn(words: string): string {
+	const plain = words.replace(/\([^)]*\)?|\[[^\]]*\]?/g, '');
+	return plain.replace(/^operation\./, '').replace(/\.(enabled|executing|finished|active)$/, '');
+}
+
 /** The rows that are in sight where the nodes in `open` are open; with `sought`, what fits it and what is around that. */
 export function rowsOf(tree: readonly Node[], open: ReadonlySet<string>, sought: string): Row[] {
 	const words = sought.trim().toLowerCase();
+	const name = partIn(words);
+	const has = (text: string | null | undefined, part: string): boolean => text?.toLowerCase().includes(part) ?? false;
 	const fits = (node: Node): boolean =>
-		node.kind !== 'section' && [node.name, node.title, qualified(node)].some((text) => text?.toLowerCase().includes(words));
+		node.kind !== 'section' &&
+		([node.name, node.title, qualified(node)].some((text) => has(text, words)) || (name !== '' && has(qualified(node), name)));
 	/** With what fits in it; with all that is in it where it fits itself. */
 	const sift = (nodes: readonly Node[]): Node[] =>
 		nodes.flatMap((node) => {
