@@ -8,7 +8,6 @@ import random
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import pytest
@@ -228,26 +227,29 @@ def test_a_folder_that_is_gone_or_closed_says_so(database: Database, folder: Pat
 
 
 TRIM_UNTIL_KILLED = """
-import os, sys
+import os, signal, sys, time
 from pathlib import Path
 from journal.acts import EVA
 from sequence_planner.journal import retention
 from sequence_planner.storage.database import Database
-retention.MOST_IN_FILE, retention._AT_ONCE, retention._BREATH = 100, 20, 0.001
+retention.MOST_IN_FILE, retention._AT_ONCE, retention._BREATH = 40, 20, 0.001
 for line in sys.stdin:
-    if os.fork() == 0:
-        print(os.getpid(), flush=True)
-        retention.trim(Database.open(sys.argv[1]), float(line), EVA, Path(sys.argv[2]))
+    older_than, seconds = map(float, line.split())
+    began = time.monotonic()
+    if (child := os.fork()) == 0:
+        retention.trim(Database.open(sys.argv[1]), older_than, EVA, Path(sys.argv[2]))
         os._exit(0)
-    os.wait()
-    print("ended", flush=True)
+    if seconds:
+        time.sleep(seconds)
+        os.kill(child, signal.SIGKILL)  # of which nobody else has the number before it is waited for
+    _, status = os.waitpid(child, 0)
+    print(os.waitstatus_to_exitcode(status), time.monotonic() - began, flush=True)
 """
+ROUNDS, MORE = 20, 150
 
 
 def test_killed_at_any_moment_it_has_lost_nothing(database: Database, database_url: str, folder: Path) -> None:
-    draw = random.Random(23)
-    happened(database, range(1, 3001))
-    before = whole(database)
+    draw, written, killed = random.Random(23), 0, 0
     with subprocess.Popen(
         [sys.executable, "-c", TRIM_UNTIL_KILLED, database_url, str(folder)],
         stdin=subprocess.PIPE,
@@ -255,20 +257,37 @@ def test_killed_at_any_moment_it_has_lost_nothing(database: Database, database_u
         text=True,
         env={"PYTHONPATH": ":".join(sys.path)},
     ) as program:
-        assert program.stdin is not None
-        assert program.stdout is not None
-        for _ in range(25):
-            program.stdin.write("2990.0\n")
+
+        def trim_in_child(seconds: float) -> tuple[int, float]:
+            """Trim what was added, killed after so many seconds unless that is 0: its exit code, how long it took."""
+            assert program.stdin is not None
+            assert program.stdout is not None
+            program.stdin.write(f"{written - 10} {seconds}\n")
             program.stdin.flush()
-            child = int(program.stdout.readline())
-            time.sleep(draw.uniform(0.005, 0.2))
-            os.kill(child, signal.SIGKILL)
-            assert program.stdout.readline() == "ended\n"
-            assert whole(database) == before
+            code, took = program.stdout.readline().split()
+            return int(code), float(took)
+
+        def more() -> list[RunRecord]:
+            nonlocal written
+            happened(database, range(written + 1, written + MORE + 1))
+            written += MORE
+            return whole(database)
+
+        before = more()
+        code, longest = trim_in_child(0.0)
+        assert (code, whole(database)) == (0, before)
+        for _ in range(ROUNDS):
+            before = more()
+            code, _ = trim_in_child(draw.uniform(0.001, longest))
+            assert code in (0, -signal.SIGKILL)
+            assert whole(database) == before, "also where it was faster than the kill"
+            killed += code != 0
+        assert program.stdin is not None
         program.stdin.close()
-    trim(database, 2990.0, EVA, folder)
+    assert killed > ROUNDS / 2, f"only {killed} of {ROUNDS} were killed while they trimmed"
+    trim(database, written - 10, EVA, folder)
     retention.clear(database, folder)
-    assert within(database) == list(range(2980, 3001))
+    assert within(database) == list(range(written - 20, written + 1))
     assert whole(database) == before
     with database.reading() as connection:
         archive = Archive()

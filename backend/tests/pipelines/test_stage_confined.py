@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+import ctypes
+import os
 import platform
 import re
 import socket
 import sqlite3
 import stat
+import subprocess
+import sys
+from ast import literal_eval
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
@@ -20,7 +27,17 @@ from sequence_planner.pipelines.stages.own import confinement, process
 from sequence_planner.pipelines.stages.own.confinement import CALLS, FILES, missing
 from sequence_planner.pipelines.stages.own.program import CONFINED
 from sequence_planner.pipelines.stages.own.stage import PythonStage
-from sequence_planner.pipelines.stages.own.system_calls import CLONE, CLONE3, FORBIDDEN, PRLIMIT64, TGKILL
+from sequence_planner.pipelines.stages.own.system_calls import (
+    CLONE,
+    CLONE3,
+    FCNTL,
+    FORBIDDEN,
+    OPEN,
+    OPENAT,
+    OPENAT2,
+    PRLIMIT64,
+    TGKILL,
+)
 
 NUMBERS = {
     0: Path("/usr/include/x86_64-linux-gnu/asm/unistd_64.h"),
@@ -47,7 +64,11 @@ def model(tmp_path: Path) -> Path:
 def acted(model: Path, act: str) -> tuple[object, list[str]]:
     """What a stage gives that does this, and what is wrong with it. `M` is the model, `S` the folder of its stages."""
     (model / "stages" / "acts.py").write_text(
-        f"import os, socket, subprocess, sys, threading\nM, S = {str(model)!r}, {str(model / 'stages')!r}\n"
+        f"import ctypes, fcntl, os, socket, subprocess, sys, threading\n"
+        f"M, S = {str(model)!r}, {str(model / 'stages')!r}\n"
+        "def called(name, *given):\n"
+        "    if getattr(ctypes.CDLL(None, use_errno=True), name)(*given) < 0:\n"
+        "        raise OSError(ctypes.get_errno(), name)\n"
         f"def act(force, mode):\n    return {{'text': str({act})}}\n",
         encoding="utf-8",
     )
@@ -60,6 +81,18 @@ def acted(model: Path, act: str) -> tuple[object, list[str]]:
         return record.values["text"], record.troubles
     finally:
         course.close()
+
+
+@contextmanager
+def shared_memory() -> Iterator[int]:
+    """A segment that another process could have, by its number."""
+    libc = ctypes.CDLL(None, use_errno=True)
+    number = libc.shmget(0, 4096, 0o1600)
+    try:
+        assert number >= 0
+        yield number
+    finally:
+        assert libc.shmctl(number, 0, None) == 0, "nobody has removed it"
 
 
 @CONFINES
@@ -84,6 +117,14 @@ def acted(model: Path, act: str) -> tuple[object, list[str]]:
         "socket.create_connection(('127.0.0.1', PORT))",
         "socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM)",
         "socket.socket(socket.AF_INET, socket.SOCK_DGRAM)",
+        "socket.socketpair(socket.AF_UNIX, socket.SOCK_DGRAM)[0].sendto(b'x', M + '/listens')",
+        "called('shmctl', SHARED, 0, None)",
+        "called('shmat', SHARED, None, 0)",
+        "called('inotify_init1', 0)",
+        "fcntl.fcntl(os.pipe()[0], 8, os.getppid())",
+        "fcntl.fcntl(os.pipe()[0], 10, 9)",
+        "fcntl.fcntl(os.open(S + '/table.csv', os.O_RDONLY), fcntl.F_SETLEASE, fcntl.F_RDLCK)",
+        "os.open(S + '/table.csv', os.O_RDONLY | os.O_TRUNC)",
         "__import__('urllib.request').request.urlopen('http://127.0.0.1:PORT/')",
         "subprocess.run(['true'])",
         "os.fork()",
@@ -94,11 +135,22 @@ def acted(model: Path, act: str) -> tuple[object, list[str]]:
     ],
 )
 def test_a_stage_that_takes_more_than_it_needs_fails_with_a_clear_finding(model: Path, act: str) -> None:
-    with socket.create_server(("127.0.0.1", 0)) as listener:
+    with (
+        socket.create_server(("127.0.0.1", 0)) as listener,
+        socket.socket(socket.AF_UNIX, socket.SOCK_DGRAM) as listens,
+        shared_memory() as shared,
+    ):
         listener.setblocking(False)
-        text, troubles = acted(model, act.replace("PORT", str(listener.getsockname()[1])))
+        listens.setblocking(False)
+        listens.bind(str(model / "listens"))
+        text, troubles = acted(
+            model, act.replace("PORT", str(listener.getsockname()[1])).replace("SHARED", str(shared))
+        )
         with pytest.raises(BlockingIOError):
             listener.accept()
+        with pytest.raises(BlockingIOError):
+            listens.recv(1)
+    (model / "listens").unlink()
     assert text is None
     [trouble] = troubles
     assert trouble.startswith("stages/acts.py act")
@@ -106,6 +158,7 @@ def test_a_stage_that_takes_more_than_it_needs_fails_with_a_clear_finding(model:
     assert sorted(each.name for each in model.iterdir()) == ["stages", "station.sqlite", "station.yaml"]
     assert not (model / "stages" / "made").exists()
     assert not (model.parent / "made").exists()
+    assert (model / "stages" / "table.csv").read_text(encoding="utf-8") == "1,2\n"
     assert (model / "station.yaml").read_text(encoding="utf-8") == "name: cell\n"
     assert stat.S_IMODE((model / "station.sqlite").stat().st_mode) != 0o777
 
@@ -132,6 +185,56 @@ def test_a_stage_has_no_more_memory_than_it_may(model: Path) -> None:
     text, [trouble] = acted(model, "len(bytearray(5 * 1024 ** 3))")
     assert text is None
     assert "MemoryError" in trouble
+
+
+# With Landlock of this version, which knows fewer rights, and so on an older kernel.
+ON_OLDER = """
+import os, sys
+from sequence_planner.pipelines.stages.own import confinement
+version, newest = int(sys.argv[1]), confinement._landlock_version()
+sys.path.append(os.getcwd())
+confinement._landlock_version = lambda: min(version, newest)
+assert confinement.confine() == []
+import fcntl
+try:
+    exec(sys.argv[2])
+except PermissionError:
+    sys.exit(7)
+"""
+
+
+@CONFINES
+@pytest.mark.parametrize("version", range(1, 6))
+@pytest.mark.parametrize(
+    "act",
+    [
+        "os.open('table.csv', os.O_RDONLY | os.O_TRUNC)",
+        "os.open('table.csv', os.O_RDWR | os.O_WRONLY | os.O_TRUNC)",
+        "fcntl.fcntl(r := os.pipe()[0], 10, 9), fcntl.fcntl(r, 8, os.getppid())",
+    ],
+)
+def test_an_older_kernel_keeps_it_from_that_too(tmp_path: Path, version: int, act: str) -> None:
+    (table := tmp_path / "table.csv").write_text("1,2\n", encoding="utf-8")
+    command = [sys.executable, "-c", ON_OLDER, str(version), act]
+    ended = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert (ended.returncode, table.read_text(encoding="utf-8")) == (7, "1,2\n"), ended.stderr
+
+
+@CONFINES
+def test_a_stage_cannot_fill_the_machine_with_threads_nor_raise_its_limits(model: Path) -> None:
+    text, troubles = acted(model, "__import__('resource').getrlimit(__import__('resource').RLIMIT_NPROC)")
+    assert not troubles
+    soft, hard = literal_eval(str(text))
+    assert confinement.MOST_THREADS < soft == hard < confinement.MOST_THREADS + 20_000
+    if os.geteuid() != 0:  # whose threads the kernel does not count
+        bomb = "[threading.Thread(target=threading.Event().wait, daemon=True).start() for _ in range(20_000)]"
+        text, [trouble] = acted(model, f"threading.stack_size(32768), {bomb}")
+        assert "can't start new thread" in trouble
+    text, [trouble] = acted(model, "__import__('resource').setrlimit(__import__('resource').RLIMIT_AS, (-1, -1))")
+    assert text is None
+    text, troubles = acted(model, "[each for each in open('/proc/self/status') if each.startswith('CapEff')]")
+    assert not troubles
+    assert int(str(text).split("\\t")[1].split("\\n")[0], 16) & ~0b110 == 0
 
 
 def test_a_stage_is_not_told_of_the_station(model: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -168,8 +271,9 @@ def test_calls_have_the_numbers_that_the_kernel_gives_them(column: int) -> None:
     known = {
         name: int(number) for name, number in re.findall(r"#define __NR(?:3264)?_(\w+)\s+(\d+)$", text, re.MULTILINE)
     }
-    more = {"clone": CLONE, "clone3": CLONE3, "tgkill": TGKILL, "prlimit64": PRLIMIT64}
-    numbers = {name: each[column] for name, each in {**FORBIDDEN, **more}.items()}
+    more = {"clone": CLONE, "clone3": CLONE3, "tgkill": TGKILL, "prlimit64": PRLIMIT64, "fcntl": FCNTL}
+    more |= {"openat": OPENAT, "openat2": OPENAT2}
+    numbers = {name: each[column] for name, each in {**FORBIDDEN, **more, "open": OPEN}.items()}
     assert {name: known[name] for name in numbers if name in known} == {
         name: number for name, number in numbers.items() if name in known
     }

@@ -23,6 +23,7 @@ from sequence_planner.storage.environment import DATABASE
 
 SPEED = 10.0  # of the devices
 PATIENCE = 240.0  # on a machine that is busy with much else
+BUSY = 30.0  # seconds for an answer there
 PARTS = {"server": ("server",), "controller": ("controller",), "both": ("controller", "server")}
 
 
@@ -50,6 +51,7 @@ class Mortal:
         self.kept = Kept(self.database)
         self.url = self.url or f"sqlite:///{self.folder}/station.sqlite"
         self.browser = signed_in(REPOSITORY / self.model, self.port, self.url)
+        self.browser.timeout = BUSY
 
     def start(self, part: str) -> None:
         """Start one of its processes."""

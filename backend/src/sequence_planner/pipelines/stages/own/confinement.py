@@ -8,6 +8,7 @@ standard library is imported, as this runs before anything of the station's is l
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import errno
 import os
@@ -20,10 +21,21 @@ import sysconfig
 from collections.abc import Iterable
 from pathlib import Path
 
-from sequence_planner.pipelines.stages.own.system_calls import CLONE, CLONE3, FORBIDDEN, PRLIMIT64, TGKILL
+from sequence_planner.pipelines.stages.own.system_calls import (
+    CLONE,
+    CLONE3,
+    FCNTL,
+    FORBIDDEN,
+    OPEN,
+    OPENAT,
+    OPENAT2,
+    PRLIMIT64,
+    TGKILL,
+)
 
 MOST_MEMORY = 4 * 1024**3  # bytes of addresses
 MOST_FILES = 256
+MOST_THREADS = 1024  # beyond those that its user has when it begins; the kernel does not count those of root
 # Beside what Python looks for modules in: libraries, what NumPy and others look at, and what is nowhere else.
 _READ = (
     "/lib",
@@ -49,6 +61,8 @@ _WRITE_FILE, _READ_FILE, _READ_DIR = 1 << 1, 1 << 2, 1 << 3
 _FS_RIGHTS = {1: 13, 2: 14, 3: 15, 4: 15}  # how many rights to files each version knows; later ones 16
 _TCP = 0b11  # to bind and to connect
 _SCOPES = 0b11  # abstract sockets and signals
+_OVER_FILES = 0b110  # the rights of root to files that are somebody else's, as the station reads them too
+_CAPABILITIES = 0x20080522  # the version of the call
 _PR_SET_NO_NEW_PRIVS, _PR_GET_SECCOMP, _PR_SET_SECCOMP = 38, 21, 22
 
 
@@ -70,12 +84,14 @@ def confine() -> list[str]:
         (resource.RLIMIT_NOFILE, MOST_FILES),
         (resource.RLIMIT_FSIZE, 0),
         (resource.RLIMIT_CORE, 0),
+        (resource.RLIMIT_NPROC, _threads() + MOST_THREADS),
     ):
         hard = resource.getrlimit(limit)[1]
         resource.setrlimit(limit, (most, most) if hard == resource.RLIM_INFINITY else (min(most, hard),) * 2)
     found = missing()
     if sys.platform == "linux":
         _prctl(_PR_SET_NO_NEW_PRIVS, 1)
+        _drop_capabilities()
     for part, work in ((FILES, _confine_files), (CALLS, _confine_calls)):
         try:
             if part not in found:
@@ -83,6 +99,26 @@ def confine() -> list[str]:
         except OSError:  # a container may forbid it though the kernel offers it
             found.append(part)
     return found
+
+
+def _threads() -> int:
+    """How many threads this user has."""
+    found, user = 0, os.getuid()
+    with contextlib.suppress(OSError), os.scandir("/proc") as processes:
+        for each in processes:
+            with contextlib.suppress(OSError):  # it has just ended, or is hidden
+                if each.name.isdecimal() and each.stat().st_uid == user:
+                    found += Path(each.path, "task").stat().st_nlink - 2
+    return found
+
+
+def _drop_capabilities() -> None:
+    """Keep nothing of what makes root more than others, such as the right to raise limits."""
+    had = (ctypes.c_uint32 * 6)()
+    header = (ctypes.c_uint32 * 2)(_CAPABILITIES, 0)
+    if _libc().capget(header, had) == 0:
+        kept = (ctypes.c_uint32 * 6)(had[0] & _OVER_FILES, had[1] & _OVER_FILES)
+        _libc().capset(header, kept)
 
 
 def _libc() -> ctypes.CDLL:
@@ -146,11 +182,15 @@ def _allow(ruleset: int, path: str, rights: int) -> None:
 
 
 # Instructions of the filter, which is a program of the classic BPF.
-_LOAD, _IF_EQUAL, _IF_AT_LEAST, _IF_ANY_BIT, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x06
-_NUMBER, _ARCHITECTURE, _FIRST, _FIRST_HIGH = 0, 4, 16, 20  # where in `struct seccomp_data`
+_LOAD, _IF_EQUAL, _IF_AT_LEAST, _IF_ANY_BIT, _AND, _RETURN = 0x20, 0x15, 0x35, 0x45, 0x54, 0x06
+_NUMBER, _ARCHITECTURE, _FIRST, _SECOND, _THIRD = 0, 4, 16, 24, 32  # where in `struct seccomp_data`
 _ALLOW, _KILL, _ERROR = 0x7FFF0000, 0x80000000, 0x00050000
 _CLONE_THREAD = 0x00010000
 _OTHER_NUMBERS = 0x40000000  # those of x32
+# Of `fcntl`: who gets a signal and which one, where Landlock knows no signals, and what makes others wait for a file.
+_OF_SIGNALS = (8, 10, 15, 1024, 1026)  # F_SETOWN, F_SETSIG, F_SETOWN_EX, F_SETLEASE, F_NOTIFY
+# Flags with which an open file is cut and not written to, which Landlock has not always seen.
+_CUTS, _ONLY_CUTS = os.O_TRUNC | os.O_ACCMODE, (os.O_TRUNC, os.O_TRUNC | os.O_ACCMODE)
 
 
 def _confine_calls() -> None:
@@ -167,8 +207,9 @@ def _confine_calls() -> None:
     for numbers in FORBIDDEN.values():
         if (number := numbers[column]) is not None:
             program += [(_IF_EQUAL, 0, 1, number), refuse]
-    # Without it the C library makes its threads by the older call, whose flags can be looked at.
-    program += [(_IF_EQUAL, 0, 1, CLONE3[column]), (_RETURN, 0, 0, _ERROR | errno.ENOSYS)]
+    # Without them the C library makes threads and opens files by older calls, whose flags can be looked at.
+    for newer in (CLONE3, OPENAT2):
+        program += [(_IF_EQUAL, 0, 1, newer[column]), (_RETURN, 0, 0, _ERROR | errno.ENOSYS)]
     program += [
         (_IF_EQUAL, 0, 4, CLONE[column]),
         (_LOAD, 0, 0, _FIRST),
@@ -184,6 +225,20 @@ def _confine_calls() -> None:
             refuse,
             (_RETURN, 0, 0, _ALLOW),
         ]
+    for numbers, argument, bits, refused in (
+        (FCNTL, _SECOND, 0xFFFFFFFF, _OF_SIGNALS),
+        (OPEN, _SECOND, _CUTS, _ONLY_CUTS),
+        (OPENAT, _THIRD, _CUTS, _ONLY_CUTS),
+    ):
+        if (number := numbers[column]) is not None:
+            program += [
+                (_IF_EQUAL, 0, 4 + len(refused), number),
+                (_LOAD, 0, 0, argument),
+                (_AND, 0, 0, bits),
+                *((_IF_EQUAL, len(refused) - at, 0, each) for at, each in enumerate(refused)),
+                (_RETURN, 0, 0, _ALLOW),
+                refuse,
+            ]
     program.append((_RETURN, 0, 0, _ALLOW))
     written = b"".join(struct.pack("=HBBI", *each) for each in program)
     buffer = ctypes.create_string_buffer(written, len(written))

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 FORBIDDEN: dict[str, tuple[int, int | None]] = {
     "socket": (41, 198),
+    "socketpair": (53, 199),  # one of it can be sent from to any socket that has a name
     "execve": (59, 221),
     "execveat": (322, 281),
     "fork": (57, None),
@@ -53,9 +54,21 @@ FORBIDDEN: dict[str, tuple[int, int | None]] = {
     "migrate_pages": (256, 238),
     "move_pages": (279, 239),
     "shmget": (29, 194),
+    "shmat": (30, 196),
+    "shmctl": (31, 195),
     "msgget": (68, 186),
+    "msgsnd": (69, 189),
+    "msgrcv": (70, 188),
+    "msgctl": (71, 187),
     "semget": (64, 190),
+    "semop": (65, 193),
+    "semtimedop": (220, 192),
+    "semctl": (66, 191),
     "mq_open": (240, 180),
+    "mq_unlink": (241, 181),
+    "inotify_init": (253, None),
+    "inotify_init1": (294, 26),
+    "fanotify_init": (300, 262),
     "add_key": (248, 217),
     "request_key": (249, 218),
     "keyctl": (250, 219),
@@ -95,6 +108,9 @@ FORBIDDEN: dict[str, tuple[int, int | None]] = {
     "adjtimex": (159, 171),
     "acct": (163, 89),
     "quotactl": (179, 60),
+    "quotactl_fd": (443, 443),
+    "iopl": (172, None),
+    "ioperm": (173, None),
     "syslog": (103, 116),
     "personality": (135, 92),
 }
@@ -103,3 +119,7 @@ CLONE = 56, 220
 CLONE3 = 435, 435
 TGKILL = 234, 131
 PRLIMIT64 = 302, 261
+FCNTL = 72, 25
+OPEN = 2, None
+OPENAT = 257, 56
+OPENAT2 = 437, 437
