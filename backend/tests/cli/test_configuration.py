@@ -223,6 +223,47 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("start = true\n", ["1: `start` is for emulated devices"]),
+        ("demonstration = true\n", ["1: `demonstration` is for emulated devices"]),
+        (
+            'emulator = true\ndemonstration = true\ndatabase = "sqlite:////a/b.sqlite"\n',
+            ["2: `demonstration` has a database of its own", "3: /a/b.sqlite cannot be made"],
+        ),
+        (
+            'emulator = true\ndemonstration = true\nhost = "0.0.0.0"\nproxy = ["10.0.0.1"]\nname = ["a.example"]\n',
+            ["2: `demonstration` is for this machine alone"],
+        ),
+        ('hot_standby = "press a"\n', ["1: `hot_standby` takes a name"]),
+        (
+            'hot_standby = "a"\ndatabase = "sqlite:////tmp/b.sqlite"\n',
+            ["1: several stations cannot share /tmp/b.sqlite"],
+        ),
+        ('\noidc_client = "x"\n', ["2: `oidc_issuer` is missing"]),
+        ('oidc_issuer = "https://a.example"\noidc_client = "x"\n', ["1: nobody of the provider could sign in"]),
+        (
+            'oidc_issuer = "https://a.example"\noidc_client = "x"\noidc_role = ["boss=all"]\n',
+            ["3: 'boss=all' says no role of a group"],
+        ),
+        (
+            'webhook_network = ["10.1.2.0/24", "10.1.2.3/24", "x"]\nwebhook_host = ["https://mes.example/"]\n',
+            ["2: `webhook_host`: ", "1: `webhook_network`: '10.1.2.3/24' is no", "1: `webhook_network`: 'x' is no"],
+        ),
+    ],
+)
+def test_what_does_not_go_together_is_told_before_it_is_run(tmp_path: Path, text: str, said: list[str]) -> None:
+    file = written(tmp_path, text)
+    code, out, err = command("configuration", "check", file)
+    assert (code, out) == (2, "")
+    lines = err.splitlines()
+    assert [line.startswith(f"{file}:{each}") for line, each in zip(lines, said, strict=True)] == [True] * len(said), (
+        err
+    )
+    assert command("run", CELL, "--configuration", file)[0] == 2
+
+
 def test_run_calls_what_it_refuses_as_it_was_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = written(tmp_path, f'model = "{CELL}"\ncertificate = "press.pem"\n')
     monkeypatch.setenv("SEQUENCE_PLANNER_PRIVATE_KEY", "press.key")

@@ -13,15 +13,15 @@ from multiprocessing.process import BaseProcess
 import pytest
 
 from mes.works import NOW, check, shop
-from sequence_planner.mes.sequencing.process import Sequencer
+from sequence_planner.mes.sequencing.process import LATE, Sequencer
 from sequence_planner.mes.sequencing.work import Operation, Schedule, Work
 
 PATIENCE = 60.0  # seconds
 
 
-def run(scenario: Callable[[Sequencer], Awaitable[None]]) -> None:
+def run(scenario: Callable[[Sequencer], Awaitable[None]], late: float = LATE) -> None:
     async def live() -> None:
-        sequencer = Sequencer(asyncio.get_running_loop())
+        sequencer = Sequencer(asyncio.get_running_loop(), late)
         try:
             async with asyncio.timeout(PATIENCE):
                 await scenario(sequencer)
@@ -80,7 +80,20 @@ def test_one_that_stands_still_is_not_waited_for_longer_than_was_said() -> None:
         os.kill(process.pid, signal.SIGCONT)
         assert not (await ordered(sequencer, works)).fallback
 
-    run(scenario)
+    run(scenario, late=0.0)
+
+
+def test_what_a_busy_machine_finds_of_a_thousand_orders_is_taken_although_it_is_late() -> None:
+    works = shop(1000, seed=3)
+
+    async def scenario(sequencer: Sequencer) -> None:
+        await ordered(sequencer, shop(2, seed=1))
+        schedule = await sequencer.sequence(works, [], NOW, 0.05)  # in which no machine reads the question
+        check(works, [], schedule)
+        assert (schedule.fallback, schedule.optimal) == ("", False)
+        assert 20 <= schedule.horizon < 1000
+
+    run(scenario, late=PATIENCE)
 
 
 def test_what_cannot_be_worked_is_refused_and_the_next_question_is_answered() -> None:

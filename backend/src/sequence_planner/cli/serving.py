@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from pathlib import Path
 from socket import socket as ListeningSocket  # noqa: N812 - the option `socket` is a path
 from typing import Annotated
@@ -29,13 +28,14 @@ from sequence_planner.cli.parts import (
     begin,
 )
 from sequence_planner.cli.provider_options import Client, Groups, Issuer, Others, Roles, Scopes, SecretFile, Title
+from sequence_planner.cli.together import webhook_targets, wrong_together
 from sequence_planner.configuration import ConfigurationError, has_password, url_in
 from sequence_planner.deployment_folder import DeploymentNote, undo_what_was_cut_off
 from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
 from sequence_planner.lifeline import is_needed
 from sequence_planner.logs import LogFormat
-from sequence_planner.mes.webhooks.targets import TargetRefused, Targets, host_and_port, network
+from sequence_planner.mes.webhooks.targets import Targets
 from sequence_planner.model.source import ModelError
 from sequence_planner.retention.settings import (
     JOURNAL_DAYS,
@@ -77,7 +77,6 @@ Names = Annotated[
     typer.Option("--name", metavar="HOST[:PORT]", help="A name by which people open the page; can be repeated."),
 ]
 _NICENESS = 2  # of the server: ticks come before whoever looks on
-HOT_STANDBY = re.compile(r"[A-Za-z0-9][A-Za-z0-9.-]{0,59}")
 WebhookHosts = Annotated[
     list[str] | None,
     typer.Option(
@@ -217,8 +216,6 @@ def run(
     """Run a station: controller, server and page."""
     from sequence_planner.launcher import Launch, launch  # noqa: PLC0415
 
-    if start and not emulator:
-        refuse("--start is for emulated devices: with real ones a person starts production on the page")
     endpoint = Endpoint(
         host=host,
         port=port,
@@ -227,21 +224,24 @@ def run(
         proxies=tuple(proxy or ()),
         names=tuple(name or ()),
     )
-    if demonstration and not emulator:
-        refuse("--demonstration is for emulated devices, which nobody has to sign in for: give --emulator, or leave it")
+    wrong = wrong_together(
+        emulator=emulator,
+        start=start,
+        demonstration=demonstration,
+        database=database is not None,
+        database_file=database_file is not None,
+        hot_standby=hot_standby,
+        provider=oidc_issuer is not None,
+    )
+    for each in wrong:
+        refuse(each)
     if database is not None and has_password(database) and is_typed(context, "database"):
         refuse(
             "everybody on this machine can read a password on the command line: give the database's URL in "
             f"--database-file, in the --configuration or in {DATABASE}"
         )
     if database_file is not None:
-        database = _url_in(database_file, database)
-    if demonstration and database is not None:
-        refuse(f"--demonstration has a database of its own, forgotten at the end: leave --database and {DATABASE} out")
-    if hot_standby is not None and (demonstration or not HOT_STANDBY.fullmatch(hot_standby)):
-        refuse(
-            "--hot-standby takes a name of up to 60 letters, digits, dots and hyphens, and is not for demonstrations"
-        )
+        database = _url_in(database_file)
     provider = ProviderOptions(
         issuer=oidc_issuer,
         client=oidc_client,
@@ -252,8 +252,7 @@ def run(
         roles=tuple(oidc_role or ()),
         others=oidc_others,
     )
-    if _provider(provider) is not None and demonstration:
-        refuse("--demonstration is for whoever sits here, and nobody signs in: leave --oidc-issuer out, or it")
+    _provider(provider)
     webhooks = _targets(webhook_host, webhook_network, webhook_loopback)
     cut_off = _undone(model)
     unusable = _unusable(model)
@@ -312,9 +311,7 @@ def _unusable(model: Path) -> str | None:
     return None
 
 
-def _url_in(file: Path, beside: str | None) -> str:
-    if beside is not None:
-        refuse("the database is named twice: give --database or --database-file")
+def _url_in(file: Path) -> str:
     try:
         return url_in(file)
     except ConfigurationError as error:
@@ -422,10 +419,7 @@ def _provider(options: ProviderOptions) -> ProviderSettings | None:
 
 
 def _targets(hosts: list[str] | None, networks: list[str] | None, loopback: bool) -> Targets:
-    option = "--webhook-host"
-    try:
-        found = frozenset(map(host_and_port, hosts or ()))
-        option = "--webhook-network"
-        return Targets(found, loopback, tuple(dict.fromkeys(map(network, networks or ()))))
-    except TargetRefused as refused:
-        refuse(f"{option}: {refused}")
+    targets, wrong = webhook_targets(hosts or (), networks or (), loopback)
+    for each in wrong:
+        refuse(each)
+    return targets

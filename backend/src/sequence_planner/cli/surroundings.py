@@ -1,28 +1,31 @@
-"""Whether what a configuration names is there and fit: the model, certificates, secrets, the database, folders."""
+"""Whether what a configuration says can be used: what it names is there and fit, and nothing contradicts the rest."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 
 from sequence_planner.cli.loading import load_model
+from sequence_planner.cli.together import webhook_targets, wrong_together
 from sequence_planner.configuration import Configuration, ConfigurationError, Told, as_told, options_in, url_in
+from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
+from sequence_planner.identity.openid.settings import NO_OTHERS
 from sequence_planner.model.source import ModelError
 from sequence_planner.retention.settings import NO_ARCHIVE
 from sequence_planner.storage.address import SqliteFile, address
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
-from sequence_planner.web.binding import wrong_with
-from sequence_planner.web.settings import Endpoint
+from sequence_planner.web.binding import check_demonstration, wrong_with
+from sequence_planner.web.settings import Endpoint, SettingsError
 
 _READ_WHOLE = ("oidc_client_secret_file",)
 
 
 def unfit(told: Mapping[str, Told]) -> Iterator[str]:
     """What `run` would not start with, each with where it was told. Nothing is made, written or upgraded."""
-    for check in (_model, _endpoint, _database, _secrets, _folders):
+    for check in (_model, _endpoint, _together, _provider, _webhooks, _database, _secrets, _folders):
         yield from check(told)
 
 
@@ -45,11 +48,66 @@ def _endpoint(told: Mapping[str, Told]) -> Iterator[str]:
         proxies=_list(given.get("proxy")),
         names=_list(given.get("name")),
     )
+    yield from _placed(told, wrong_with(endpoint))
+    if given.get("demonstration"):
+        try:
+            check_demonstration(endpoint)
+        except SettingsError as error:
+            yield from _placed(told, [str(error)])
+
+
+def _together(told: Mapping[str, Told]) -> Iterator[str]:
+    """What of it contradicts something else of it."""
+    given = {name: each.value for name, each in told.items()}
+    standby = given.get("hot_standby")
+    yield from _placed(
+        told,
+        wrong_together(
+            emulator=bool(given.get("emulator")),
+            start=bool(given.get("start")),
+            demonstration=bool(given.get("demonstration")),
+            database="database" in told,
+            database_file="database_file" in told,
+            hot_standby=None if standby is None else str(standby),
+            provider="oidc_issuer" in told,
+        ),
+    )
+
+
+def _provider(told: Mapping[str, Told]) -> Iterator[str]:
+    given = {name: each.value for name, each in told.items()}
+    options = ProviderOptions(
+        issuer=_text(given.get("oidc_issuer")),
+        client=_text(given.get("oidc_client")),
+        title=_text(given.get("oidc_title")),
+        scopes=_list(given.get("oidc_scope")),
+        roles=_list(given.get("oidc_role")),
+        others=str(given.get("oidc_others", NO_OTHERS)),
+    )
+    try:
+        options.settings({})
+    except ProviderOptionError as error:
+        about = [name for name in told if name.startswith("oidc_")]
+        yield from _placed(told, [str(error)], about)
+
+
+def _webhooks(told: Mapping[str, Told]) -> Iterator[str]:
+    given = {name: each.value for name, each in told.items()}
+    _, wrong = webhook_targets(_list(given.get("webhook_host")), _list(given.get("webhook_network")), loopback=False)
+    yield from _placed(told, wrong)
+
+
+def _placed(told: Mapping[str, Told], complaints: Iterable[str], about: Sequence[str] = ()) -> Iterator[str]:
+    """Complaints about options, each where the first of these was told, or else the first that it is `about`."""
     called = {name: f"`{name}`" for name in Configuration.model_fields}
     anywhere = next(iter(told.values())).where.rpartition(":")[0] if told else ""
-    for wrong in wrong_with(endpoint):
-        where = next((told[name].where for name in options_in(wrong) if name in told), anywhere)
-        yield f"{where}: {as_told(wrong, called)}"
+    for each in complaints:
+        where = next((told[name].where for name in (*options_in(each), *about) if name in told), anywhere)
+        yield f"{where}: {as_told(each, called)}"
+
+
+def _text(value: object) -> str | None:
+    return None if value is None else str(value)
 
 
 def _path(value: object) -> Path | None:
@@ -69,6 +127,8 @@ def _database(told: Mapping[str, Told]) -> Iterator[str]:
         else:
             return
         place = address(url)
+        if "hot_standby" in told and isinstance(place, SqliteFile):
+            yield f"{told['hot_standby'].where}: several stations cannot share {place}: `hot_standby` takes PostgreSQL"
         if isinstance(place, SqliteFile) and not place.path.exists():
             if (why := _unusable_folder(place.path.parent)) is not None:
                 yield f"{where}: {place.path} cannot be made: {why}"

@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 import asyncio
 import contextlib
+import shlex
 import signal
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 
 from sequence_planner.emulation.truck_station import mir
@@ -59,21 +61,36 @@ async def _run(given: argparse.Namespace) -> None:
 
 
 async def _run_all(given: argparse.Namespace) -> None:
-    """The world and its nodes, until this one ends, or one of them does."""
+    """The world and its nodes, until this one ends, or the world does. A node may end as a computer may: it is said."""
     common = ("--port", str(given.port), "--mir-port", str(given.mir_port), "--messages", str(given.messages))
     world = ("--speed", str(given.speed), "--seed", str(given.seed))
     module = ("-m", "sequence_planner.emulation.truck_station")
-    processes = []
+    processes = {}
     for what in ("world", mir.NAME, *NODE_TYPES):
         arguments = (*module, what, *common, *(world if what == "world" else ()))
-        processes.append(await asyncio.create_subprocess_exec(sys.executable, *arguments))
+        processes[what] = await asyncio.create_subprocess_exec(sys.executable, *arguments)
+    again = {what: shlex.join((sys.executable, *module, what, *common)) for what in processes}
+    await outlived(processes, again)
+
+
+async def outlived(processes: Mapping[str, asyncio.subprocess.Process], again: Mapping[str, str]) -> None:
+    """Wait for the end of the world, and end all others then. How a node that ends before is started again is said."""
+
+    async def watch(what: str) -> None:
+        await processes[what].wait()
+        sys.stderr.write(f"{what} has ended, the others go on; to start it again: {again[what]}\n")
+        sys.stderr.flush()
+
+    watching = [asyncio.create_task(watch(what)) for what in processes if what != "world"]
     try:
-        await asyncio.wait({asyncio.create_task(each.wait()) for each in processes}, return_when="FIRST_COMPLETED")
+        await processes["world"].wait()
     finally:
-        for each in processes:
+        for each in watching:
+            each.cancel()
+        for process in processes.values():
             with contextlib.suppress(ProcessLookupError):
-                each.terminate()
-        await asyncio.gather(*(each.wait() for each in processes))
+                process.terminate()
+        await asyncio.gather(*(process.wait() for process in processes.values()))
 
 
 if __name__ == "__main__":

@@ -24,6 +24,7 @@ Nothing: TypeAlias = tuple[()]
 
 _NICENESS = 5  # ticks come first
 _ANSWERING: Final = 0.2  # of the time, for what is around the search
+LATE: Final = 8.0  # seconds; on a busy machine the best that was found comes later than it was asked for
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,8 @@ class Question:
 class Sequencer:
     """Has works put into an order. Used from one event loop; one question at a time, the others wait for their turn."""
 
-    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+    def __init__(self, loop: asyncio.AbstractEventLoop, late: float = LATE) -> None:
+        self._late = late
         work = ProcessWork[Nothing, Question]("order of work", serve, (), lambda question: False)
         listener: Listener[Question, Schedule] = Listener(self._answered, self._failed)
         self._waiting: asyncio.Future[Schedule | str] | None = None
@@ -49,8 +51,9 @@ class Sequencer:
     async def sequence(
         self, works: Sequence[Work], exclusive: Collection[frozenset[str]], now: float, limit: float
     ) -> Schedule:
-        """The order, `limit` seconds after its turn has come at the latest; when there is none by then, the order by
-        rule, which says why in `fallback`. Raises `ValueError` for works that cannot be worked.
+        """The order that is the best to be found within `limit` seconds after its turn has come. It is waited for some
+        seconds longer, as it is better than none; when there is none by then, the order by rule, which says why in
+        `fallback`. Raises `ValueError` for works that cannot be worked.
         """
         async with self._turn:
             answer = await self._ask(Question(tuple(works), tuple(exclusive), now, limit))
@@ -70,9 +73,9 @@ class Sequencer:
         self._waiting = asyncio.get_running_loop().create_future()
         self._process.ask(question)
         try:
-            return await asyncio.wait_for(self._waiting, question.deadline)
+            return await asyncio.wait_for(self._waiting, question.deadline + self._late)
         except TimeoutError:
-            return f"no order was found within {question.deadline:g} s"
+            return f"no order was found within {question.deadline + self._late:g} s"
         finally:
             self._waiting = None
             self._process.call_off()

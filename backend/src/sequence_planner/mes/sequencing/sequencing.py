@@ -66,7 +66,11 @@ def _rolling(
     remaining: Callable[[], float],
     most: int,
 ) -> Schedule:
-    """What comes first, by the best of the rules, searched by itself; what comes then follows as it was."""
+    """What comes first, by the best of the rules, searched by itself; what comes then follows as it was.
+
+    What is around the search takes the machine, however busy it is, about as long behind it as before it.
+    """
+    before = remaining()
     best = min((pack(problem, _in_rows(problem, rule)) for rule in RULES), key=lambda starts: cost(problem, starts))
     order = sorted(range(len(problem.jobs)), key=lambda job: _place(problem, best, job))
     tasks, near = 0, list[int]()
@@ -75,7 +79,9 @@ def _rolling(
         if near and tasks > most and not problem.jobs[job].begun:
             break
         near.append(job)
-    found = sequence([works[job] for job in sorted(near)], groups, problem.now, limit, remaining, len(problem.tasks))
+    taken = 0.0 if before == inf else before - remaining()
+    left = lambda: remaining() - taken  # noqa: E731
+    found = sequence([works[job] for job in sorted(near)], groups, problem.now, limit, left, len(problem.tasks))
     number = {(problem.jobs[task.job].name, task.name): each for each, task in enumerate(problem.tasks)}
     first = sorted(
         (found.starts[step][0], number[step]) for step in found.starts if problem.tasks[number[step]].end is None
