@@ -80,7 +80,10 @@ def _rolling(
             break
         near.append(job)
     taken = 0.0 if before == inf else before - remaining()
-    left = lambda: remaining() - taken  # noqa: E731
+
+    def left() -> float:
+        return remaining() - taken
+
     found = sequence([works[job] for job in sorted(near)], groups, problem.now, limit, left, len(problem.tasks))
     number = {(problem.jobs[task.job].name, task.name): each for each, task in enumerate(problem.tasks)}
     first = sorted(
