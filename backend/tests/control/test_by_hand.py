@@ -128,6 +128,17 @@ def test_how_the_station_went_on_is_told_and_the_notice_goes() -> None:
     assert not rig.by_hand.notices(rig.now + STAYS + 1)
 
 
+def test_what_was_under_way_goes_on_and_is_not_finished_by_a_hand() -> None:
+    rig = working("bolt_tightening")
+    down = "robot.move_to_position(bolt_pair_3)"
+    assert rig.run(60, until=lambda: down in rig.started and rig.value("robot.pose") == "unknown")
+    rig.put("robot.pose", "home")
+    (notice,) = rig.by_hand.notices(rig.now)
+    assert (notice.how, notice.by) == (WentOn.EXECUTES, down)
+    assert rig.run(30, until=lambda: rig.value("robot.pose") == "bolt_pair_3")
+    assert len(rig.told) == 1
+
+
 def test_a_notice_does_not_stay_for_ever() -> None:
     rig = working("bolt_tightening")
     assert rig.run(60, until=lambda: rig.value("robot.pose") == "above_engine")

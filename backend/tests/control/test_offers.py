@@ -281,8 +281,11 @@ def test_the_advisor_offers_a_correction_and_a_restart_ability_and_each_can_be_t
             there.believe(jammed=True)
             there.tick()
             assert there.execution.active == {"deliver"}
+            said = next(offer for offer in (await there.offers.advice()).offers if offer.corrections)
+            assert said.obstacle == refused("not-in-restart", lambda: there.take(said))
             there.enter(Mode.RESTART)
             advice = await there.offers.advice()
+            assert [offer.obstacle for offer in advice.offers if offer.corrections] == [None]
             assert advice.revision == there.execution.revision
             assert await there.offers.advice() is advice, "the same question is not asked twice"
             monkeypatch.setattr(offers, "MOST_KEPT", len(advice.offers))

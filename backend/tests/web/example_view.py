@@ -78,6 +78,7 @@ def example_view(**changes: object) -> StationView:
         packml=PackML.EXECUTE,
         standing=StationStanding.WORKING,
         silent=[],
+        failing=[],
         stepping=False,
         production=Production.STARTED,
         unconfirmed=False,

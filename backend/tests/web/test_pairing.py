@@ -51,6 +51,7 @@ def test_a_watch_is_offered_paired_confirmed_and_shown_its_tasks(client: httpx.C
         "mode": "automatic",
         "standing": "working",
         "silent": [],
+        "failing": [],
         "tasks": {OWN: station().tasks[OWN].model_dump(mode="json")},
     }
 

@@ -5343,7 +5343,8 @@ export interface components {
          *     specifications on its way. `obstacle` says why it cannot be taken as things are now, null where it can.
          *
          *     By `corrections` a person says what is true of the product. Those `only_if_checked` would have operations count as
-         *     done, or nearer to it, although nobody has done anything: `claims` has their names.
+         *     done, or nearer to it, although nobody has done anything: `claims` has their names. What is `physical` can be what
+         *     an ability waits for, which then writes the estimates that it `records`.
          */
         OfferView: {
             /** Assumed */
@@ -5384,6 +5385,8 @@ export interface components {
             operation: string | null;
             /** Physical */
             physical: components["schemas"]["ValueChangeView"][];
+            /** Records */
+            records: components["schemas"]["ValueChangeView"][];
             /** Revision */
             revision: number;
             then: components["schemas"]["PlanPreviewView"] | null;
@@ -7018,6 +7021,8 @@ export interface components {
             control: components["schemas"]["ControlView"] | null;
             deployment: components["schemas"]["DeploymentView"] | null;
             errand: components["schemas"]["ErrandView"] | null;
+            /** Failing */
+            failing: string[];
             /** Forces */
             forces: {
                 [key: string]: components["schemas"]["ForceView"];
@@ -7075,6 +7080,8 @@ export interface components {
             control?: components["schemas"]["ControlView"] | null;
             deployment?: components["schemas"]["DeploymentView"] | null;
             errand?: components["schemas"]["ErrandView"] | null;
+            /** Failing */
+            failing?: string[];
             /** Forces */
             forces?: {
                 [key: string]: components["schemas"]["ForceView"];
@@ -7236,6 +7243,8 @@ export interface components {
             control: components["schemas"]["ControlView"] | null;
             deployment: components["schemas"]["DeploymentView"] | null;
             errand: components["schemas"]["ErrandView"] | null;
+            /** Failing */
+            failing: string[];
             /** Forces */
             forces: {
                 [key: string]: components["schemas"]["ForceView"];
@@ -8142,9 +8151,12 @@ export interface components {
          * WatchSnapshot
          * @description The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title.
          *
-         *     `standing` says whether anything starts by itself, `silent` which devices are not heard.
+         *     `standing` says whether anything starts by itself, `silent` which devices are not heard, `failing` which of
+         *     the others do not do what they should.
          */
         WatchSnapshot: {
+            /** Failing */
+            failing: string[];
             /**
              * @description discriminator enum property added by openapi-typescript
              * @enum {string}

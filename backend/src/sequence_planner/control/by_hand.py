@@ -109,7 +109,7 @@ class ByHand:
                 found.setdefault(resource, {})[name] = (before, after)
         for resource, values in found.items():
             moved = Moved(resource, values, now)
-            by, how = self._by(moved, heard, outcome)
+            by, how = self._by(moved, heard, outcome, at_once=True)
             moved = self._moved[resource] = replace(moved, by=by, how=how, on=now if how else None)
             changed: JsonValue = {name: [before, after] for name, (before, after) in values.items()}
             self._tell(KIND, {"resource": resource, "changed": changed, **_went_on(moved)})
@@ -147,8 +147,13 @@ class ByHand:
                 self._moved[resource] = gone = replace(moved, by=by, how=how, on=now)
                 self._tell(KIND, {"resource": resource, **_went_on(gone)})
 
-    def _by(self, moved: Moved, heard: Heard, outcome: TickOutcome) -> tuple[str | None, WentOn | None]:
-        """By which ability the station goes on, and how, if it does in this tick."""
+    def _by(
+        self, moved: Moved, heard: Heard, outcome: TickOutcome, at_once: bool = False
+    ) -> tuple[str | None, WentOn | None]:
+        """By which ability the station goes on, and how, if it does in this tick.
+
+        In the tick of the change, `at_once`, what was under way and still is goes on too.
+        """
         abilities = self._execution.automaton.abilities
         executing = [
             name
@@ -156,7 +161,8 @@ class ByHand:
             if ability.resource == moved.resource
             and name not in outcome.started
             and heard.after[ability.flag("executing")] is True
-            and heard.before[ability.flag("executing")] is not True
+            and (at_once or heard.before[ability.flag("executing")] is not True)
+            and not self._reading[name].isdisjoint(moved.values)
         ]
         choices: tuple[tuple[WentOn, Collection[str]], ...] = (
             (WentOn.EXECUTES, executing),

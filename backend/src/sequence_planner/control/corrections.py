@@ -17,7 +17,7 @@ from sequence_planner.control.doubting import Doubting
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.heard import Heard
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.offer_refusals import errand_under_way
+from sequence_planner.control.offer_refusals import correcting_refused
 from sequence_planner.control.outside import leaves
 from sequence_planner.control.restart_commands import (
     ConfirmEstimates,
@@ -27,7 +27,7 @@ from sequence_planner.control.restart_commands import (
     UndoCorrection,
 )
 from sequence_planner.control.restart_view import LastCorrectionView
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.view import Production
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.types import Value, contains
@@ -52,11 +52,11 @@ class Corrections:
         """The last correction; None if there was none, or it was taken back."""
         if self._last is None:
             return None
-        return self._last.model_copy(update={"undoable": self._stayed and self._obstacle() is None})
+        return self._last.model_copy(update={"undoable": self._stayed and correcting_refused(self._execution) is None})
 
     async def preview(self, values: Mapping[str, GivenValue]) -> CorrectionPreview:
         """What the correction would bring about. Raises `CommandRefused`."""
-        obstacle = self._obstacle()
+        obstacle = correcting_refused(self._execution)
         return await self._previewing.preview(self._estimates(values), None if obstacle is None else obstacle.detail)
 
     def carry_out(self, command: CorrectionCommand, moment: Moment) -> None:
@@ -157,18 +157,8 @@ class Corrections:
     def _is_so(self, values: Mapping[str, Value]) -> bool:
         return all(self._execution.state[name] == value for name, value in values.items())
 
-    def _obstacle(self) -> CommandRefused | None:
-        """Why no correction can be made now; None when one can."""
-        execution = self._execution
-        if execution.errand is not None:
-            return errand_under_way(execution.errand)
-        if execution.mode is not Mode.RESTART and execution.production is Production.STARTED:
-            detail = "Corrections are made in restart mode, or before production is started. Enter restart mode first."
-            return CommandRefused("not-in-restart", "The mode is another one", detail)
-        return None
-
     def _require_allowed(self) -> None:
-        if (refusal := self._obstacle()) is not None:
+        if (refusal := correcting_refused(self._execution)) is not None:
             raise refusal
 
     def _estimates(self, values: Mapping[str, GivenValue]) -> dict[str, Value]:

@@ -24,13 +24,23 @@ def refusal_of(offer: Offer, execution: Execution) -> CommandRefused | None:
         return CommandRefused("physical-first", "Something has to be done first", detail)
     if offer.errand is None:
         if offer.corrections:
-            return None  # whoever makes them knows when they may be made
+            return correcting_refused(execution)
         detail = "Nothing has to be carried out. Leave restart mode if the station is in it, and go on."
         return CommandRefused("nothing-to-take", "There is nothing to take", detail)
     if execution.production is not Production.STARTED:
         detail = "Production has not been started, so nothing can be. Start production, then ask again."
         return CommandRefused("production-waiting", "Production waits", detail)
     return _wrong_mode(offer, execution.mode)
+
+
+def correcting_refused(execution: Execution) -> CommandRefused | None:
+    """Why no correction can be made now; None when one can."""
+    if execution.errand is not None:
+        return errand_under_way(execution.errand)
+    if execution.mode is not Mode.RESTART and execution.production is Production.STARTED:
+        detail = "Corrections are made in restart mode, or before production is started. Enter restart mode first."
+        return CommandRefused("not-in-restart", "The mode is another one", detail)
+    return None
 
 
 def _wrong_mode(offer: Offer, mode: Mode) -> CommandRefused | None:

@@ -47,6 +47,7 @@ def offer_view(automaton: Automaton, offer: Offer, id_: str, revision: int, obst
         goals=list(offer.goals),
         left_out=list(offer.left_out),
         claims=list(offer.claims),
+        records=_changes(offer.records),
         only_if_checked=offer.only_if_checked,
         effort=EffortView(
             cost=offer.effort.cost,
@@ -85,7 +86,8 @@ def _parts(automaton: Automaton, offer: Offer) -> Iterator[str]:
     if returning:
         yield f"bring {' and '.join(returning)} back"
     if offer.physical:
-        yield f"see to it that {_each(offer.physical, 'is')}"
+        records = f", so that {_each(offer.records, 'counts as')}" if offer.records else ""
+        yield f"see to it that {_each(offer.physical, 'is')}{records}"
     if offer.only_if_checked:
         yield _each(offer.corrections, "is")
     elif offer.corrections:

@@ -60,7 +60,8 @@ class OfferView(View):
     specifications on its way. `obstacle` says why it cannot be taken as things are now, null where it can.
 
     By `corrections` a person says what is true of the product. Those `only_if_checked` would have operations count as
-    done, or nearer to it, although nobody has done anything: `claims` has their names.
+    done, or nearer to it, although nobody has done anything: `claims` has their names. What is `physical` can be what
+    an ability waits for, which then writes the estimates that it `records`.
     """
 
     id: str
@@ -84,6 +85,7 @@ class OfferView(View):
     goals: list[str]
     left_out: list[str]
     claims: list[str]
+    records: list[ValueChangeView]
     only_if_checked: bool
     effort: EffortView
     obstacle: str | None

@@ -193,6 +193,7 @@ def preparing_view(
         packml=PackML.RESETTING,
         standing=StationStanding.PREPARING,
         silent=[],
+        failing=[],
         stepping=False,
         production=Production.PREPARING,
         unconfirmed=False,

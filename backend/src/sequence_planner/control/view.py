@@ -334,6 +334,7 @@ class StationView(View):
     packml: PackML
     standing: StationStanding
     silent: list[str]  # titles of the resources in service that are not heard
+    failing: list[str]  # titles of those that are, and do not do what they should
     stepping: bool  # every start waits for a person's step
     production: Production
     unconfirmed: bool  # whether estimates came back from the journal that nobody has confirmed

@@ -53,6 +53,7 @@ from sequence_planner.control.view import (
 )
 from sequence_planner.control.viewing_conduct import (
     errand_view,
+    failing,
     force_views,
     last_errand_view,
     packml,
@@ -156,6 +157,7 @@ class Viewing:
             packml=self.packml,
             standing=stands,
             silent=silent,
+            failing=[title for title in failing(execution.automaton, alarms) if title not in silent],
             stepping=conduct.stepping,
             production=execution.production if self._network.commands else Production.PREPARING,
             unconfirmed=self._beliefs.unconfirmed,

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.conduct import Conduct
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.offer_showing import end_text
@@ -36,6 +37,25 @@ _STANDING = {
     Mode.RESTART: StationStanding.RESTART,
     Mode.PAUSED: StationStanding.PAUSED,
 }
+
+
+# What alarms are called that say of a device, or of what it does, that it fails; see `docs/alarms.md`.
+_FAILURES = frozenset({"overdue", "still", "given-up"})
+
+
+def failing(automaton: Automaton, alarms: Mapping[str, AlarmView]) -> list[str]:
+    """What the resources are called that do not do what they should, as `alarms` say; people are none of them."""
+    found: set[str] = set()
+    for key, alarm in alarms.items():
+        kind, _, name = key.partition(":")
+        ability = automaton.abilities.get(name)
+        if alarm.ended is not None or kind not in _FAILURES:
+            continue
+        if ability is None:
+            found.add(name)
+        elif ability.human is None:
+            found.add(ability.resource)
+    return [title for name, title in automaton.resources.items() if name in found]
 
 
 def standing(execution: Execution, outside: Outside, silent: Collection[str]) -> StationStanding:

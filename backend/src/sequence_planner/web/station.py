@@ -63,6 +63,7 @@ class StationAnswer(Answer):
     packml: PackML
     standing: StationStanding
     silent: list[str]
+    failing: list[str]
     stepping: bool
     production: Production
     by_order: bool

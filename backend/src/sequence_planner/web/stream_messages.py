@@ -60,6 +60,7 @@ class StationChange(TypedDict, total=False):
     packml: PackML
     standing: StationStanding
     silent: list[str]
+    failing: list[str]
     stepping: bool
     production: Production
     unconfirmed: bool

@@ -99,7 +99,8 @@ class WatchSelfAnswer(BaseModel):
 class WatchSnapshot(StreamPart):
     """The tasks of the watch's own resource, by id, as of `time`; `station` is the station's title.
 
-    `standing` says whether anything starts by itself, `silent` which devices are not heard.
+    `standing` says whether anything starts by itself, `silent` which devices are not heard, `failing` which of
+    the others do not do what they should.
     """
 
     kind: Literal["watch"]
@@ -108,6 +109,7 @@ class WatchSnapshot(StreamPart):
     mode: Mode
     standing: StationStanding
     silent: list[str]
+    failing: list[str]
     tasks: dict[str, TaskView]
 
 

@@ -56,7 +56,14 @@ class WatchShow:
         for resource, latest in self._shown.items():
             if not latest.somebody.is_set():
                 continue
-            matter = (view.mode, view.standing, view.silent, view.station.title, own_tasks(view, resource))
+            matter = (
+                view.mode,
+                view.standing,
+                view.silent,
+                view.failing,
+                view.station.title,
+                own_tasks(view, resource),
+            )
             told, due = self._told.get(resource, (None, now))
             if matter != told or now >= due:
                 self._told[resource] = (matter, now + TELL_EVERY)
@@ -73,5 +80,6 @@ class WatchShow:
             mode=view.mode,
             standing=view.standing,
             silent=view.silent,
+            failing=view.failing,
             tasks=own_tasks(view, resource),
         ).model_dump_json()

@@ -9,6 +9,7 @@ from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.restart_view import QuestionView
 from sequence_planner.control.view import Mode
+from sequence_planner.control.viewing_conduct import failing
 from sequence_planner.emulation.faults import Clear, Fault, FaultKind
 
 ROBOT_IS_STILL = "still:robot"
@@ -67,6 +68,16 @@ def test_why_the_state_is_unsafe_is_told_as_soon_as_it_can_be_known() -> None:
     assert rig.shown.keys() == {ROBOT_IS_STILL}
     came = [key for key, event in rig.told.events if event == "came"]
     assert came[-1] == ROBOT_IS_STILL and len(came) <= 2, came
+
+
+def test_the_watch_can_say_which_device_needs_help() -> None:
+    rig = stuck()
+    assert failing(rig.station.automaton, rig.shown) == []
+    rig.run(60)
+    assert failing(rig.station.automaton, rig.shown) == ["Robot UR10"]
+    rig.faulty.clear(Clear())
+    rig.run(15)
+    assert failing(rig.station.automaton, rig.shown) == []
 
 
 def test_what_the_station_asks_about_because_of_it_is_a_part_of_it() -> None:

@@ -225,10 +225,10 @@ def test_a_slow_start_of_a_healthy_station_is_no_alarm() -> None:
     on.run(3)
     on.cut = on.topics_of("robot", "nutrunner")
     on.run(5)
-    on.cut = on.every  # for longer than their deadlines
-    on.run(3)
+    on.cut = on.every  # for much longer than their deadlines
+    on.run(8)
     on.cut = on.topics_of("nutrunner")
-    on.run(17)
+    on.run(10)
     on.cut = set()
     on.run(20)
     came = [str(key) for key, event in on.told.events if event == "came"]
@@ -240,7 +240,7 @@ def test_devices_that_die_early_are_told_soon_all_the_same() -> None:
     on.run(1)
     on.execution.start_production()
     on.cut = on.every
-    on.run(6)
+    on.run(13)
     assert on.shown.keys() == {"many-silent"}
 
 

@@ -11,10 +11,11 @@ from pathlib import Path
 from planning.advice.single_faults import Moment, asked, drawn, main_job
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind
-from sequence_planner.automaton.tick import synchronise
+from sequence_planner.automaton.tick import finish, synchronise
 from sequence_planner.control.offer_showing import offer_title
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.printing import print_value
+from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import replace
 from sequence_planner.planning.advice.advisor import Advisor
 from sequence_planner.planning.advice.offer import Offer
@@ -77,8 +78,18 @@ def keeps_the_rules(automaton: Automaton, request: AdviceRequest, offer: Offer) 
     after = synchronise(automaton, {**request.state, **values})
     reached = [g.name for g in missing(request.goals, request.state) if holds(g.predicate, after)]
     assert set(reached) <= set(offer.claims)
+    assert all(f"{name} counts as {print_value(value)}" in title for name, value in _noted(automaton, request, offer))
     assert offer.only_if_checked == bool(offer.claims) == title.startswith(ONLY_IF)
     assert not offer.only_if_checked or offer.corrections
+
+
+def _noted(automaton: Automaton, request: AdviceRequest, offer: Offer) -> list[tuple[str, Value]]:
+    """What the next tick notes of the product because of what a person does at devices, before anything starts."""
+    changes = (*offer.corrections, *offer.physical)
+    told = {**request.state, **{change.name: change.new for change in changes}}
+    noted = finish(automaton, told).state if offer.physical else told
+    values = ((name, noted[name]) for name in automaton.names(Kind.ESTIMATED) if noted[name] != told[name])
+    return [(name, value) for name, value in values if value is not None]
 
 
 def _place(offer: Offer) -> tuple[bool, int]:

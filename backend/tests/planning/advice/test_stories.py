@@ -12,6 +12,7 @@ from core.building import predicate_of
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.automaton.tick import initial_state, synchronise
+from sequence_planner.control.offer_showing import offer_title
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import replace
@@ -130,6 +131,19 @@ def test_a_tool_that_was_helped_is_counted_on_for_the_other_bolts_too(station: A
     offers = [offer for offer in advisor.advise(request).offers if offer.kind is OfferKind.PHYSICAL]
     assert not offers[0].left_out
     assert Change("nutrunner.tool_is_running_forward", False, True) in offers[0].physical
+
+
+def test_who_does_what_makes_the_station_believe_bolts_to_be_tight_is_told_so(
+    station: Automaton, advisor: Advisor
+) -> None:
+    at_the_pair = dict.fromkeys(("robot.pose", "robot.previous_pose", "robot.target_pose"), "bolt_pair_1")
+    request = tightening(station, {**UNDER_WAY, **at_the_pair})
+    request = replace(request, stalled=stalled_effects(station, request.state, ["nutrunner"]))
+    (offer,) = (offer for offer in advisor.advise(request).offers if offer.physical)
+    assert offer.records == (Change("bolts[bolt_pair_1]", "placed", "tightened"),)
+    assert offer_title(station, offer).startswith(
+        "See to it that nutrunner.programmed_torque_reached is true, so that bolts[bolt_pair_1] counts as tightened"
+    )
 
 
 def test_a_robot_that_is_away_is_brought_back(station: Automaton, advisor: Advisor) -> None:

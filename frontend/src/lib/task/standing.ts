@@ -7,7 +7,9 @@ export function whyItStands(standing: Standing): string {
 	return standing === 'working' || standing === 'silent' ? '' : say().watch.standing[standing];
 }
 
-/** What is not as it should be: why the station stands, or which devices it does not hear. */
-export function stateText(standing: Standing, silent: readonly string[]): string {
-	return whyItStands(standing) || (silent.length > 0 ? say().watch.silent(silent.join(', ')) : '');
+/** What is not as it should be: why the station stands, or which devices it does not hear, or which of the others do not work. */
+export function stateText(standing: Standing, silent: readonly string[], failing: readonly string[]): string {
+	if (whyItStands(standing)) return whyItStands(standing);
+	if (silent.length > 0) return say().watch.silent(silent.join(', '));
+	return failing.length > 0 ? say().watch.failing(failing.join(', ')) : '';
 }

@@ -32,6 +32,7 @@ export function offer(rest: Partial<WayOffer> = {}): WayOffer {
 		goals: ['tighten'],
 		left_out: [],
 		claims: [],
+		records: [],
 		only_if_checked: false,
 		effort: { cost: 1, corrections: 0, physical: 0, returns: 0, starts: 0, seconds: 1 },
 		obstacle: null,

@@ -85,6 +85,7 @@ export function view(rest: Partial<StationView> = {}): StationView {
 		packml: 'execute',
 		standing: 'working',
 		silent: [],
+		failing: [],
 		stepping: false,
 		production: 'started',
 		unconfirmed: false,

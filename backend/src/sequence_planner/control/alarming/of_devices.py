@@ -17,7 +17,7 @@ from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.who_can import WhoCan
 
 GRACE = 30.0  # seconds after the start for devices to be heard first
-STUMBLES = 3.0  # seconds for which one that was heard may be silent meanwhile: much begins at once
+STUMBLES = 10.0  # seconds for which one that was heard may be silent meanwhile: much begins at once
 MANY = "many-silent"
 UNHEARD = "never-heard"
 _MOST = 3  # so many devices, and half of all, fall silent at once only for one reason; or both of two

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.structure import Kind, State
-from sequence_planner.automaton.tick import synchronise
+from sequence_planner.automaton.tick import finish, synchronise
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.planning.advice.claims import claimed
 from sequence_planner.planning.advice.errands import Errand
@@ -92,6 +92,7 @@ class Making:
             goals=() if then is None else tuple(name for name in reached if name not in given_up),
             left_out=tuple(given_up),
             claims=self.claims(corrections),
+            records=self.records(changed),
             into_safe=errand is not None and errand.into_safe,
         )
 
@@ -106,6 +107,10 @@ class Making:
             return ()
         after = synchronise(self._automaton, {**self._here.state, **values})
         return claimed(self._automaton, self._goals, self._here.state, after)
+
+    def records(self, changed: State) -> tuple[Change, ...]:
+        """The estimates that finishing abilities write as soon as the station is `changed`."""
+        return changes_between(self._automaton, changed, finish(self._automaton, changed).state, Kind.ESTIMATED)
 
     def at_rest(self, end: Situation) -> bool:
         """Whether it is a safe rest state in which no device has still to follow what it was told."""

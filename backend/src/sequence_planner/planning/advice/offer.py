@@ -74,7 +74,8 @@ class Offer(Immutable):
     `breaks` are specifications that the errand violates on its way although they were not violated before; `at_rest`
     says that it ends in one of the station's safe rest states, with devices that are where they were told to be. The
     corrections alone would have the goals that it `claims` reached, or nearer: that is for somebody to say who has
-    checked it. One `into_safe` begins outside the safe states, and is not at its end before it is inside.
+    checked it. What is done at devices can be what abilities wait for; what these note then it `records`. One
+    `into_safe` begins outside the safe states, and is not at its end before it is inside.
     """
 
     kind: OfferKind
@@ -96,6 +97,7 @@ class Offer(Immutable):
     goals: tuple[str, ...] = ()
     left_out: tuple[str, ...] = ()
     claims: tuple[str, ...] = ()
+    records: tuple[Change, ...] = ()
     into_safe: bool = False
 
     @property

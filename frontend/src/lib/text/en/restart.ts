@@ -130,6 +130,7 @@ export const restart = {
 		ifChecked: 'Only if you have checked',
 		ifCheckedMeaning: 'These would say of the product that work is done. Nobody has done it as far as the station knows: take one only if you have seen that it is so.',
 		onlyIf: (claims: string): string => `Only if you have checked: ${claims}`,
+		records: (values: string): string => `As soon as that is done the station notes of the product: ${values}.`,
 		claims: (titles: string): string => `It would count as done, or nearer to it: ${titles}.`,
 		kinds: {
 			replan: 'goes on by itself',

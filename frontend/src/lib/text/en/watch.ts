@@ -25,6 +25,7 @@ export const watch = {
 		stopped: 'Stopped: help is needed'
 	},
 	silent: (titles: string): string => `No contact: ${titles}`,
+	failing: (titles: string): string => `Needs help: ${titles}`,
 	problem: 'Problem',
 	/** What a person says is in the way, with one touch. */
 	wrong: 'What’s wrong?',

@@ -128,6 +128,7 @@ export const restart: Text['restart'] = {
 		ifChecked: 'Bara om du har kontrollerat',
 		ifCheckedMeaning: 'Dessa säger om produkten att arbete är gjort. Såvitt stationen vet har ingen gjort det: välj ett bara om du har sett att det är så.',
 		onlyIf: (claims) => `Bara om du har kontrollerat: ${claims}`,
+		records: (values) => `Så snart det är gjort noterar stationen om produkten: ${values}.`,
 		claims: (titles) => `Det räknas då som gjort, eller närmare det: ${titles}.`,
 		kinds: {
 			replan: 'fortsätter själv',

@@ -23,6 +23,7 @@ export const watch: Text['watch'] = {
 		stopped: 'Står stilla: hjälp behövs'
 	},
 	silent: (titles) => `Ingen kontakt: ${titles}`,
+	failing: (titles) => `Behöver hjälp: ${titles}`,
 	problem: 'Problem',
 	wrong: 'Vad är fel?',
 	wrongs: { missing: 'Del saknas', damaged: 'Skadad', tool: 'Verktyg', other: 'Annat' },
