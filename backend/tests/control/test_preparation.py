@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from control.bench import cell
-from sequence_planner.analysis.process import SynthesisEndedError
+from sequence_planner.analysis.process import SynthesisEndedError, TooLargeError
 from sequence_planner.control.preparation import Preparation, analyse
 
 
@@ -25,6 +25,28 @@ def test_a_process_that_cannot_be_started_is_said(tmp_path: Path) -> None:
         await analyse(replace(cell()[0].automaton, title=title), preparation, tmp_path)
         with pytest.raises(SynthesisEndedError, match="could not be computed"):
             await preparation.supervisor
+
+    asyncio.run(scenario())
+
+
+def test_a_model_of_which_it_is_not_known_what_is_safe_stays_and_can_be_changed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A controller that ended with it would be started again for ever, and the first one would end the station."""
+
+    async def scenario() -> None:
+        preparation = Preparation()
+        monkeypatch.setattr("sequence_planner.control.preparation.ANALYSIS_DEADLINE", 0.001)
+        await analyse(cell()[0].automaton, preparation, tmp_path)
+        assert await preparation.supervisor is None
+        assert preparation.analysis is not None
+        assert preparation.analysis.supervised is False
+        refusal = preparation.refusal()
+        assert (refusal.slug, refusal.title) == ("no-supervisor", "It is not known what is safe")
+        assert "could not be computed within 0.001 s" in refusal.detail
+        other = Preparation()
+        other.end(TooLargeError("it takes more than 2 GB of memory"))
+        assert (await other.supervisor, other.trouble) == (None, "it takes more than 2 GB of memory")
 
     asyncio.run(scenario())
 

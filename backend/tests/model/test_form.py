@@ -51,8 +51,8 @@ DURATION = "expected seconds, or the fewest and the most as in `[0.5, 1.5]`"
         ),
         (
             ARM,
-            "    every: 1.0\n",
-            "    every: 1.0\n    pipeline:\n      - override: {name: a, fields: {x: {between: ‹[1]}}, expires: 9}\n",
+            "      - constant: {speed: 0.5}",
+            "      - override: {name: a, fields: {speed: {‹between: [1]}}, expires: 9}",
             "an entry is missing here",
         ),
         # indentation

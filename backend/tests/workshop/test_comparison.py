@@ -20,9 +20,14 @@ def compare(tmp_path: Path, old: dict[str, str], new: dict[str, str]) -> Compari
 
 
 def fit(
-    tmp_path: Path, new: dict[str, str], present: dict[str, Value | None], running: tuple[str, ...] = ()
+    tmp_path: Path,
+    new: dict[str, str],
+    present: dict[str, Value | None],
+    running: tuple[str, ...] = (),
+    *,
+    reset: bool = False,
 ) -> TransferView:
-    (found,) = fitted(bolts(), new, BOLTS, present, running, tmp_path)
+    (found,) = fitted(bolts(), new, BOLTS, present, running, reset, tmp_path)
     return found
 
 
@@ -95,6 +100,16 @@ def test_a_state_goes_on_as_far_as_the_model_knows_it(tmp_path: Path) -> None:
     assert changes["bolts[bolt_pair_1]"] == (None, "empty")
     assert changes["robot.previous_pose"] == ("nowhere", "home")
     assert not {"robot.pose", "robot.target_pose"} & changes.keys()
+
+
+def test_of_a_station_that_is_reset_it_is_told_how_it_stands_and_how_it_will(tmp_path: Path) -> None:
+    present: dict[str, Value | None] = {"robot.pose": "home", "robot.target_pose": "above_engine"}
+    other = bolts(nutrunner=("set_tool_idle := true, run_tool_forward := false]", "set_tool_idle := true]"))
+    view = fit(tmp_path, other, present, (RUN_NUT,), reset=True)
+    assert (view.legal, view.under_way) == (True, [])
+    changes = {each.name: (each.before, each.after) for each in view.changes}
+    assert changes["robot.target_pose"] == ("above_engine", "home")
+    assert "robot.pose" not in changes
 
 
 def test_a_state_outside_the_safe_ones_is_refused_with_the_way_in(tmp_path: Path) -> None:

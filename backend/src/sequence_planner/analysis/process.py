@@ -30,11 +30,16 @@ class SynthesisEndedError(Exception):
     """The process ended without having found all; the text says what the reason may be."""
 
 
+class TooLargeError(SynthesisEndedError):
+    """There is not enough memory or time for this model: it would be the same once more."""
+
+
 @dataclass(frozen=True)
 class _Last:
-    """The last word of the process: why there is no more, or None if that was all."""
+    """The last word of the process: why there is no more, or None if that was all; it may be `too_large`."""
 
     why: str | None = None
+    too_large: bool = False
 
 
 def analysing(automaton: Automaton) -> AbstractAsyncContextManager[AsyncIterator[Analysis]]:
@@ -81,7 +86,7 @@ class _Words(Generic[Word]):
             word = await asyncio.shield(self._hearing)
             if isinstance(word, _Last):
                 if word.why is not None:
-                    raise SynthesisEndedError(word.why)
+                    raise TooLargeError(word.why) if word.too_large else SynthesisEndedError(word.why)
                 return
             yield word
 
@@ -90,7 +95,7 @@ class _Words(Generic[Word]):
             word: Word | _Last = self._connection.recv()
         except (EOFError, OSError):
             if self._limit.reached:
-                return _Last(str(self._limit))
+                return _Last(str(self._limit), too_large=True)
             return _Last("the process that computes the safe states has ended without an answer; is memory short?")
         return word
 
@@ -112,6 +117,7 @@ def _work(connection: Connection, work: Callable[..., Iterator[object]], argumen
         connection.send(
             _Last(
                 "the sets of states have outgrown the memory set aside for them: let fewer or smaller variables bear "
-                "on the specifications and on `rest`"
+                "on the specifications and on `rest`",
+                too_large=True,
             )
         )

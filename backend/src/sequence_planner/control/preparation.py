@@ -11,7 +11,7 @@ import structlog
 
 from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.analysis.document import AnalysisDocument, document_of, error_document
-from sequence_planner.analysis.process import SynthesisEndedError, analysing
+from sequence_planner.analysis.process import SynthesisEndedError, TooLargeError, analysing
 from sequence_planner.analysis.remembering import remember, remembered
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
@@ -50,9 +50,14 @@ class Unusable:
     findings: tuple[Finding, ...]
 
 
+_UNSUPERVISED = AnalysisDocument(
+    pending=None, supervised=False, reachable_states=None, supervised_states=None, guards=None, findings=[]
+)
+
+
 class Preparation:
     """What has been found of the station so far; `trouble` if it cannot be run, in particular since its model is
-    `unusable`.
+    `unusable`, or `too_large` to find out what is safe.
     """
 
     def __init__(self, unusable: Unusable | None = None) -> None:
@@ -60,17 +65,12 @@ class Preparation:
         self.analysis: AnalysisDocument | None = None
         self.trouble: str | None = None
         self.unusable = unusable is not None
+        self.too_large = False
         if unusable is not None:
             self.supervisor.set_result(None)
             self.trouble = "; ".join(map(str, unusable.findings))
-            self.analysis = AnalysisDocument(
-                pending=None,
-                supervised=False,
-                reachable_states=None,
-                supervised_states=None,
-                guards=None,
-                findings=[error_document(finding) for finding in unusable.findings],
-            )
+            findings = [error_document(finding) for finding in unusable.findings]
+            self.analysis = _UNSUPERVISED.model_copy(update={"findings": findings})
         self.controller: Controller | None = None
         self._others: str | None = None  # who else commands the devices, while that is waited for
         self._guards: Mapping[str, Guard] = {}
@@ -114,7 +114,12 @@ class Preparation:
     def end(self, why: SynthesisEndedError) -> None:
         """No more will be found."""
         if not self.supervisor.done():
-            self.supervisor.set_exception(why)
+            if isinstance(why, TooLargeError):  # a controller that begins anew would come no further
+                self.too_large, self.trouble = True, str(why)
+                self.analysis = _UNSUPERVISED
+                self.supervisor.set_result(None)
+            else:
+                self.supervisor.set_exception(why)
         if self.analysis is not None:
             self.analysis = self.analysis.model_copy(update={"pending": None})
             if self.controller is not None:
@@ -124,6 +129,8 @@ class Preparation:
         """Why nothing can be commanded yet."""
         if self.unusable:
             return CommandRefused("model-unusable", "The model cannot be used", f"{self.trouble}.")
+        if self.too_large:
+            return CommandRefused("no-supervisor", "It is not known what is safe", f"{self.trouble}.")
         if self.trouble is not None:
             return CommandRefused("no-supervisor", "The specifications cannot be met", f"{self.trouble}.")
         if self._others is not None:
@@ -143,16 +150,20 @@ def preparing_view(
     mode: Mode = Mode.AUTOMATIC,
     control: ControlView | None = None,
     unusable: bool = False,
+    too_large: bool = False,
 ) -> StationView:
     """What is shown while the safe set is being computed; with `trouble`, there is none and the station is not run.
 
     `mode` and `control` are those with which it begins, as far as they are known. It is `unusable` where the model
-    means nothing at all.
+    means nothing at all, and `too_large` where that set cannot be computed.
     """
     alarms = {}
     if trouble is not None:
         text = "The specifications cannot be met, so nothing is started"
         action = "See why under Check, change the draft of the model, and deploy it."
+        if too_large:
+            text = f"It is not known what is safe, so nothing is started: {trouble}"
+            action = "Let fewer variables bear on the specifications and on `rest` in the draft, and deploy it."
         if unusable:
             text = f"The model cannot be used, so nothing is started: {trouble}"
             action = "Change the draft of the model, or take an older revision back into it, and deploy it."
@@ -254,7 +265,7 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
     except TimeoutError:
         LOG.warning("not all was found of the station", within=ANALYSIS_DEADLINE)
         late = f"the safe states could not be computed within {ANALYSIS_DEADLINE:g} s: let fewer variables bear on them"
-        preparation.end(SynthesisEndedError(late))
+        preparation.end(TooLargeError(late))
     except Exception as error:
         LOG.exception("synthesis failed")
         preparation.end(SynthesisEndedError(f"the safe states could not be computed ({type(error).__name__}: {error})"))

@@ -334,6 +334,7 @@ class _Life:
                 mode=self._begins_in,
                 control=self._deployment.control,
                 unusable=known.unusable,
+                too_large=known.too_large,
             )
             self._link.publish(view)
             await asyncio.sleep(SHOW_EVERY)

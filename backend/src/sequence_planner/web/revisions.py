@@ -208,9 +208,7 @@ async def _to_fit(shop: Workshop, view: StationView, simulation: Simulation) -> 
     draft = await shop.open()
     present = {name: variable.value for name, variable in view.variables.items()}
     running = [name for name, ability in view.abilities.items() if ability.running_since is not None]
-    if simulation is Simulation.RESET:  # nothing of all that goes on
-        present, running = {}, []
-    return draft.base, draft.files, shop.folder, present, running
+    return draft.base, draft.files, shop.folder, present, running, simulation is Simulation.RESET
 
 
 async def _present(request: Request) -> dict[str, Value | None]:

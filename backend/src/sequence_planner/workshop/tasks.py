@@ -62,9 +62,12 @@ def fitted(
     stages: Path | None,
     present: Mapping[str, Value | None],
     running: Collection[str],
+    reset: bool,
     folder: Path,
 ) -> Iterator[TransferView]:
-    """Whether a station in its `present` state, with abilities `running`, can take `new`; `folder` is empty."""
+    """Whether a station in its `present` state, with abilities `running`, can take `new`, or if all of it is `reset`;
+    `folder` is empty.
+    """
     try:
         after = _meant("the model", new, stages, folder / "new")
     except Unusable as error:
@@ -74,7 +77,7 @@ def fitted(
         before = _station(old, stages, folder / "old").automaton
     except ModelError:
         before = None
-    yield transfer(before, after.automaton, after.supervisor, present, running)
+    yield transfer(before, after.automaton, after.supervisor, present, running, reset=reset)
 
 
 def simulated(

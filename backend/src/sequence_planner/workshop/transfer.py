@@ -35,9 +35,14 @@ def transfer(
     supervisor: Supervisor,
     present: Mapping[str, Value | None],
     running: Collection[str],
+    *,
+    reset: bool = False,
 ) -> TransferView:
-    """What would come of it, with abilities `running` as the `old` model has them; None for one that cannot be used."""
-    state = transferred(automaton, present)
+    """What would come of it, with abilities `running` as the `old` model has them; None for one that cannot be used.
+
+    Where the station is `reset` it begins as the model says, and nothing of what runs goes on.
+    """
+    state = transferred(automaton, {} if reset else present)
     names = dict.fromkeys((*automaton.variables, *present))
     changes = [
         Taken(name=name, before=present.get(name), after=state[name] if name in automaton.variables else None)
@@ -45,7 +50,8 @@ def transfer(
         if name not in present or name not in automaton.variables or present[name] != state[name]
     ]
     before = {} if old is None else old.abilities
-    under_way = [name for name in running if not _same(before.get(name), automaton.abilities.get(name))]
+    going_on = () if reset else running
+    under_way = [name for name in going_on if not _same(before.get(name), automaton.abilities.get(name))]
     safe = supervisor.safe.includes(state)
     violated = [
         specification.title

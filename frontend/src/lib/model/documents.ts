@@ -875,13 +875,15 @@ export const PARTS: Readonly<Record<string, PartShape>> = {
 				"kind": "number",
 				"help": "Seconds without a message after which the topic's variables are unknown; incoming topics only.",
 				"required": false,
-				"above": 0
+				"above": 0,
+				"most": 86400
 			},
 			"every": {
 				"kind": "number",
 				"help": "Seconds after which the message is repeated; outgoing topics only.",
 				"required": false,
-				"above": 0
+				"above": 0,
+				"most": 86400
 			},
 			"quality": {
 				"kind": "choice",

@@ -151,10 +151,11 @@ export const deploy = {
 			saved: 'The draft is saved as a revision.',
 			other: 'It is another one than what runs.',
 			checked: 'It is checked, without errors and with a supervisor.',
-			standing: 'Production stands: the station is paused or held, and no plan of a person is on its way.',
+			standing: 'Nothing starts by itself: the station is paused, held, in restart, or waits for its start; and no plan of a person is on its way.',
 			control: 'You have control.',
 			fits: 'The station’s state is safe in the new model, and what still runs is the same there.'
 		},
+		fitsReset: 'The state in which the simulation begins is safe in the new model.',
 		differs: 'See what differs',
 		stillRuns: 'What was begun still runs and may finish:',
 		errand: 'A plan of a person is on its way: stop it on Restart, or wait until it has ended.',
@@ -181,7 +182,11 @@ export const deploy = {
 		to: (before: string, after: string): string => `${before} → ${after}`,
 		begins: (value: string): string => `begins as ${value}`,
 		was: (value: string): string => `was ${value}`,
-		means: 'The controller restarts with this model. What was believed comes back as far as it fits, nothing is sent to devices, and a person starts production. You keep control. If the model cannot be started, the one before comes back.',
+		means: {
+			keep: 'The controller restarts with this model. What was believed comes back as far as it fits, nothing is sent to devices, and a person starts production. You keep control. If the model cannot be started, the one before comes back.',
+			reset:
+				'The controller restarts with this model, and everything begins as the model says: what runs now does not go on. Nothing is sent to devices, and a person starts production. You keep control. If the model cannot be started, the one before comes back.'
+		},
 		simulation: {
 			title: 'Emulated devices',
 			keep: 'They go on as they stand.',

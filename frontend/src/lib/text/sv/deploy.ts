@@ -151,10 +151,11 @@ export const deploy: Text['deploy'] = {
 			saved: 'Utkastet är sparat som revision.',
 			other: 'Det är ett annat än det som körs.',
 			checked: 'Det är granskat, utan fel och med övervakare.',
-			standing: 'Produktionen står: stationen är pausad eller stannad, och ingen plan av en person är på väg.',
+			standing: 'Inget startar av sig självt: stationen är pausad, stannad, i omstart eller väntar på start, och ingen plan av en person är på väg.',
 			control: 'Du har kontrollen.',
 			fits: 'Stationens tillstånd är säkert i den nya modellen, och det som ännu pågår är detsamma där.'
 		},
+		fitsReset: 'Tillståndet som simuleringen börjar i är säkert i den nya modellen.',
 		differs: 'Se vad som skiljer',
 		stillRuns: 'Det som började pågår ännu och får bli klart:',
 		errand: 'En plan av en person är på väg: stoppa det på Omstart, eller vänta tills det är klart.',
@@ -181,7 +182,11 @@ export const deploy: Text['deploy'] = {
 		to: (before, after) => `${before} → ${after}`,
 		begins: (value) => `börjar som ${value}`,
 		was: (value) => `var ${value}`,
-		means: 'Styrningen startar om med denna modell. Det som antogs kommer tillbaka så långt det passar, inget sänds till enheter, och en person startar produktionen. Du behåller kontrollen. Om modellen inte kan startas kommer den tidigare tillbaka.',
+		means: {
+			keep: 'Styrningen startar om med denna modell. Det som antogs kommer tillbaka så långt det passar, inget sänds till enheter, och en person startar produktionen. Du behåller kontrollen. Om modellen inte kan startas kommer den tidigare tillbaka.',
+			reset:
+				'Styrningen startar om med denna modell, och allt börjar som modellen säger: det som körs nu fortsätter inte. Inget sänds till enheter, och en person startar produktionen. Du behåller kontrollen. Om modellen inte kan startas kommer den tidigare tillbaka.'
+		},
 		simulation: {
 			title: 'Emulerade enheter',
 			keep: 'De fortsätter som de står.',
