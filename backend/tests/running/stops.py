@@ -50,9 +50,16 @@ class Witness:
         return answer
 
     def start(self, station: Mortal) -> None:
-        """A person lets the station work, until it does."""
+        """A person lets the station work, until it does. After a takeover it may have gone on by itself."""
         self.starts.append(time.time())
-        station.begin_production()
+        station.wait(lambda: station.production() in ("waiting", "started"), "it is not up")
+
+        def started() -> bool:
+            station.decide()
+            answer = station.ask("POST", "production/start", {"reason": "looked at"})
+            return answer.is_success or station.production() == "started"
+
+        station.wait(started, "production cannot be started")
         station.kept.look()
         station.ask("PUT", "mode", {"mode": "automatic"}).raise_for_status()
         station.go_on()
@@ -163,6 +170,7 @@ class _Lives:
         are left then.
         """
         commands = self._commanding()
+        self.witness.judge(self._both.database)  # what has come late, too: no start of now makes it right
         self.witness.start(commands)
         events = [self._chance.choice([self._cut, self._outage, self._kill, self._halt])]
         events += self._chance.sample(

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-from contextlib import closing
+import time
+from contextlib import closing, suppress
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, Literal, cast
@@ -11,10 +12,12 @@ from typing import Any, Literal, cast
 import pytest
 
 from sequence_planner.actor import SYSTEM
-from sequence_planner.control.commands import Command, SetMode, StartProduction
+from sequence_planner.control import process
+from sequence_planner.control.commands import Command, CommandRefused, SetMode, StartProduction
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.preparation import Preparation
 from sequence_planner.control.process import _follows
 from sequence_planner.control.recording import Recording
 from sequence_planner.control.starting import go_on
@@ -78,6 +81,53 @@ def test_production_goes_on_by_itself_unless_somebody_has_stopped_the_station_me
         database.upgrade()
         expected = Production.STARTED if mode is None else Production.WAITING
         assert asyncio.run(scenario(database)) is expected
+
+
+@pytest.mark.parametrize(
+    ("stands_by", "later", "goes_on"), [(False, 0.0, False), (True, 0.0, False), (True, 61.0, True)]
+)
+@pytest.mark.parametrize("mode", [None, Mode.PAUSED, Mode.HOLD])
+def test_who_was_refused_a_stop_before_the_station_was_ready_starts_production_by_hand(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    mode: Literal[Mode.PAUSED, Mode.HOLD] | None,
+    stands_by: bool,
+    later: float,
+    goes_on: bool,
+) -> None:
+    went_on: list[str] = []
+
+    async def going_on(controller: Controller, handle: object, before: str) -> None:
+        went_on.append(before)
+
+    monkeypatch.setattr(process, "go_on", going_on)
+
+    async def scenario(database: Database) -> None:
+        standing = SimpleNamespace(name="press-b", holder="press-a", active=False, trouble=None)
+        epoch = None if stands_by else 2
+        keeper: Any = SimpleNamespace(held=not stands_by, epoch=epoch, standing=standing, taken_from=None)
+        running: Any = SimpleNamespace(model=STATION, socket=tmp_path / "socket", emulated=False, start=False)
+        none: Any = None
+        recording = Recording(database, lambda why: None)
+        life = process._Life(running, Preparation(), recording, database, keeper, none, none, Mode.AUTOMATIC)
+        if mode is not None:
+            with pytest.raises(CommandRefused, match="goes on by itself before a person starts") as refused:
+                await life._handle(SetMode(actor=SYSTEM, mode=mode))
+            assert refused.value.slug == ("stands-by" if stands_by else "preparing")
+        keeper.taken_from, now = "press-a", time.monotonic
+        monkeypatch.setattr(time, "monotonic", lambda: now() + later)
+        alone = asyncio.create_task(asyncio.sleep(0))
+        controller: Any = SimpleNamespace(take_command=lambda: None)
+        station: Any = SimpleNamespace(goes_on=True)
+        known: Any = SimpleNamespace(was_at_work=True)
+        with suppress(TimeoutError):
+            await asyncio.wait_for(life._take_command(station, controller, known, alone), 0.2)
+        await recording.close()
+
+    with closing(Database.open(f"sqlite:///{tmp_path}/station.sqlite")) as database:
+        database.upgrade()
+        asyncio.run(scenario(database))
+    assert went_on == (["press-a"] if mode is None or goes_on else [])
 
 
 @pytest.mark.parametrize(

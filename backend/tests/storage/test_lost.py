@@ -30,9 +30,9 @@ def _refused(url: str) -> str:
 def _leave(file: Path, what: str) -> Path:
     """What a station leaves beside its database."""
     left = file.with_name(what)
-    if what.endswith(".git"):
+    if what.endswith((".git", ".backups")):
         left.mkdir()
-        (left / "HEAD").write_text("ref: refs/heads/main\n", encoding="utf-8")
+        (left / "something").write_text("something", encoding="utf-8")
     else:
         left.write_text("something", encoding="utf-8")
     return left
@@ -45,6 +45,7 @@ def _leave(file: Path, what: str) -> Path:
         "station.sqlite-webhook-key.key",
         "station.sqlite-last-word",
         "station.revisions.git",
+        "station.backups",
     ],
 )
 @pytest.mark.parametrize("how", ["missing", "of no length", "without tables"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 import time
 from collections.abc import AsyncIterator, Callable, Coroutine, Generator
 from dataclasses import dataclass
@@ -45,6 +46,7 @@ LOG = structlog.get_logger(__name__)
 
 SETTLED_WITHIN = 10.0  # seconds in which a process beside one that has died says that all of its is recorded
 SHOW_EVERY = 0.1  # seconds between two views
+WISH_LASTS = 60.0  # seconds for which a station that stands by minds that somebody wanted to stop it
 RECORD_AGAIN = 5.0  # seconds
 NODE = "sequence_planner"
 
@@ -145,6 +147,7 @@ class _Life:
         self._deploying = Deploying(running.model, running.socket, running.emulated)
         self._deployment = LastDeployment(running.socket)
         self._begins_in = begins_in
+        self._at_rest_until = 0.0  # on the clock of `time.monotonic`: somebody wanted it before it could be done
         self._link = ControllerLink(running.socket, self._handle, self._answer)
 
     async def run(self, living: asyncio.TaskGroup) -> None:
@@ -257,7 +260,9 @@ class _Life:
         await self._deployment.wait_for_devices(running.emulated)
         controller.take_command()
         self._deployment.tell_that_it_runs()
-        if running.start:
+        if time.monotonic() < self._at_rest_until:
+            LOG.info("production does not go on by itself", because="somebody wanted to stop it before it was ready")
+        elif running.start:
             async with _beside(start_when_alone(controller, self._handle)):
                 await asyncio.Event().wait()
         elif keeper is not None and keeper.taken_from is not None and known.was_at_work and station.goes_on:
@@ -269,7 +274,7 @@ class _Life:
         preparation, keeper = self._preparation, self.keeper
         # Who commands may stop the station though it cannot renew its lease: nothing is said to a device meanwhile.
         if keeper is not None and not keeper.held and (keeper.epoch is None or not command.harmless):
-            raise stands_by(keeper)
+            raise self._not_yet(command, stands_by(keeper))
         if (refusal := self._deploying.refusal()) is not None and not command.harmless:
             raise refusal
         if isinstance(command, Deploy):
@@ -277,7 +282,7 @@ class _Life:
         if preparation.controller is None or not preparation.controller.commands:
             # What has no supervisor does not run, so another model may take its place at once.
             if preparation.trouble is None or not isinstance(command, Deploy):
-                raise self._refusal()
+                raise self._not_yet(command, self._refusal())
         else:
             await preparation.controller.command(command)
         if isinstance(command, Deploy):
@@ -299,6 +304,19 @@ class _Life:
         if self._preparation.controller is None:
             raise self._refusal()
         return await self._preparation.controller.answer(ask)
+
+    def _not_yet(self, command: Command, refusal: CommandRefused) -> CommandRefused:
+        """The refusal of what cannot be done yet. Whoever wanted to stop the station then is not to see it go on."""
+        if not command.harmless:
+            return refusal
+        keeper, now = self.keeper, time.monotonic()
+        if keeper is not None and keeper.epoch is None:
+            until, what = now + WISH_LASTS, f"Should it take over within {WISH_LASTS:g} s, nothing"
+        else:
+            until, what = math.inf, "Nothing"
+        self._at_rest_until = max(self._at_rest_until, until)
+        detail = f"{refusal.detail} {what} goes on by itself before a person starts production."
+        return CommandRefused(refusal.slug, refusal.title, detail, refusal.status)
 
     def _refusal(self) -> CommandRefused:
         """Why nothing can be commanded or asked yet."""

@@ -14,7 +14,9 @@ _MOST_NAMED: Final = 3
 
 
 def left_of(place: SqliteFile | PostgresqlServer) -> list[Path]:
-    """What a station with this database has left beside it: keys, last word, archive, revisions of its model."""
+    """What a station with this database has left beside it: keys, last word, archive, backups, revisions of
+    its model.
+    """
     if isinstance(place, PostgresqlServer):
         mark = hashlib.sha256(str(place).encode()).hexdigest()[:8]
         return sorted(state_folder().glob(f"*-{mark}*")) if state_folder().is_dir() else []
@@ -23,7 +25,7 @@ def left_of(place: SqliteFile | PostgresqlServer) -> list[Path]:
         return []
     beside = [each for each in file.parent.glob(f"{_literal(file.name)}-*") if each.suffix in (".pem", ".key")]
     beside += [each for name in ("-last-word", "-wal") if (each := Path(f"{file}{name}")).is_file()]
-    folders = [file.with_name(f"{file.stem}.{name}") for name in ("revisions.git", "archive")]
+    folders = [file.with_name(f"{file.stem}.{name}") for name in ("revisions.git", "archive", "backups")]
     return sorted(each for each in [*beside, *folders] if _holds_something(each))
 
 
