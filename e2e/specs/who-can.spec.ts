@@ -42,7 +42,6 @@ test('without the robot it is said at once who can still do what, and the bolts 
 	const said = operate.getByTestId('who-can');
 	await expect(said.locator('[data-absent="robot"]')).toHaveText(`${ROBOT} is not heard.`);
 	await expect(group(operate, 'nobody')).toContainText(`needs ${ROBOT}`);
-	await group(operate, 'nobody').getByText(/comes? later/).click();
 	await expect(group(operate, 'nobody').locator('[data-who-can="tighten_oil_filter"]')).toBeVisible();
 	await examine(operate, 'who-can');
 	await operate.setViewportSize({ width: 1440, height: 900 });

@@ -7,14 +7,19 @@ import os
 import re
 import subprocess
 import sys
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
 import httpx
 import pytest
+from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
 
+from sequence_planner.identity.roles import Role
 from sequence_planner.web.openapi import document
+from sequence_planner.web.openapi_document import describe
 
 from .running import Server
 
@@ -98,6 +103,28 @@ def test_the_printed_document_is_the_served_one_and_always_the_same(client: http
     ]
     assert printed[0] == printed[1] == document()
     assert json.loads(printed[0]) == client.get("/api/v1/openapi.json").json()
+
+
+def test_nobody_waits_while_the_document_is_made(
+    server: Server, client: httpx.Client, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It takes more than a second of a processor, in a server that has to take a stop at any time."""
+    begun, answered = threading.Event(), threading.Event()
+
+    def slowly(app: FastAPI) -> dict[str, Any]:
+        begun.set()
+        assert answered.wait(20)
+        return describe(app)
+
+    monkeypatch.setattr("sequence_planner.web.app.describe", slowly)
+    with ThreadPoolExecutor() as others, server.client(Role.VIEWER) as reader:
+        reading = [others.submit(reader.get, "/api/v1/openapi.json", timeout=60) for _ in range(2)]
+        assert begun.wait(20)
+        try:
+            assert client.get("/api/v1/session", timeout=15).status_code == 200
+        finally:
+            answered.set()
+        assert [each.result().json() for each in reading] == [json.loads(document())] * 2
 
 
 def test_the_page_is_made_from_this_document() -> None:

@@ -8,16 +8,18 @@ may too, null where none does.
 
 from __future__ import annotations
 
+import threading
 from typing import Any, Final
 
 from fastapi import APIRouter, FastAPI, Request
 from fastapi.encoders import jsonable_encoder
 from fastapi.openapi.models import Schema
 from fastapi.openapi.utils import get_openapi
-from fastapi.responses import JSONResponse
+from fastapi.responses import JSONResponse, Response
 from fastapi.routing import iter_route_contexts
 from pydantic import BaseModel
 from pydantic.json_schema import JsonSchemaMode, models_json_schema
+from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import Access, allowed, declared
@@ -57,14 +59,23 @@ STREAMS: Final[dict[str, type[BaseModel]]] = {
     "/api/v1/watches/stream": WatchStreamMessage,
 }
 
+_WRITING: Final = threading.Lock()
+
 router = APIRouter()
 
 
 @router.get("/openapi.json", include_in_schema=False, dependencies=[allowed(Role.VIEWER, any_key=True)])
-async def openapi(request: Request) -> JSONResponse:
+async def openapi(request: Request) -> Response:
     """The document of this server."""
-    app: FastAPI = request.app
-    return JSONResponse(app.openapi())
+    return Response(await run_in_threadpool(_written, request.app), media_type="application/json")
+
+
+def _written(app: FastAPI) -> bytes:
+    """The document as it is sent. Made once, beside what else the server does: it takes more than a second."""
+    with _WRITING:
+        if (known := getattr(app.state, "openapi_document", None)) is None:
+            known = app.state.openapi_document = JSONResponse(app.openapi()).body
+    return bytes(known)
 
 
 def describe(app: FastAPI) -> dict[str, Any]:
