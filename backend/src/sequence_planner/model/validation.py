@@ -127,7 +127,7 @@ def _entry_above(document: Document, path: EntryPath, name: str) -> tuple[str | 
     if name not in names[1:]:
         return None, None
     above = names[names.index(name) - 1]
-    held = content[above]
+    held = cast(dict[str, object], content)[above]
     return (str(above), held) if held is None or isinstance(held, dict) else (None, None)
 
 
