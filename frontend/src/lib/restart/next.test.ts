@@ -75,6 +75,7 @@ describe('what a person does next', () => {
 		expect(next({ mode: 'restart' }, advice(offer({ kind: 'correction', corrections })))).toBe('check');
 		const tight = offer({ kind: 'correction', corrections, claims: ['tighten'], only_if_checked: true });
 		expect(next({ mode: 'restart' }, advice(tight))).toBe('check');
+		expect(next({ mode: 'paused' }, advice(tight))).toBe('enter');
 		expect(next({ mode: 'restart' }, advice(TAKE, tight))).toBe('take');
 	});
 

@@ -38,9 +38,10 @@ function offered(view: StationView, advice: AdviceAnswer | null): Next {
 	const inside = view.mode === 'restart';
 	if (advice === null || advice.revision !== view.revision) return 'looking';
 	const [first] = advice.offers;
-	if (first === undefined) return advice.if_checked.length > 0 ? 'check' : 'stuck';
+	if (first === undefined && advice.if_checked.length === 0) return 'stuck';
+	// What is only said is said in restart mode.
+	if (first === undefined || onlySays(first)) return inside ? 'check' : 'enter';
 	if (asksForHands(first)) return 'physical';
-	if (onlySays(first)) return 'check';
 	if (!goesOn(first)) return inside ? 'take' : 'enter';
 	if (inside) return 'leave';
 	if (view.mode !== 'automatic') return 'continue';
