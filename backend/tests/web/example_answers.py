@@ -89,6 +89,7 @@ OFFER = OfferView(
     goals=["tighten"],
     left_out=[],
     claims=[],
+    records=[],
     only_if_checked=False,
     effort=EffortView(cost=36.5, corrections=1, physical=0, returns=0, starts=1, seconds=4.5),
     obstacle=None,
