@@ -50,12 +50,17 @@ def made(database: Database, receiver: Receiver) -> tuple[str, Webhook]:
         return webhooks.make(connection, seal, "MES", receiver.url(), (), None, SYSTEM, time.time())
 
 
-def deliver(database: Database, *receivers: Receiver, until: Callable[[], bool]) -> None:
+IMPATIENT = Patience(connecting=0.5, reading=0.3, all=0.5)  # with whoever never answers
+
+
+def deliver(
+    database: Database, *receivers: Receiver, until: Callable[[], bool], patience: Patience = Patience()
+) -> None:
     """Deliver until that is so."""
 
     async def live() -> None:
         targets = Targets(frozenset(("127.0.0.1", each.port) for each in receivers), loopback=True)
-        sender = Sender(targets, Patience(connecting=0.5, reading=0.3, all=0.5))
+        sender = Sender(targets, patience)
         running = asyncio.create_task(Deliverer(database, sender, PACE).run())
         try:
             async with asyncio.timeout(PATIENCE):
@@ -83,7 +88,7 @@ def test_every_event_arrives_signed_though_the_other_end_fails_again_and_again(
     receiver.answers += [status(500), breaks_off, hangs(over), status(302), status(200), status(503)]
     secret, webhook = made(database, receiver)
     happen(database, 6)
-    deliver(database, receiver, until=lambda: idle(database, webhook.id))
+    deliver(database, receiver, until=lambda: idle(database, webhook.id), patience=IMPATIENT)
     over.set()
     told = [each.verified(secret) for each in receiver.received]
     assert {each["number"] for each in told} == set(range(1, 7))

@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from core.budget import SHARE
 from running.mortal import Mortal
 from running.pairs import standby
 from running.signing_in import signed_in
@@ -40,6 +41,7 @@ def with_other_title(folder: Path) -> Path:
     return model
 
 
+@pytest.mark.skipif(SHARE < 1, reason="two stations and two takeovers take long: `make campaign` tries it")
 @pytest.mark.timeout(900)  # on a machine that is busy with much else
 def test_a_deployment_during_whose_start_another_station_takes_over_is_kept(
     postgresql: Server, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
