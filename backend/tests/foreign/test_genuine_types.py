@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+import asyncio
 import importlib.util
 import json
 import os
+import shutil
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 
 import pytest
 
+from foreign.genuine import lacking
+from foreign.test_genuine import DOMAIN, OURS
 from running.stations import REPOSITORY
+from sequence_planner.ros.choice import open_transport
 from sequence_planner.ros.messages import MessageRegistry, UnknownMessageTypeError
+from sequence_planner.ros.transport import QualityOfService, TransportError
 
+CHANGED = "truck_engine_msgs/msg/RobotCommand"
 MODELS = sorted(path.parent for path in (REPOSITORY / "models").glob("*/messages"))
 
 
@@ -58,3 +65,25 @@ def test_the_types_of_ros_have_our_hashes() -> None:
     if not compared:
         pytest.skip("no interfaces of ROS 2 are installed here: run this suite where ROS 2 Jazzy is sourced")
     assert compared > 100
+
+
+def test_code_that_was_generated_from_another_definition_is_refused(tmp_path: Path) -> None:
+    if (why := lacking(OURS)) is not None or importlib.util.find_spec("truck_engine_msgs") is None:
+        pytest.skip(why or "truck_engine_msgs is not built here")
+    shutil.copytree(REPOSITORY / "models" / "bolt_tightening" / "messages", tmp_path / "messages")
+    changed = tmp_path / "messages" / "truck_engine_msgs" / "msg" / "RobotCommand.msg"
+    changed.write_text(f"{changed.read_text()}float64 payload\n")
+    registry = MessageRegistry.from_folder(tmp_path / "messages")
+
+    async def scenario() -> None:
+        opened = open_transport("rclpy", registry, "station", asyncio.get_running_loop(), DOMAIN)
+        try:
+            opened.advertise("/as_built", "truck_engine_msgs/msg/RobotState", QualityOfService.RELIABLE)
+            with pytest.raises(TransportError, match="Build the package truck_engine_msgs again"):
+                opened.advertise("/changed", CHANGED, QualityOfService.RELIABLE)
+            with pytest.raises(TransportError, match="Build the package truck_engine_msgs again"):
+                opened.subscribe("/changed", CHANGED, QualityOfService.RELIABLE, lambda batch: None)
+        finally:
+            opened.close()
+
+    asyncio.run(scenario())

@@ -22,6 +22,7 @@ from rclpy.service import Service
 from rclpy.task import Future
 
 from sequence_planner.ros import names
+from sequence_planner.ros.derived import ServiceType
 from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.quality import QualityOfService
 from sequence_planner.ros.rclpy_draining import requests_waiting, responses_waiting
@@ -29,6 +30,7 @@ from sequence_planner.ros.rclpy_graph import check_servers
 from sequence_planner.ros.rclpy_qos import profile
 from sequence_planner.ros.rclpy_types import (
     ServiceClass,
+    check_definition,
     deserialize_message,
     guarded,
     serialize_message,
@@ -101,7 +103,7 @@ class RclpyServices:
         self._registry.service(type_name)
         if service in self._servers:
             raise TransportError(f"{service} is already served")
-        types = service_class(service, type_name)
+        types = self._types(service, type_name)
 
         ready = threading.Event()
 
@@ -139,11 +141,18 @@ class RclpyServices:
         self._registry.service(type_name)
         key = (service, type_name)
         if key not in self._clients:
-            types = service_class(service, type_name)
+            types = self._types(service, type_name)
             calls = profile(QualityOfService.CALLS)
             client = guarded(f"call {service}", lambda: self._node.create_client(types, service, qos_profile=calls))
             self._clients[key] = (client, types)
         return self._clients[key]
+
+    def _types(self, service: str, type_name: str) -> ServiceClass:
+        """Return what rosidl generated for a service; raises TransportError where that is none, or another."""
+        types, parts = service_class(service, type_name), ServiceType(type_name)
+        for each in (parts.request, parts.response):
+            check_definition(service, each, self._registry.type_hash(each))
+        return types
 
     def _post(self, work: Callable[[], None]) -> None:
         with suppress(RuntimeError):  # The loop has been closed: nobody waits any more.

@@ -35,7 +35,7 @@ from sequence_planner.ros.rclpy_draining import messages_waiting
 from sequence_planner.ros.rclpy_graph import endpoints, service_ends
 from sequence_planner.ros.rclpy_qos import Tell, profile, publisher_events, subscription_events
 from sequence_planner.ros.rclpy_services import RclpyServices
-from sequence_planner.ros.rclpy_types import guarded, message_class
+from sequence_planner.ros.rclpy_types import check_definition, guarded, message_class
 from sequence_planner.ros.service_graph import ServiceEnd
 from sequence_planner.ros.strangers import Strangers
 from sequence_planner.ros.transport import (
@@ -207,8 +207,10 @@ class RclpyTransport:
         """Return the class that rosidl generated for a type; raises TransportError where there is none."""
         self._check_open()
         names.check_topic(topic)
-        self._registry.type_hash(type_name)
-        return message_class(topic, type_name)
+        ours = self._registry.type_hash(type_name)
+        generated = message_class(topic, type_name)
+        check_definition(topic, type_name, ours)
+        return generated
 
     def _teller(self, topic: str, direction: Direction, qos: QualityOfService) -> Tell:
         """Return what tells the event loop of an event, on whichever thread it is called."""
