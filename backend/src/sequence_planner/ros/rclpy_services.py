@@ -41,6 +41,10 @@ from sequence_planner.ros.transport import Handler, NoAnswerError, NoServerError
 
 _POLL = 0.02  # seconds between two looks for a server
 
+#: Seconds from when a client sees a server until it calls it. rmw_fastrtps says that a service is ready as soon as the
+#: client knows the server; a call before the server knows the client is lost, or its response is.
+_SETTLING = 0.2
+
 
 class RclpyServices:
     """The clients and servers of one node. All methods belong on the event loop's thread."""
@@ -50,6 +54,7 @@ class RclpyServices:
         self._registry = registry
         self._loop = loop
         self._clients: dict[tuple[str, str], tuple[Client, ServiceClass]] = {}
+        self._met: set[tuple[str, str]] = set()  # the clients that have seen a server, and not lost it since
         self._servers: dict[str, Service] = {}
         self._waiting: set[asyncio.Future[bytes]] = set()
         self._serving = Serving()
@@ -73,8 +78,13 @@ class RclpyServices:
         while True:
             there = client.service_is_ready()
             check_servers(self._node, service, type_name, self._registry.type_hash)
-            if there:
+            if there and (service, type_name) in self._met:
                 break
+            if there:
+                self._met.add((service, type_name))
+                await asyncio.sleep(min(_SETTLING, within / 2))
+                continue
+            self._met.discard((service, type_name))
             if time.monotonic() > until:
                 raise NoServerError(f"nobody serves {service} as {type_name}")
             await asyncio.sleep(_POLL)
