@@ -304,5 +304,5 @@ def test_the_server_is_started_again_while_production_goes_on_and_the_controller
         eventually(lambda: len(running.children("controller")) == 2)
         alive, spare = running.children("controller")
         os.kill(alive, signal.SIGKILL)
-        eventually(lambda: running.browser.get("station").json().get("production") == "waiting")
+        eventually(lambda: running.production() == "waiting")
         assert running.child("controller") == spare

@@ -43,7 +43,7 @@ def test_a_station_works_with_devices_over_genuine_ros(
             killed = running.child("controller")
             os.kill(killed, signal.SIGKILL)
             eventually(lambda: killed not in running.children("controller"))
-            eventually(lambda: running.up() and running.get("production", "station") == "waiting")
+            eventually(lambda: running.production() == "waiting")
             eventually(lambda: running.value("robot.pose") is not None)
     assert "Traceback" not in log.read_text() + running.log.read_text()
     assert "[WARN]" not in log.read_text() + running.log.read_text()

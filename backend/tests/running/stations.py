@@ -90,12 +90,15 @@ class RunningStation:
         return answer
 
     def up(self) -> bool:
+        return self.production() in ("waiting", "started")
+
+    def production(self) -> Any:  # noqa: ANN401 - JSON
+        """How production stands; None while nobody tells."""
         assert self.process.poll() is None, "the station has ended"
         try:
-            station = self.browser.get("station").json()
+            return self.browser.get("station").json().get("production")
         except httpx.HTTPError:
-            return False
-        return station.get("production") in ("waiting", "started")
+            return None
 
     def analysed(self) -> Any:  # noqa: ANN401 - JSON
         """What synthesis has found of the station; None before that is all."""

@@ -7,11 +7,17 @@ import sqlite3
 from contextlib import closing
 from pathlib import Path
 
+import pytest
+
+from core.budget import SHARE
 from running.stations import eventually, finished, free_port, process
 from running.workshops import EditedStation, edited
 from sequence_planner.launcher import UNUSABLE
 from sequence_planner.storage.address import SqliteFile, address
 from sequence_planner.storage.location import default_url
+
+# That a last word counts only beside its own journal is tested in `journal/test_last_word.py`, too.
+IN_CAMPAIGNS = pytest.mark.skipif(SHARE < 1, reason="stations that begin one after another take long: `make campaign`")
 
 
 def works(station: EditedStation) -> None:
@@ -54,6 +60,7 @@ def begun(station: EditedStation) -> tuple[str, bool]:
     return str(station.get("mode", "station")), "begins-at-rest" in station.get("alarms")
 
 
+@IN_CAMPAIGNS
 def test_a_new_station_begins_without_the_last_word_of_the_one_before(tmp_path: Path) -> None:
     with edited(tmp_path, "--emulator") as station:
         model = station.model
@@ -72,6 +79,7 @@ def test_a_new_station_begins_without_the_last_word_of_the_one_before(tmp_path: 
         assert list(file.parent.glob("*-aside-*")) == [kept], "it is new once"
 
 
+@IN_CAMPAIGNS
 def test_a_restored_backup_begins_at_rest_once(tmp_path: Path) -> None:
     with edited(tmp_path, "--emulator") as station:
         model = station.model

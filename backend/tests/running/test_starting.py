@@ -56,8 +56,7 @@ def test_nothing_is_published_until_a_person_starts_production(tmp_path: Path) -
         killed = running.child("controller")
         os.kill(killed, signal.SIGKILL)
         eventually(lambda: killed not in running.children("controller"))
-        eventually(running.up)
-        eventually(lambda: running.get("production", "station") == "waiting")  # its view may be that of the one before
+        eventually(lambda: running.production() == "waiting")
 
 
 DEMONSTRATION = ("run", str(MODEL), "--emulator", "--demonstration")
