@@ -46,7 +46,7 @@ export default defineConfig({
 						codeSplitting: {
 							groups: [
 								{ name: 'svelte', test: /node_modules\/svelte\//, priority: 1, entriesAware: true },
-								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 10_000 }
+								{ name: 'shared', minShareCount: 2, entriesAware: true, entriesAwareMergeThreshold: 4_700 }
 							]
 						},
 						// Those are called after all pages that share them, which are no folders.

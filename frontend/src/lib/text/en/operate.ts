@@ -196,5 +196,12 @@ export const operate = {
 		finished: 'finished:',
 		nothingChanges: 'nothing changes',
 		forbiddenBy: 'forbidden by'
+	},
+	/** Whoever is asked for something says what is in the way; on the watch with one touch, and nothing more. */
+	problem: {
+		more: 'More about it (if you like)',
+		title: (task: string): string => `What keeps you from “${task}”?`,
+		means: 'It raises an alarm, so that somebody comes. Nothing is stopped by it, and the task stays.',
+		tell: 'Tell the station'
 	}
 };

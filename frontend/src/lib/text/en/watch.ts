@@ -34,10 +34,6 @@ export const watch = {
 	solved: 'Solved',
 	told: 'The station is told.',
 	problemOf: (name: string): string => `${name} has a problem with it`,
-	why: 'More about it (if you like)',
-	whyTitle: (task: string): string => `What keeps you from “${task}”?`,
-	whyMeans: 'It raises an alarm, so that somebody comes. Nothing is stopped by it, and the task stays.',
-	tell: 'Tell the station',
 	notLive: 'Not live',
 	causes: {
 		connecting: 'Connecting to the station.',

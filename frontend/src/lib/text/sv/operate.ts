@@ -195,5 +195,11 @@ export const operate: Text['operate'] = {
 		finished: 'klart:',
 		nothingChanges: 'inget ändras',
 		forbiddenBy: 'förbjuds av'
+	},
+	problem: {
+		more: 'Mer om det (om du vill)',
+		title: (task) => `Vad hindrar ”${task}”?`,
+		means: 'Det ger ett larm, så att någon kommer. Inget stannar av det, och uppgiften är kvar.',
+		tell: 'Säg till stationen'
 	}
 };

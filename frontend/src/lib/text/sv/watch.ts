@@ -31,10 +31,6 @@ export const watch: Text['watch'] = {
 	solved: 'Löst',
 	told: 'Stationen vet om det.',
 	problemOf: (name) => `${name} har problem med den`,
-	why: 'Mer om det (om du vill)',
-	whyTitle: (task) => `Vad hindrar ”${task}”?`,
-	whyMeans: 'Det ger ett larm, så att någon kommer. Inget stannar av det, och uppgiften är kvar.',
-	tell: 'Säg till stationen',
 	notLive: 'Inte direkt',
 	causes: {
 		connecting: 'Ansluter till stationen.',
