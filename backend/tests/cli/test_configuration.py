@@ -238,8 +238,8 @@ def test_all_that_is_wrong_is_told_at_once(tmp_path: Path) -> None:
         ),
         ('hot_standby = "press a"\n', ["1: `hot_standby` takes a name"]),
         (
-            'hot_standby = "a"\ndatabase = "sqlite:////tmp/b.sqlite"\n',
-            ["1: several stations cannot share /tmp/b.sqlite"],
+            'hot_standby = "a"\ndatabase = "sqlite:////b.sqlite"\n',
+            ["1: several stations cannot share /b.sqlite"],
         ),
         ('\noidc_client = "x"\n', ["2: `oidc_issuer` is missing"]),
         ('oidc_issuer = "https://a.example"\noidc_client = "x"\n', ["1: nobody of the provider could sign in"]),
