@@ -52,7 +52,7 @@ pytest-light: install-test postgresql e2e/node_modules/done.stamp
 	cd backend && .venv/bin/pytest -m 'not heavy' -n auto --dist worksteal --junitxml=../.ci/results/pytest.xml
 
 pytest-heavy: install-test foreign postgresql
-	cd backend && .venv/bin/pytest -m heavy -n 2 --dist loadfile --no-loadscope-reorder --junitxml=../.ci/results/pytest-heavy.xml
+	cd backend && .venv/bin/pytest -m heavy -n 3 --dist loadfile --no-loadscope-reorder --junitxml=../.ci/results/pytest-heavy.xml
 
 svelte-check: frontend/node_modules/done.stamp
 	cd frontend && npm run check

@@ -26,22 +26,6 @@ def launcher(*arguments: str) -> str:
     return f"import subprocess, sys\nsubprocess.Popen({command}, stdin=subprocess.PIPE).wait()"
 
 
-PARENT = """
-import multiprocessing, os, time
-from sequence_planner.lifeline import end_without_parent
-
-def child():
-    end_without_parent()
-    print(os.getpid(), flush=True)
-    time.sleep(60)
-
-if __name__ == "__main__":
-    process = multiprocessing.get_context("fork").Process(target=child)
-    process.start()
-    process.join()
-"""
-
-
 def is_there(pid: int) -> bool:
     try:
         os.kill(pid, 0)
@@ -69,10 +53,6 @@ def killed(program: str) -> int:
 
 def test_what_was_launched_ends_with_a_launcher_that_is_killed() -> None:
     assert ends(killed(launcher()))
-
-
-def test_what_multiprocessing_started_ends_with_a_parent_that_is_killed() -> None:
-    assert ends(killed(PARENT))
 
 
 def test_nothing_is_left_of_a_demonstration_whose_launcher_was_killed(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from typer.main import get_command
 
 from sequence_planner.cli import app
 from sequence_planner.configuration import PREFIX, Configuration
-from sequence_planner.launcher import UNUSABLE
+from sequence_planner.part import UNUSABLE
 from sequence_planner.service_manager import ServiceManager
 
 ROOT = Path(__file__).parents[2]

@@ -23,8 +23,8 @@ from sequence_planner.control.view import ControlView
 from sequence_planner.deployment_folder import NAME, DeploymentFolder, DeploymentNote, undo_what_was_cut_off
 from sequence_planner.deployment_under_way import LONGEST_START, UnderWay
 from sequence_planner.exchange import exchanging
-from sequence_planner.launcher import Part
 from sequence_planner.lifeline import DEPLOYED, OVERTAKEN
+from sequence_planner.part import Executed, Part
 from sequence_planner.workshop import files
 from sequence_planner.workshop.files import put_in_place, read_contents, read_files, write_files
 
@@ -186,14 +186,14 @@ def test_what_ends_between_two_looks_is_seen_by_who_watches_over_the_deployment_
 ) -> None:
     """A controller that makes room just after the launcher has looked at the deployment."""
     DeploymentFolder(beside).begin(NOTE, read_contents(model))
-    part = Part("controller", [sys.executable, "-c", f"raise SystemExit(input() and {DEPLOYED})"])
+    program = f"import sys; sys.stdin.read(); raise SystemExit({DEPLOYED})"
+    part = Part("controller", Executed([sys.executable, "-c", program]))
     part.spawn()
     watch, first = UnderWay(model, beside, part, None), part.process
-    assert first is not None and first.stdin is not None
+    assert first is not None
     part.look()
     watch.look()
-    first.stdin.write(b"end\n")
-    first.stdin.flush()
+    part.hang_up()
     first.wait()
     assert part.look_after() == 0
     assert (part.process, watch.was) == (first, False), "it is the next turn that sees it"
@@ -202,7 +202,7 @@ def test_what_ends_between_two_looks_is_seen_by_who_watches_over_the_deployment_
     assert part.look_after() == 0
     assert watch.was
     assert part.process not in (None, first)
-    part.end()
+    part.stop()
 
 
 def test_only_an_accepted_deployment_keeps_others_from_commanding(model: Path, beside: Path) -> None:

@@ -42,10 +42,10 @@ export function treeOf(pid: number): Identity[] {
 	return [root, ...below(pid)];
 }
 
-/** The arguments with which it was started; none when it has ended. */
-export function argumentsOf(identity: Identity): string[] {
+/** The words of its command line, as `ps` shows it; none when it has ended. */
+export function wordsOf(identity: Identity): string[] {
 	try {
-		return readFileSync(`/proc/${identity.pid}/cmdline`, 'utf8').split('\0');
+		return readFileSync(`/proc/${identity.pid}/cmdline`, 'utf8').split(/[\0 ]/);
 	} catch {
 		return [];
 	}

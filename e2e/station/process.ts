@@ -3,7 +3,7 @@ import { spawn, type ChildProcess } from 'node:child_process';
 import { closeSync, mkdirSync, openSync } from 'node:fs';
 import { dirname } from 'node:path';
 import { setTimeout as sleep } from 'node:timers/promises';
-import { alive, argumentsOf, signal, treeOf, type Identity } from './process-tree.ts';
+import { alive, wordsOf, signal, treeOf, type Identity } from './process-tree.ts';
 
 /** Milliseconds that a process and those it started get to end by themselves. */
 const GRACE = 15_000;
@@ -47,9 +47,9 @@ export class StationProcess {
 		signal(this.#tree, name);
 	}
 
-	/** Signals the process among those it has started that was started with the argument `part`: not its spare, which is younger. */
+	/** Signals the process among those it has started that runs the command `part`. */
 	signalPart(part: string, name: NodeJS.Signals): void {
-		const found = this.#tree.slice(1).filter((each) => argumentsOf(each).includes(part));
+		const found = this.#tree.slice(1).filter((each) => wordsOf(each).includes(part));
 		const [oldest] = found.sort((one, other) => Number(one.started) - Number(other.started));
 		if (oldest === undefined) throw new Error(`no process is the ${part}`);
 		signal([oldest], name);

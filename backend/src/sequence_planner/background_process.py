@@ -6,17 +6,14 @@ It computes at a low priority. Whoever ends it ends all that it has started.
 from __future__ import annotations
 
 import asyncio
-import contextlib
-import multiprocessing
 import os
-import signal
 from collections.abc import Callable
 from importlib import import_module
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
+from multiprocessing.connection import Connection, Pipe
 from typing import Final
 
-from sequence_planner.lifeline import lead_group_without_parent
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import start
 from sequence_planner.storage.error import StorageError
 
 _NICENESS: Final = 10  # below the station and what people wait for
@@ -33,12 +30,10 @@ async def carried_out(
 
     Raises the `StorageError` that it raises, `TimeoutError` after `longest` seconds, and `EndedEarlyError`.
     """
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe(duplex=False)
-    process = context.Process(target=_work, args=(theirs, work, task), daemon=True, name=work.partition(":")[0])
+    ours, theirs = Pipe(duplex=False)
     with ours:
-        with theirs:
-            await asyncio.shield(asyncio.to_thread(process.start))
+        module = work.partition(":")[0]
+        process = start(_work, work, task, name=module, connection=theirs, modules=(module,), leads=True)
         try:
             async with asyncio.timeout(longest):
                 while not (told := await _told(ours))[0]:
@@ -66,16 +61,12 @@ async def _told(connection: Connection) -> tuple[bool, object]:
     return found
 
 
-def _end(process: SpawnProcess) -> None:
-    if process.pid is not None:
-        with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
-        process.kill()  # it may not lead a group yet
+def _end(process: Child) -> None:
+    process.kill()
     process.join()
 
 
 def _work(connection: Connection, work: str, task: object) -> None:
-    lead_group_without_parent()
     os.nice(_NICENESS)
     module, _, name = work.partition(":")
     function = getattr(import_module(module), name)  # the server does without what that imports

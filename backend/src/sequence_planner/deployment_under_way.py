@@ -16,7 +16,7 @@ from sequence_planner.emulation.standing import standing_file
 from sequence_planner.lifeline import DEPLOYED, OVERTAKEN
 
 if TYPE_CHECKING:
-    from sequence_planner.launcher import Part
+    from sequence_planner.part import Part
 
 LOG = structlog.get_logger(__name__)
 LONGEST_START = 300.0  # seconds: safe states may take two minutes, and a machine may be busy

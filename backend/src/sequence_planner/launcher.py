@@ -1,7 +1,7 @@
 """One command starts all processes of a station, and sees to it that they live.
 
 Controller and server are started again when they die. A model that was deployed and cannot be started gives way to the
-one before it. Of each a spare is kept, a process that has imported all that it needs and waits: most of what a start
+one before it. All are forked from one process that has imported what they need, see `forking`: most of what a start
 takes is over then. The socket on which people reach the server is this process's, so that who connects meanwhile waits,
 and is not turned away. Emulated devices are not started again: like real ones they stay away until somebody brings them
 back, but where another model was deployed they begin anew with it, as those before them stood.
@@ -12,20 +12,17 @@ outlives this process, even if it is killed: each holds a pipe from it (see `lif
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import os
 import signal
-import subprocess
-import sys
 import tempfile
 import threading
-import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 from pathlib import Path
 from socket import socket as ListeningSocket  # noqa: N812 - `socket` is the path of another one
-
-import structlog
+from typing import Final
 
 from sequence_planner.announcement import UNWELL, announced, first_start, health
 from sequence_planner.backup.settings import Keeping
@@ -33,20 +30,15 @@ from sequence_planner.control.unix_socket import LONGEST_PATH
 from sequence_planner.deployment_folder import DeploymentFolder, DeploymentNote
 from sequence_planner.deployment_under_way import UnderWay
 from sequence_planner.emulation.standing import standing_file
+from sequence_planner.forking.starting import OWN
 from sequence_planner.identity.openid.options import ProviderOptions
 from sequence_planner.journal.last_word import set_aside
-from sequence_planner.lifeline import (
-    DEMONSTRATION_DATABASE,
-    DEPLOYED,
-    LAST_WORDS_FILE,
-    LAST_WORDS_SUFFIX,
-    NEEDED,
-    NOT_EMULATED,
-    OVERTAKEN,
-)
-from sequence_planner.logs import FORMAT, LogFormat, configure_logs
+from sequence_planner.lifeline import DEMONSTRATION_DATABASE, LAST_WORDS_SUFFIX, NOT_EMULATED
+from sequence_planner.logs import FORMAT, LogFormat, configure_logs, say
 from sequence_planner.memory_limit import USUAL, VARIABLE
 from sequence_planner.mes.webhooks.targets import Targets
+from sequence_planner.part import UNUSABLE, Forked, Part
+from sequence_planner.part_modules import CONTROLLER, EMULATOR, SERVER
 from sequence_planner.parts_file import write_restarts
 from sequence_planner.retention.settings import Retention
 from sequence_planner.secret_variables import CLIENT_SECRET, PASSWORD, environment
@@ -63,14 +55,7 @@ from sequence_planner.workshop import draft as drafts
 PACKAGED = Path(__file__).resolve().parent / "page"
 PAGE = PACKAGED if PACKAGED.is_dir() else Path(__file__).resolve().parents[3] / "frontend" / "build"
 
-LOG = structlog.get_logger(__name__)
-UNUSABLE = 2  # the exit code with which a process says that it cannot be run as asked
-FIRST_PAUSE = 0.5  # seconds before a process is started again; doubled each time, up to the longest
-LONGEST_PAUSE = 10.0
-STEADY = 60.0  # seconds after which a process that lives has recovered
-PATIENCE = 5.0  # seconds in which a process may end in good order
-SPARE_AFTER = 10.0  # seconds after which a process that lives gets a spare; until then its start is not held up
-SPARE = "--spare"  # of a command: it waits until it is needed
+LISTENER: Final = 200  # the least number of a descriptor that a part inherits: it has it where it was forked, too
 
 
 @dataclass(frozen=True)
@@ -102,168 +87,6 @@ class Launch:
     cut_off: DeploymentNote | None = None
 
 
-class Part:
-    """A process of the station, which is started again when it dies. It gets the environment `given`, or one without
-    secrets.
-
-    One that `has_spare` is followed at once by another process that was started before. Whenever it is started after
-    the first time it is told `again`. It gets the `inherited` descriptors.
-    """
-
-    def __init__(
-        self,
-        name: str,
-        command: list[str],
-        given: Mapping[str, str] | None = None,
-        has_spare: bool = False,
-        again: Sequence[str] = (),
-        inherited: Sequence[int] = (),
-        last_words: Path | None = None,
-    ) -> None:
-        self.name = name
-        self._inherited = inherited
-        self._last_words = last_words
-        self._told_again = again
-        self._has_spare = has_spare
-        self.spare: subprocess.Popen[bytes] | None = None
-        self._spare_due = 0.0
-        self._environment = environment() if given is None else given
-        if last_words is not None:
-            self._environment = {**self._environment, LAST_WORDS_FILE: str(last_words)}
-        self.process: subprocess.Popen[bytes] | None = None
-        self.ended: int | None = None
-        """The exit code of a process that was seen to have ended (`look`) and was not looked after yet."""
-        self._command = command
-        self._pause = FIRST_PAUSE
-        self._due = 0.0  # on the clock of `time.monotonic`, as is `_begun`
-        self._begun = 0.0
-        self._again = False
-        self.restarts = 0  # how often it has died and was started again
-
-    @property
-    def steady(self) -> bool:
-        """Whether it has lived long enough to have been able to run."""
-        return time.monotonic() - self._begun >= STEADY
-
-    def spawn(self, *more: str) -> None:
-        """Start it; `more` arguments are for this time only."""
-        self.process, self.ended = self._popen(*more), None
-        self._begun = time.monotonic()
-        self._spare_due = self._begun + SPARE_AFTER
-
-    def _popen(self, *more: str) -> subprocess.Popen[bytes]:
-        if self._last_words is not None:
-            self._last_words.unlink(missing_ok=True)
-        # A session of its own: an interrupt from the terminal reaches the launcher alone, which then ends the others.
-        return subprocess.Popen(
-            [*self._command, *more],
-            stdin=subprocess.PIPE,
-            start_new_session=True,
-            env=self._environment,
-            pass_fds=self._inherited,
-        )
-
-    def look(self) -> None:
-        """See whether it has ended. All that is done because of that goes by the same look, whenever it ends."""
-        self.ended = None if self.process is None else self.process.poll()
-
-    def said(self, code: int) -> str:
-        """Why it has ended: what it said last, if anything."""
-        with contextlib.suppress(OSError):
-            if self._last_words is not None and (words := self._last_words.read_text(encoding="utf-8").strip()):
-                return words
-        return f"the {self.name} ended with code {code}, and the log says why"
-
-    def stop(self) -> None:
-        """End it, and not its spare."""
-        if self.process is not None:
-            self.process.terminate()
-            _wait(self.process)
-        self.process = self.ended = None
-
-    def look_after(self) -> int:
-        """Start it again some time after it has died. The exit code when it could not be run from the first."""
-        now = time.monotonic()
-        if self.process is None:
-            if now >= self._due:
-                self.spawn(*self._told_again)
-            return 0
-        code = self.ended
-        if code is None:
-            self._look_after_spare(now)
-            return 0
-        if code == UNUSABLE and not self._again and not self.steady:
-            return code
-        if self.steady or code in (DEPLOYED, OVERTAKEN):
-            self._pause = FIRST_PAUSE
-        self._forget()
-        self._again = True
-        if code in (DEPLOYED, OVERTAKEN):
-            if code == OVERTAKEN:
-                _say("another station has taken the command, and this one stands by")
-            if not self._follow(now):
-                self.spawn(*self._told_again)
-            return 0
-        self.restarts += 1
-        if self._follow(now):
-            _say(f"the {self.name} ended with code {code}, and its spare goes on")
-            return 0
-        _say(f"the {self.name} ended with code {code} and is started again in {self._pause:g} s")
-        self._due = now + self._pause
-        self._pause = min(self._pause * 2, LONGEST_PAUSE)
-        return 0
-
-    def _look_after_spare(self, now: float) -> None:
-        """Start a spare where there is none, some time after what it is for, or after one that has died."""
-        if self.spare is not None and self.spare.poll() is not None:
-            _close(self.spare)
-            self.spare, self._spare_due = None, now + LONGEST_PAUSE
-        if self._has_spare and self.spare is None and now >= self._spare_due:
-            self.spare = self._popen(SPARE)
-
-    def _follow(self, now: float) -> bool:
-        """Let the spare go on, if there is one."""
-        spare, self.spare = self.spare, None
-        if spare is None:
-            return False
-        try:
-            assert spare.stdin is not None
-            os.write(spare.stdin.fileno(), NEEDED)
-        except OSError:  # it has died just now
-            spare.wait()
-            _close(spare)
-            return False
-        self.process, self._begun = spare, now
-        self._spare_due = now + SPARE_AFTER
-        return True
-
-    def terminate(self) -> None:
-        """Ask it to end, and its spare."""
-        for process in (self.process, self.spare):
-            if process is not None:
-                process.terminate()
-
-    def has_ended(self) -> int | None:
-        """The exit code, once, of a process that is not started again."""
-        code = self.ended
-        if code is not None:
-            self._forget()
-        return code
-
-    def end(self) -> None:
-        """End it in good order, or kill it if that takes too long."""
-        for process in (self.process, self.spare):
-            if process is None:
-                continue
-            _wait(process)
-        self.process = self.spare = None
-
-    def _forget(self) -> None:
-        if self.process is not None:
-            _close(self.process)
-        self.process = self.ended = None
-
-
 def launch(request: Launch) -> int:
     """Run all processes until SIGTERM, SIGINT or SIGHUP; returns the exit code.
 
@@ -289,14 +112,14 @@ def launch(request: Launch) -> int:
             if request.unusable is not None:
                 if not _has_draft(url):
                     raise SettingsError(request.unusable)
-                _say(f"{request.unusable}\nthe model cannot be used: change its draft on its page, and deploy that")
+                say(f"{request.unusable}\nthe model cannot be used: change its draft on its page, and deploy that")
             with contextlib.closing(Database.open(url, new=request.new)) as database:
                 if request.hot_standby is not None and not isinstance(database.place, PostgresqlServer):
                     text = f"several stations cannot share {database.place}: --hot-standby takes PostgreSQL"
                     raise SettingsError(text)
                 if request.new and database.is_empty:
                     for path, kept in set_aside(database.place, datetime.now(UTC)):
-                        _say(f"a new station begins: the last word of another one, {path}, is kept as {kept}")
+                        say(f"a new station begins: the last word of another one, {path}, is kept as {kept}")
                 database.upgrade(new=request.new)
             if request.cut_off is not None:
                 DeploymentFolder(socket.parent).begin_undone(request.cut_off)
@@ -339,9 +162,8 @@ class _Launcher:
         of_server = {**environment(PASSWORD, CLIENT_SECRET), DATABASE: url}
         self._controller = Part(
             "controller",
-            _command("controller", *controller),
+            Forked(["controller", *controller], CONTROLLER),
             of_controller,
-            has_spare=True,
             again=("--again",),
             last_words=self._folder / f"controller{LAST_WORDS_SUFFIX}",
         )
@@ -356,12 +178,12 @@ class _Launcher:
         server += request.backups.arguments()
         server += request.retention.arguments()
         # It listens as long as this process lives: whoever connects while a server has died waits for the next one.
-        server += [*_options(request.endpoint), f"--listener={listener.fileno()}"]
-        kept = (listener.fileno(),)
-        self._server = Part("server", _command("server", *server), of_server, has_spare=True, inherited=kept)
-        self._listener = listener
+        listening = fcntl.fcntl(listener, fcntl.F_DUPFD_CLOEXEC, LISTENER)
+        server += [*_options(request.endpoint), f"--listener={listening}"]
+        kept = (listening,)
+        self._server = Part("server", Forked(["server", *server], SERVER, inherited=kept), of_server)
         self._standing = standing_file(self._folder)
-        emulator = _command("emulate", model, *speed, *transport, "--keep-in", str(self._standing))
+        emulator = Forked(["emulate", model, *speed, *transport, "--keep-in", str(self._standing)], EMULATOR)
         self._emulator = Part("emulated devices", emulator, last_words=self._folder / f"emulator{LAST_WORDS_SUFFIX}")
         self._deployment = UnderWay(
             request.model, self._folder, self._controller, self._emulator if request.emulator else None
@@ -382,6 +204,7 @@ class _Launcher:
                     told = restarts
                 for each in (self._controller, self._server, self._emulator):
                     each.look()
+                OWN.path()  # it is started again if it has died
                 self._deployment.look()
                 code = self._notice_emulator() or self._controller.look_after() or self._server.look_after()
                 if code:
@@ -402,9 +225,9 @@ class _Launcher:
         if code == UNUSABLE and not self._emulator.steady and not self._deployment.was:
             return code
         if code == NOT_EMULATED:
-            _say("there are no emulated devices: change the model on its page, under Engineering, and deploy it")
+            say("there are no emulated devices: change the model on its page, under Engineering, and deploy it")
         elif code is not None:
-            _say(
+            say(
                 "the emulated devices have ended; start them again with `make emulator`, "
                 f"or `sequence-planner emulate {self._request.model}`"
             )
@@ -417,9 +240,9 @@ class _Launcher:
             if self._stop.wait(0.1):
                 return
         self._manager.ready()
-        _say(announced(endpoint, model))
+        say(announced(endpoint, model))
         if self._request.database is not None and (how := first_start(self._url, endpoint, model)):
-            _say(how)
+            say(how)
         self._watch()
 
     def _watch(self) -> None:
@@ -451,32 +274,3 @@ def _options(endpoint: Endpoint) -> list[str]:
         options += [f"--certificate={endpoint.certificate}", f"--private-key={endpoint.private_key}"]
     options += [f"--proxy={proxy}" for proxy in endpoint.proxies]
     return [*options, *(f"--name={name}" for name in endpoint.names)]
-
-
-def _command(*arguments: str) -> list[str]:
-    return [sys.executable, "-m", "sequence_planner.cli", *arguments, "--launched"]
-
-
-def _wait(process: subprocess.Popen[bytes]) -> None:
-    """Wait until it has ended in good order, or kill it if that takes too long."""
-    try:
-        process.wait(timeout=PATIENCE)
-    except subprocess.TimeoutExpired:
-        process.kill()
-        process.wait()
-    _close(process)
-
-
-def _close(process: subprocess.Popen[bytes]) -> None:
-    """Let go of its lifeline."""
-    if process.stdin is not None:
-        process.stdin.close()
-
-
-def _say(text: str) -> None:
-    """On standard output, or as an event where no person reads that: a secret is only told at a terminal."""
-    if os.environ.get(FORMAT) == LogFormat.JSON and not sys.stdout.isatty():
-        LOG.info(text)
-        return
-    sys.stdout.write(f"{text}\n")
-    sys.stdout.flush()

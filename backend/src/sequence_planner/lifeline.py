@@ -9,13 +9,11 @@ from __future__ import annotations
 
 import atexit
 import contextlib
-import multiprocessing
 import os
 import shutil
 import signal
 import threading
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 from sequence_planner import parts_file
@@ -36,7 +34,6 @@ LEFT_BEHIND = (
 DEPLOYED = 75  # the exit code with which the controller makes room for one that runs another model
 OVERTAKEN = 76  # the exit code of a controller when another station has taken the command
 NOT_EMULATED = 77  # the exit code of emulated devices that cannot be run with this model
-NEEDED = b"\n"  # what a spare reads when it is needed
 LAST_WORDS = 5.0  # seconds in which a process may end in good order
 
 
@@ -57,14 +54,15 @@ def end_with_launcher(folder: Path | None = None) -> None:
                         left.unlink(missing_ok=True)
                 folder.rmdir()
 
-    def end() -> None:
+    def watch() -> None:
+        _closed()
         remove()
         atexit.register(remove)  # once this process has taken out what is its own
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(LAST_WORDS)
         os._exit(1)
 
-    _when(_closed, end)
+    threading.Thread(target=watch, daemon=True, name="lifeline").start()
 
 
 def leave_last_words(text: str) -> None:
@@ -72,36 +70,6 @@ def leave_last_words(text: str) -> None:
     if file := os.environ.get(LAST_WORDS_FILE):
         with contextlib.suppress(OSError):
             Path(file).write_text(text, encoding="utf-8")
-
-
-def is_needed() -> bool:
-    """Wait until the launcher needs this process, a spare; false when it has ended instead."""
-    return os.read(STANDARD_INPUT, len(NEEDED)) == NEEDED
-
-
-def end_without_parent() -> None:
-    """End this process, which `multiprocessing` has started, as soon as its parent has ended."""
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        _when(parent.join, lambda: os._exit(1))
-
-
-def lead_group_without_parent() -> None:
-    """Let this process, which `multiprocessing` has started, lead a group of its own, and end all of it as soon as its
-    parent has ended.
-    """
-    os.setsid()
-    parent = multiprocessing.parent_process()
-    if parent is not None:
-        _when(parent.join, lambda: os.killpg(0, signal.SIGKILL))
-
-
-def _when(wait: Callable[[], None], act: Callable[[], None]) -> None:
-    def watch() -> None:
-        wait()
-        act()
-
-    threading.Thread(target=watch, daemon=True, name="lifeline").start()
 
 
 def _closed() -> None:

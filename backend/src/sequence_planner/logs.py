@@ -138,3 +138,12 @@ def _written() -> list[Processor]:
 def _end_with_an_event(kind: type[BaseException], error: BaseException, trace: TracebackType | None) -> None:
     """What ends the process is an event too."""
     structlog.get_logger().critical("the process failed", exc_info=(kind, error, trace))
+
+
+def say(text: str) -> None:
+    """Write for a person on standard output, or an event where nobody reads that: secrets are told at a terminal."""
+    if os.environ.get(FORMAT) == LogFormat.JSON and not sys.stdout.isatty():
+        structlog.get_logger().info(text)
+        return
+    sys.stdout.write(f"{text}\n")
+    sys.stdout.flush()

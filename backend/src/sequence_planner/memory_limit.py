@@ -10,15 +10,27 @@ import asyncio
 import os
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from multiprocessing.process import BaseProcess
 from pathlib import Path
-from typing import Final
+from typing import Final, Protocol
 
 VARIABLE: Final = "SEQUENCE_PLANNER_MEMORY"  # of the environment: the limit in GB
 USUAL: Final = 2.0  # GB
 LEAST, MOST = 0.25, 1024.0  # GB
 _GB = 1 << 30
 _LOOK = 0.1  # seconds between two looks
+
+
+class Killable(Protocol):
+    """A process."""
+
+    @property
+    def pid(self) -> int | None:
+        """Its number."""
+        ...
+
+    def kill(self) -> None:
+        """End it."""
+        ...
 
 
 class MemoryLimitError(Exception):
@@ -36,7 +48,7 @@ class MemoryLimit:
         return f"it takes more than {self.gigabytes:g} GB of memory: allow more with --memory or {VARIABLE}"
 
     @contextmanager
-    def held(self, process: BaseProcess) -> Iterator[None]:
+    def held(self, process: Killable) -> Iterator[None]:
         """Kill the process as soon as it is beyond the limit; to be entered where an event loop runs."""
         watching = asyncio.create_task(self._watch(process))
         try:
@@ -44,8 +56,9 @@ class MemoryLimit:
         finally:
             watching.cancel()
 
-    async def _watch(self, process: BaseProcess) -> None:
-        while process.pid is not None and (resident := _resident(process.pid)) is not None:
+    async def _watch(self, process: Killable) -> None:
+        number = await asyncio.to_thread(lambda: process.pid)
+        while number is not None and (resident := _resident(number)) is not None:
             if resident > self.gigabytes * _GB:
                 self.reached = True
                 process.kill()

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import asyncio
-import multiprocessing
 import time
 from itertools import pairwise
-from multiprocessing.process import BaseProcess
 
 import pytest
 
@@ -17,10 +15,12 @@ from sequence_planner.analysis.analysis import Analysis, analyses
 from sequence_planner.analysis.process import SynthesisEndedError, analysing
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import children
 
 
-def processes() -> list[BaseProcess]:
-    return [child for child in multiprocessing.active_children() if child.name == "synthesis"]
+def processes() -> list[Child]:
+    return [child for child in children() if child.name == "synthesis"]
 
 
 async def all_of(station: Automaton) -> list[Analysis]:

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import asyncio
-import multiprocessing
 import os
 import signal
 import time
 from collections.abc import Awaitable, Callable
-from multiprocessing.process import BaseProcess
 
 import pytest
 
@@ -17,12 +15,14 @@ from core.building import predicate_of
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.control.adviser import Adviser
 from sequence_planner.control.command_base import CommandRefused
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import children
 from sequence_planner.planning.advice.request import AdviceRequest, ErrandRequest
 from sequence_planner.planning.plan import Contract, PlanRequest, Verdict, goals_of
 
 
-def processes() -> list[BaseProcess]:
-    return [child for child in multiprocessing.active_children() if child.name == "adviser"]
+def processes() -> list[Child]:
+    return [child for child in children() if child.name == "adviser"]
 
 
 def run(scenario: Callable[[Adviser], Awaitable[None]], start_after: float = 0.0) -> None:

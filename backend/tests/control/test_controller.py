@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import multiprocessing
 import time
 from collections.abc import Awaitable, Callable
 from typing import NoReturn
@@ -21,6 +20,7 @@ from sequence_planner.control.controller import Controller
 from sequence_planner.control.starting import start_when_alone
 from sequence_planner.control.view import Mode, PlanStatus, Production
 from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.forking.starting import children
 from sequence_planner.pipelines.graph import StationPipelines
 from sequence_planner.ros.memory import MemoryNetwork, MemoryTransport
 from sequence_planner.ros.transport import QualityOfService, TransportError
@@ -52,7 +52,7 @@ def value(on: Bench, name: str) -> object:
 
 def end_planner() -> None:
     """Kill the planner's process, as the system does when memory is short."""
-    (planner,) = [child for child in multiprocessing.active_children() if child.name == "planner"]
+    (planner,) = [child for child in children() if child.name == "planner"]
     planner.kill()
     planner.join()
 

@@ -13,17 +13,29 @@ from pathlib import Path
 
 import pytest
 
-from running.stations import MODEL, REPOSITORY, command, environment, finished, foreign_node, free_port, station
-from sequence_planner import launcher
-from sequence_planner.launcher import UNUSABLE, Part
+from running.stations import (
+    MODEL,
+    REPOSITORY,
+    RunningStation,
+    command,
+    descendants,
+    environment,
+    finished,
+    foreign_node,
+    free_port,
+    station,
+)
+from sequence_planner import part as parts
 from sequence_planner.lifeline import DEPLOYED
+from sequence_planner.part import UNUSABLE, Executed, Part
 from sequence_planner.ros.transport import QualityOfService
 from sequence_planner.secret_variables import CLIENT_SECRET, PASSWORD
+from sequence_planner.secret_variables import environment as with_secrets
 from sequence_planner.storage.environment import DATABASE
 
 
 def part(program: str) -> Part:
-    return Part("part", [sys.executable, "-c", program])
+    return Part("part", Executed([sys.executable, "-c", program]))
 
 
 def eventually(what: Callable[[], bool], seconds: float = 20) -> None:
@@ -64,7 +76,7 @@ def starts(watched: Part, count: int) -> list[float]:
     seen: dict[int, float] = {}
     while len(seen) < count:
         assert looked_after(watched) == 0
-        if watched.process is not None:
+        if watched.process is not None and watched.process.pid is not None:
             seen.setdefault(watched.process.pid, time.monotonic())
         time.sleep(0.01)
     return list(seen.values())
@@ -82,12 +94,12 @@ def test_what_makes_room_for_another_model_is_followed_at_once() -> None:
     leaving = part(f"raise SystemExit({DEPLOYED})")
     leaving.spawn()
     first, second = starts(leaving, 2)
-    assert second - first < launcher.FIRST_PAUSE
+    assert second - first < parts.FIRST_PAUSE
     leaving.end()
 
 
 def test_what_had_recovered_is_started_again_soon(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(launcher, "STEADY", 0.0)
+    monkeypatch.setattr(parts, "STEADY", 0.0)
     dying = part("raise SystemExit(3)")
     dying.spawn()
     began = time.monotonic()
@@ -96,71 +108,24 @@ def test_what_had_recovered_is_started_again_soon(monkeypatch: pytest.MonkeyPatc
     dying.end()
 
 
-WAITING = """
-import os, sys, time
-from sequence_planner.lifeline import is_needed
-if "--spare" in sys.argv and not is_needed():
-    raise SystemExit(0)
-time.sleep(60)
-"""
+def test_what_has_lived_for_some_time_is_followed_at_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parts, "BRIEF", 0.0)
+    dying = part("raise SystemExit(3)")
+    dying.spawn()
+    first, second, third = starts(dying, 3)
+    assert second - first < parts.FIRST_PAUSE
+    assert third - second < parts.FIRST_PAUSE
+    dying.end()
 
 
-def spared(monkeypatch: pytest.MonkeyPatch) -> tuple[Part, int, int]:
-    """A part with a spare, and the numbers of both processes."""
-    monkeypatch.setattr(launcher, "SPARE_AFTER", 0.0)
-    watched = Part("part", [sys.executable, "-c", WAITING], has_spare=True)
-    watched.spawn()
-    return watched, *pair(watched)
-
-
-def pair(watched: Part) -> tuple[int, int]:
-    """The process of a part and its spare, as soon as it has one."""
-    eventually(lambda: looked_after(watched) == 0 and watched.spare is not None)
-    assert watched.process is not None
-    assert watched.spare is not None
-    return watched.process.pid, watched.spare.pid
-
-
-def end(watched: Part) -> None:
-    watched.terminate()
-    watched.end()
-
-
-def test_a_spare_follows_at_once_and_has_a_spare_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    watched, alive, spare = spared(monkeypatch)
-    for _ in range(3):
-        os.kill(alive, signal.SIGKILL)
-        killed, before = time.monotonic(), spare
-        while (now := pair(watched))[0] == alive:
-            assert time.monotonic() < killed + 0.4, "it takes as long as to start another"
-        alive, spare = now
-        assert alive == before
-    end(watched)
-    assert are_gone([alive, spare])
-
-
-def test_a_spare_that_has_died_too_does_no_harm(monkeypatch: pytest.MonkeyPatch) -> None:
-    watched, alive, spare = spared(monkeypatch)
-    for each in (spare, alive):
-        os.kill(each, signal.SIGKILL)
-
-    def goes_on() -> bool:
-        assert looked_after(watched) == 0
-        return watched.process is not None and watched.process.pid not in (alive, spare)
-
-    eventually(goes_on)
-    end(watched)
-
-
-def test_a_spare_ends_with_its_launcher(monkeypatch: pytest.MonkeyPatch) -> None:
-    watched, _, number = spared(monkeypatch)
-    spare = watched.spare
-    assert spare is not None
-    assert spare.stdin is not None
-    spare.stdin.close()  # as the end of the launcher does
-    assert spare.wait(20) == 0
-    end(watched)
-    assert are_gone([number])
+def test_a_part_ends_when_it_is_hung_up() -> None:
+    waiting = part("import sys; raise SystemExit(len(sys.stdin.read()))")
+    waiting.spawn()
+    process = waiting.process
+    assert process is not None
+    waiting.hang_up()
+    assert process.wait(20) == 0
+    waiting.end()
 
 
 def test_what_cannot_run_as_asked_is_given_up_at_first_but_not_once_it_ran() -> None:
@@ -179,7 +144,7 @@ def test_what_cannot_run_as_asked_is_given_up_at_first_but_not_once_it_ran() -> 
 
 
 def test_what_does_not_end_in_good_order_is_killed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(launcher, "PATIENCE", 0.2)
+    monkeypatch.setattr(parts, "PATIENCE", 0.2)
     stubborn = part(
         "import signal, time; signal.signal(signal.SIGTERM, signal.SIG_IGN); print(1, flush=True); time.sleep(60)"
     )
@@ -208,20 +173,21 @@ def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, short_
         ) as running,
     ):
         try:
-            eventually(lambda: len(children(running.pid)) == 3)
-            parts = children(running.pid)
+            # The fork server and the first part, or all of them.
+            eventually(lambda: len(descendants(running.pid)) >= (4 if after else 2))
             time.sleep(after)
-            grandchildren = [each for pid in parts for each in children(pid)]
+            left = [each.number for each in descendants(running.pid)]
             running.send_signal(how)
             running.wait(20)
-            eventually(lambda: are_gone([*parts, *grandchildren]))
+            eventually(lambda: are_gone(left))
         finally:
             running.kill()
     assert running.returncode == (-how if how is signal.SIGKILL else 0)
-    assert [each.name for each in short_path.iterdir()] == ["log"]
+    eventually(lambda: [each.name for each in short_path.iterdir()] == ["log"])
 
 
-def test_secrets_of_the_environment_are_for_the_parts_that_need_them(tmp_path: Path) -> None:
+def test_no_secret_of_the_environment_is_shown_by_the_system(tmp_path: Path) -> None:
+    """What a process was started with can be read by whoever is the same user, as long as it lives."""
     database = f"sqlite:///{tmp_path}/station.sqlite"
     secrets = {CLIENT_SECRET: "of the client", PASSWORD: "of the database", DATABASE: database}
     provider = ("--oidc-issuer", "https://id.invalid", "--oidc-client", "station", "--oidc-others", "viewer")
@@ -236,28 +202,26 @@ def test_secrets_of_the_environment_are_for_the_parts_that_need_them(tmp_path: P
         ) as running,
     ):
         try:
-            for name, needed in (
-                ("controller", {PASSWORD, DATABASE}),
-                ("server", {CLIENT_SECRET, PASSWORD, DATABASE}),
-                ("emulate", set[str]()),
-            ):
-                assert secrets.keys() & its_environment(running.pid, name).keys() == needed, name
+            there = {"controller", "server", "emulate"}
+            eventually(lambda: all(any(each.runs(name) for each in descendants(running.pid)) for name in there))
+            for each in descendants(running.pid):
+                shown = (Path("/proc") / str(each.number) / "environ").read_text(errors="replace")
+                assert not [secret for secret in secrets.values() if secret in shown], each.title
         finally:
             running.terminate()
 
 
-def its_environment(launcher: int, name: str) -> dict[str, str]:
-    """What the part that runs the command `name` was started with."""
-    found: list[Path] = []
-
-    def is_there() -> bool:
-        folders = [Path("/proc") / str(pid) for pid in children(launcher)]
-        found[:] = [each for each in folders if name.encode() in (each / "cmdline").read_bytes().split(b"\0")]
-        return bool(found)
-
-    eventually(is_there)
-    lines = (found[0] / "environ").read_text().split("\0")
-    return dict(line.split("=", 1) for line in lines if "=" in line)
+def test_a_part_has_the_secrets_that_it_needs_and_no_others(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    names = {CLIENT_SECRET, PASSWORD, DATABASE}
+    for name in names:
+        monkeypatch.setenv(name, f"of {name}")
+    file = tmp_path / "environment"
+    program = [sys.executable, "-c", f"import os; open({str(file)!r}, 'w').write(repr(dict(os.environ)))"]
+    for given, wanted in ((None, set[str]()), (with_secrets(PASSWORD), {PASSWORD})):
+        telling = Part("part", Executed(program), given)
+        telling.spawn()
+        telling.end()
+        assert {name for name in names if f"of {name}" in file.read_text()} == wanted
 
 
 def test_beside_real_devices_nothing_is_emulated_and_nothing_starts_by_itself(tmp_path: Path) -> None:
@@ -292,17 +256,35 @@ def test_beside_real_devices_nothing_is_emulated_and_nothing_starts_by_itself(tm
     assert heard == []
 
 
-def test_the_server_is_started_again_while_production_goes_on_and_the_controller_has_a_spare(tmp_path: Path) -> None:
+def test_what_is_killed_is_followed_soon_while_the_others_go_on(tmp_path: Path) -> None:
     with station(tmp_path, "--emulator", "--start", "--emulator-speed", "5") as running:
         running.work_on(1)
         killed = running.child("server")
         os.kill(killed, signal.SIGKILL)
-        eventually(lambda: killed not in running.children("server"))  # a spare may answer sooner than anybody looks
+        eventually(lambda: killed not in running.children("server"))  # another may answer sooner than anybody looks
         eventually(running.up)
         assert running.get("production", "station") == "started"
         running.work_on(1)
-        eventually(lambda: len(running.children("controller")) == 2)
-        alive, spare = running.children("controller")
-        os.kill(alive, signal.SIGKILL)
+        killed = running.child("controller")
+        os.kill(killed, signal.SIGKILL)
         eventually(lambda: running.production() == "waiting")
-        assert running.child("controller") == spare
+        assert running.child("controller") != killed
+
+
+def test_a_station_whose_fork_server_dies_goes_on_and_gets_another(tmp_path: Path) -> None:
+    with station(tmp_path, "--emulator", "--start", "--emulator-speed", "5") as running:
+        running.work_on(1)
+        (before,) = fork_servers(running)
+        server = running.child("server")
+        os.kill(before, signal.SIGKILL)
+        os.kill(server, signal.SIGKILL)
+        eventually(lambda: server not in running.children("server"))
+        eventually(running.up)
+        assert running.get("production", "station") == "started"
+        running.work_on(1)
+        eventually(lambda: fork_servers(running) not in ([], [before]))
+
+
+def fork_servers(station: RunningStation) -> list[int]:
+    """The numbers of its processes from which others are forked."""
+    return [each.number for each in descendants(station.process.pid) if "fork server" in each.title]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import multiprocessing
 import os
 import signal
 import subprocess
@@ -14,7 +13,6 @@ import time
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass, field
 from functools import partial
-from multiprocessing.process import BaseProcess
 from pathlib import Path
 
 import pytest
@@ -25,6 +23,8 @@ from sequence_planner.control import answering_process
 from sequence_planner.control.planner_process import Listener, PlannerProcess
 from sequence_planner.expressions.syntax import Variable
 from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import children
 from sequence_planner.planning.engines import LANES
 from sequence_planner.planning.plan import Circumstances, Goal, PlanAnswer, PlanRequest, Verdict, goals_of
 from sequence_planner.planning.questions import Answer
@@ -70,8 +70,8 @@ def has_gone(pid: int | None) -> bool:
     return pid not in [process.pid for process in processes()]
 
 
-def processes() -> list[BaseProcess]:
-    return [child for child in multiprocessing.active_children() if child.name == "planner"]
+def processes() -> list[Child]:
+    return [child for child in children() if child.name == "planner"]
 
 
 def test_a_question_asked_at_once_is_answered() -> None:
@@ -212,7 +212,7 @@ if __name__ == "__main__":
     ready = threading.Event()
     supervisor = synthesise(automaton)
     model = Model(automaton, supervisor, FewerSpecifications(automaton, supervisor))
-    planner = Companion(work, model, lambda word: ready.set(), "planner", daemon=False)
+    planner = Companion(work, model, lambda word: ready.set(), "planner")
     ready.wait()
     print("ready", flush=True)
     time.sleep(60)
@@ -260,6 +260,6 @@ def test_a_word_that_cannot_be_sent_ends_the_process_so_that_nobody_waits_for_ev
             over.set()
 
     nothing_to_send = lambda: None  # noqa: E731 - what has no name cannot be sent
-    planner: Companion[object, object] = Companion(work, nothing_to_send, hear, "planner", daemon=False)
+    planner: Companion[object, object] = Companion(work, nothing_to_send, hear, "planner")
     assert over.wait(30)
     planner.close()

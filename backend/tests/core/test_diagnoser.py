@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import threading
 import time
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state
+from sequence_planner.forking.starting import children
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.plan import Circumstances, goals_of
@@ -30,7 +30,7 @@ def hopeless(automaton: Automaton) -> Task:
 
 
 def processes() -> list[str]:
-    return [child.name for child in multiprocessing.active_children() if child.name == "diagnosis"]
+    return [child.name for child in children() if child.name == "diagnosis"]
 
 
 def test_one_that_is_called_off_ends_at_once(worked_example: Automaton) -> None:

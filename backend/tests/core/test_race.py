@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import signal
 import threading
@@ -10,7 +9,6 @@ import time
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
-from multiprocessing.process import BaseProcess
 
 import pytest
 from hypothesis import given
@@ -18,6 +16,8 @@ from hypothesis import given
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import children
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.engines import FACTORIES, Lane
@@ -126,11 +126,11 @@ class Asking:
         assert not processes()
 
 
-def processes() -> list[BaseProcess]:
-    return [child for child in multiprocessing.active_children() if child.name.startswith("planner")]
+def processes() -> list[Child]:
+    return [child for child in children() if child.name.startswith("planner")]
 
 
-def the(lane: str) -> BaseProcess:
+def the(lane: str) -> Child:
     (process,) = (child for child in processes() if child.name == f"planner {lane}")
     return process
 
@@ -207,7 +207,7 @@ def test_a_lane_that_does_not_come_back_is_replaced_and_answers_again(
         began = time.monotonic()
         assert asking.answer(0.2).verdict is Verdict.LATE
         assert time.monotonic() - began < 0.7
-        until(lambda: not still.is_alive())
+        until(lambda: still.poll() is not None)
         until(lambda: bool(processes()))
         assert asking.answer().plan is not None
 

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-import multiprocessing
 import os
 import signal
 import time
 from collections.abc import Awaitable, Callable
-from multiprocessing.process import BaseProcess
 
 import pytest
 
 from mes.works import NOW, check, shop
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import children
 from sequence_planner.mes.sequencing.process import LATE, Sequencer
 from sequence_planner.mes.sequencing.work import Operation, Schedule, Work
 
@@ -32,8 +32,8 @@ def run(scenario: Callable[[Sequencer], Awaitable[None]], late: float = LATE) ->
     asyncio.run(live())
 
 
-def processes() -> list[BaseProcess]:
-    return [child for child in multiprocessing.active_children() if child.name == "order of work"]
+def processes() -> list[Child]:
+    return [child for child in children() if child.name == "order of work"]
 
 
 async def ordered(sequencer: Sequencer, works: list[Work], limit: float = 20.0) -> Schedule:

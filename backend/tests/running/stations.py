@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import os
+import re
 import signal
 import socket
 import subprocess
@@ -134,19 +135,37 @@ class RunningStation:
 
     def child(self, name: str) -> int:
         """The process id of the part that runs the command `name`. Raises ValueError when there is none."""
-        first, *_ = self.children(name)  # a spare is younger than what it is for
+        first, *_ = self.children(name)
         return first
 
     def children(self, name: str) -> list[int]:
         """The process ids of those that run the command `name`, the oldest first."""
-        of_launcher = ["--ppid", str(self.process.pid), "--sort=start_time"]
-        listed = subprocess.run(
-            ["ps", "-ww", *of_launcher, "-o", "pid=,args="],  # -ww: whatever COLUMNS says
-            capture_output=True,
-            text=True,
-            check=True,
-        )
-        return [int(line.split()[0]) for line in listed.stdout.splitlines() if f"sequence_planner.cli {name} " in line]
+        return [each.number for each in descendants(self.process.pid) if each.runs(name)]
+
+
+@dataclass(frozen=True)
+class Descendant:
+    """A process that another one has started, itself or by one in between; `title` is what `ps` shows."""
+
+    number: int
+    title: str
+
+    def runs(self, name: str) -> bool:
+        """Whether it is the part of a station that runs the command `name`, forked or executed."""
+        return re.search(rf"(?:^sequence-planner|sequence_planner\.cli) {name} ", self.title) is not None
+
+
+def descendants(number: int) -> list[Descendant]:
+    """What the process of that number has started, the oldest first."""
+    columns = ["-ww", "-e", "--sort=start_time", "-o", "pid=,ppid=,args="]  # -ww: whatever COLUMNS says
+    listed = subprocess.run(["ps", *columns], capture_output=True, text=True, check=True).stdout
+    rows = [
+        (int(pid), int(parent), title) for pid, parent, title in (row.split(None, 2) for row in listed.splitlines())
+    ]
+    found = {number}
+    while more := {pid for pid, parent, _ in rows if parent in found} - found:
+        found |= more
+    return [Descendant(pid, title) for pid, _, title in rows if pid in found - {number}]
 
 
 def free_port() -> int:

@@ -12,7 +12,7 @@ import pytest
 from core.budget import SHARE
 from running.stations import eventually, finished, free_port, process
 from running.workshops import EditedStation, edited
-from sequence_planner.launcher import UNUSABLE
+from sequence_planner.part import UNUSABLE
 from sequence_planner.storage.address import SqliteFile, address
 from sequence_planner.storage.location import default_url
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from running.stations import eventually, finished, foreign_node, free_port
 from running.workshops import NEVER_GIVEN, ROBOT, SINGLE_BOLT, STATION, EditedStation, edited
-from sequence_planner.launcher import UNUSABLE
+from sequence_planner.part import UNUSABLE
 from sequence_planner.ros.transport import QualityOfService
 
 TITLED = (STATION, "title: A single bolt", "title: Another title")

@@ -28,7 +28,7 @@ LONG = 240.0  # seconds, on a machine that is busy with much else
 def part_of(station: EditedStation, name: str, other_than: int = 0) -> int:
     """The process id of a part of a station that `run` has started, once it is another one."""
     eventually(lambda: bool(children := station.children(name)) and other_than not in children)
-    return station.children(name)[0]  # a spare is younger than what it is for
+    return station.children(name)[0]
 
 
 def with_other_title(folder: Path) -> Path:

@@ -9,7 +9,6 @@ import signal
 import subprocess
 import time
 from collections.abc import Iterator
-from multiprocessing import active_children
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ from cli.commands import CELL
 from sequence_planner.actor import SYSTEM
 from sequence_planner.backup import postgresql_programs
 from sequence_planner.backup.settings import Keeping
+from sequence_planner.forking.starting import children
 from sequence_planner.identity import people
 from sequence_planner.identity.roles import Role
 from sequence_planner.journal import audit
@@ -207,12 +207,12 @@ def test_a_server_that_ends_leaves_no_process_and_no_part_of_a_backup(
     server.start()
     with ada_at(server) as ada:
         ada.post(BACKUPS, json={})
-        until(lambda: any(each.name == "sequence_planner.backup.task" for each in active_children()))
-        (process,) = [each for each in active_children() if each.name == "sequence_planner.backup.task"]
+        until(lambda: any(each.name == "sequence_planner.backup.task" for each in children()))
+        (process,) = [each for each in children() if each.name == "sequence_planner.backup.task"]
         assert process.pid is not None
         os.kill(process.pid, signal.SIGSTOP)  # so that it cannot come to its end
     server.stop()
-    assert not process.is_alive()
+    assert process.poll() is not None
     assert settings.model is not None
     (folder / f".{mark_of(settings.model)}-20261123T000000Z-left").mkdir()
     again = Server(loop, settings)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import multiprocessing
 import os
 import shutil
 import signal
@@ -17,6 +16,7 @@ import pytest
 
 from sequence_planner.control.production_commands import SetMode
 from sequence_planner.control.view import Mode
+from sequence_planner.forking.starting import children
 from sequence_planner.identity.roles import Role
 from sequence_planner.model import reading
 from sequence_planner.web.settings import Settings
@@ -57,7 +57,7 @@ def written(text: str, file: str = MANY) -> dict[str, Any]:
 
 def called(name: str) -> list[int]:
     """The ids of the processes with names that end so."""
-    return [each.pid for each in multiprocessing.active_children() if each.name.endswith(name) and each.pid]
+    return [each.pid for each in children() if each.name.endswith(name) and each.pid]
 
 
 @contextmanager

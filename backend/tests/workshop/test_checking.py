@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
-import multiprocessing
 import os
 import signal
 import tempfile
@@ -14,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from control.bench import until
+from sequence_planner.forking.starting import children
 from sequence_planner.start_needs import StartNeeds
 from sequence_planner.workshop.check_process import CheckDesk
 from sequence_planner.workshop.check_view import CheckState, CheckView
@@ -132,7 +132,7 @@ def run(scenario: Callable[[Desk], Awaitable[None]], tmp_path: Path, monkeypatch
 
     asyncio.run(live())
     assert list(tmp_path.glob("sequence-planner-*")) == []
-    assert [each for each in multiprocessing.active_children() if each.name == "checked"] == []
+    assert [each for each in children() if each.name == "checked"] == []
 
 
 def test_only_the_newest_is_checked_to_its_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -154,7 +154,7 @@ def test_a_check_whose_process_is_killed_says_so(tmp_path: Path, monkeypatch: py
     async def scenario(desk: Desk) -> None:
         desk.desk.check(1, bolts())
         await desk.until(lambda view: view.state is CheckState.CHECKING)
-        (process,) = [each for each in multiprocessing.active_children() if each.name == "checked"]
+        (process,) = [each for each in children() if each.name == "checked"]
         assert process.pid is not None
         os.kill(process.pid, signal.SIGKILL)
         failed = await desk.until(lambda view: view.state is CheckState.FAILED)
@@ -190,7 +190,7 @@ def test_a_process_that_is_not_waited_for_is_ended(tmp_path: Path, monkeypatch: 
             with contextlib.suppress(asyncio.CancelledError):  # a quick machine has answered by then
                 await asked
             await process.close()
-            assert [each for each in multiprocessing.active_children() if each.name == "answering"] == []
+            assert [each for each in children() if each.name == "answering"] == []
 
     asyncio.run(live())
     assert list(tmp_path.glob("sequence-planner-*")) == []

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 import asyncio
-import multiprocessing
 import os
 import signal
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Connection, Pipe
 
 from sequence_planner.analysis.never_together import NeverTogether, never_together
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.lifeline import end_without_parent
+from sequence_planner.forking.starting import start
 from sequence_planner.planning.budget import Budget
 
 _NICENESS = 15  # it only serves questions
@@ -19,13 +18,11 @@ _NICENESS = 15  # it only serves questions
 
 async def find_never_together(automaton: Automaton, supervisor: Supervisor, seconds: float) -> NeverTogether | None:
     """What is never together; None when that is not found within so many seconds of work. It can be cancelled."""
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe(duplex=False)
+    ours, theirs = Pipe(duplex=False)
     with ours:
-        with theirs:
-            work = (theirs, automaton, supervisor, seconds)
-            process = context.Process(target=_work, args=work, daemon=True, name="never-together")
-            await asyncio.to_thread(process.start)
+        process = await asyncio.to_thread(
+            start, _work, automaton, supervisor, seconds, name="never-together", connection=theirs
+        )
         hearing = asyncio.get_running_loop().run_in_executor(None, _heard, ours)
         try:
             return await asyncio.shield(hearing)
@@ -45,6 +42,5 @@ def _heard(connection: Connection) -> NeverTogether | None:
 
 def _work(connection: Connection, automaton: Automaton, supervisor: Supervisor, seconds: float) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
-    end_without_parent()
     os.nice(_NICENESS)
     connection.send(never_together(automaton, supervisor, Budget(float("inf")).working(seconds)))

@@ -7,18 +7,17 @@ from __future__ import annotations
 
 import asyncio
 import gc
-import multiprocessing
 import os
 import signal
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Connection, Pipe
 from typing import Generic, TypeVar
 
 from sequence_planner.analysis.analysis import Analysis, analyses
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.lifeline import end_without_parent
+from sequence_planner.forking.starting import start
 from sequence_planner.memory_limit import MemoryLimit, memory_limit
 
 _NICENESS = 5  # ticks come first
@@ -55,13 +54,10 @@ async def telling(
 
     Iterating raises `SynthesisEndedError` when the process ends before it is done, or has more than so much memory.
     """
-    context = multiprocessing.get_context("spawn")
-    ours, theirs = context.Pipe(duplex=False)
+    ours, theirs = Pipe(duplex=False)
     limit = MemoryLimit(gigabytes)
     with ours:
-        with theirs:
-            process = context.Process(target=_work, args=(theirs, work, arguments), daemon=True, name="synthesis")
-            process.start()
+        process = start(_work, work, arguments, name="synthesis", connection=theirs)
         words: _Words[Word] = _Words(ours, limit)
         try:
             with limit.held(process):
@@ -106,7 +102,6 @@ class _Words(Generic[Word]):
 
 def _work(connection: Connection, work: Callable[..., Iterator[object]], arguments: tuple[object, ...]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
-    end_without_parent()
     os.nice(_NICENESS)
     gc.freeze()  # the model stays; what is made for one question must go with it
     try:

@@ -57,7 +57,7 @@ COMMANDS = (
         "Write a model for other tools, as a plain automaton or in CIF; "
         "a station with its ticks by single transitions.",
     ),
-    PutOff("run", "serving:run", "Run a station: controller, server and page."),
+    PutOff("run", "serving:run", "Run a station: controller, server and page.", forks=True),
     PutOff(
         "configuration",
         "configuration:configuration",
@@ -134,6 +134,12 @@ def _before_a_command(
     ] = False,
 ) -> None:
     """Typer makes a group of what has this, though it knows no command."""
+
+
+def run(arguments: list[str]) -> None:
+    """Run a command line in a process that was forked for it."""
+    sys.argv = ["sequence-planner", *arguments]
+    main()
 
 
 def main() -> None:

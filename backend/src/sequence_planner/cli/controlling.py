@@ -21,7 +21,7 @@ from sequence_planner.cli.parts import (
 from sequence_planner.control.deploying import DeployedError
 from sequence_planner.control.preparation import Unusable
 from sequence_planner.control.process import NotStartedError, Running, control
-from sequence_planner.lifeline import DEPLOYED, OVERTAKEN, is_needed
+from sequence_planner.lifeline import DEPLOYED, OVERTAKEN
 from sequence_planner.model.source import ModelError
 from sequence_planner.standby.keeper import LeaseLostError
 from sequence_planner.station import ReadyStation, prepare_station
@@ -38,16 +38,12 @@ def controller(
     hot_standby: Annotated[str | None, typer.Option("--hot-standby")] = None,
     launched: Launched = False,
     again: Annotated[bool, typer.Option("--again", hidden=True, help="One that ran before has ended.")] = False,
-    spare: Annotated[bool, typer.Option("--spare", hidden=True, help="Wait until the launcher says so.")] = False,
 ) -> None:
     """Run the controller alone; `run` does this."""
-    if spare and not is_needed():
-        return
     begin(launched, socket.parent)
     station = _usable(model, launched)
     network = None if isinstance(station, Unusable) else Network(station, transport, rosbridge)
     url = database_url(model, database)
-    again = again or spare
     try:
         until_interrupted(
             lambda connect: control(Running(station, model, socket, connect, emulated, start, url, hot_standby, again)),

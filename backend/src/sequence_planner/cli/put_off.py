@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from importlib import import_module
 from typing import Any
 
@@ -11,14 +12,16 @@ from typer.main import get_command
 
 
 class PutOff(TyperCommand):
-    """A command in `place`, such as `check:check`: `line` is what the help of the program says of it.
+    """A command in `place`, such as `check:check`: `line` is what the help of the program says of it. One that `forks`
+    has a fork server, which imports what a station needs while the command itself is imported.
 
     What is in that place is the function of a command, or a `Typer` with commands of its own.
     """
 
-    def __init__(self, name: str, place: str, line: str = "", hidden: bool = False) -> None:
+    def __init__(self, name: str, place: str, line: str = "", hidden: bool = False, forks: bool = False) -> None:
         super().__init__(name, short_help=line, hidden=hidden)
         self._place = place
+        self._forks = forks
 
     def command(self) -> Any:  # noqa: ANN401 (a class that typer does not show)
         """The command itself."""
@@ -32,4 +35,9 @@ class PutOff(TyperCommand):
 
     def make_context(self, *arguments: Any, **settings: Any) -> Any:  # noqa: ANN401
         """Read a command line as the command itself does; its context is one of that command."""
+        if self._forks and "--help" not in sys.argv:
+            from sequence_planner.forking.starting import OWN  # noqa: PLC0415
+            from sequence_planner.part_modules import ALL  # noqa: PLC0415
+
+            OWN.prepare(*ALL)
         return self.command().make_context(*arguments, **settings)

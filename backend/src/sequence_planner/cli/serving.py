@@ -33,7 +33,6 @@ from sequence_planner.configuration import ConfigurationError, has_password, url
 from sequence_planner.deployment_folder import DeploymentNote, undo_what_was_cut_off
 from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
-from sequence_planner.lifeline import is_needed
 from sequence_planner.logs import LogFormat
 from sequence_planner.mes.webhooks.targets import Targets
 from sequence_planner.model.source import ModelError
@@ -357,13 +356,11 @@ def server(
     listener: Annotated[
         int | None, typer.Option("--listener", hidden=True, help="The descriptor of a socket that listens already.")
     ] = None,
-    spare: Annotated[bool, typer.Option("--spare", hidden=True, help="Wait until the launcher says so.")] = False,
 ) -> None:
     """Run the server alone; `run` does this."""
-    from sequence_planner.web.server import serve, serve_when_needed  # noqa: PLC0415
+    from sequence_planner.web.server import serve  # noqa: PLC0415
 
-    if not spare:
-        begin(launched, socket.parent)
+    begin(launched, socket.parent)
     provider = _provider(
         ProviderOptions(
             issuer=oidc_issuer,
@@ -397,17 +394,7 @@ def server(
         retention=Retention.told(journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb),
     )
     listening = None if listener is None else ListeningSocket(fileno=listener)
-    if not spare or listening is None:
-        serve(settings, listening)
-        return
-
-    def needed() -> bool:
-        if is_needed():
-            begin(launched, socket.parent)
-            return True
-        return False
-
-    serve_when_needed(settings, listening, needed)
+    serve(settings, listening)
 
 
 def _provider(options: ProviderOptions) -> ProviderSettings | None:

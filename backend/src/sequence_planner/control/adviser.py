@@ -84,7 +84,7 @@ class Adviser:
         if self._process is None:
             self._starting.cancel()
             listener = Listener[Request, Answer](self._answered, self._failed)
-            serving = Work[Model, Request]("adviser", work, self._model, lambda request: False, daemon=False)
+            serving = Work[Model, Request]("adviser", work, self._model, lambda request: False)
             self._process = AnsweringProcess(serving, self._loop, listener)
         return self._process
 

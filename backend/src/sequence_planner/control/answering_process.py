@@ -51,15 +51,13 @@ class Listener(Generic[Request, Answer]):
 class Work(Generic[Model, Request]):
     """What the process does: it is called `name` and lives `serve`, beginning with `model`.
 
-    A request over which it has died is asked `again` where that is said. One that is not a `daemon` may have processes
-    itself.
+    A request over which it has died is asked `again` where that is said.
     """
 
     name: str
     serve: Callable[[Connection], None]
     model: Model
     again: Callable[[Request], bool]
-    daemon: bool = True
 
 
 class AnsweringProcess(Generic[Model, Request, Answer]):
@@ -120,7 +118,7 @@ class AnsweringProcess(Generic[Model, Request, Answer]):
         try:
             hear = partial(self._tell, self._generation)
             work = self._work
-            self._companion = Companion(work.serve, work.model, hear, work.name, work.daemon)
+            self._companion = Companion(work.serve, work.model, hear, work.name)
         except OSError as error:
             self._replace(f"cannot be started ({error})")
             return

@@ -24,7 +24,7 @@ class PlannerProcess(AnsweringProcess[Model, Request, Answer]):
         self, automaton: Automaton, supervisor: Supervisor, loop: asyncio.AbstractEventLoop, listener: Listener
     ) -> None:
         model = Model(automaton, supervisor, FewerSpecifications(automaton, supervisor))
-        super().__init__(Work("planner", work, model, _again, daemon=False), loop, listener)
+        super().__init__(Work("planner", work, model, _again), loop, listener)
 
 
 def _again(request: Request) -> bool:

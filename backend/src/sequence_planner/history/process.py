@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import asyncio
-import multiprocessing
-from multiprocessing.connection import Connection
-from multiprocessing.context import SpawnProcess
+from multiprocessing.connection import Connection, Pipe
 from pathlib import Path
 from typing import Final
 
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import start
 from sequence_planner.history.error import HistoryError
 from sequence_planner.history.view import Answer, Question, Refused
 
@@ -25,7 +25,7 @@ class HistoryProcess:
         self._database = database
         self._archive = archive
         self._turn = asyncio.Lock()
-        self._running: tuple[SpawnProcess, Connection] | None = None
+        self._running: tuple[Child, Connection] | None = None
         self._idle: asyncio.TimerHandle | None = None
 
     async def ask(self, question: Question, patience: float) -> Answer:
@@ -76,13 +76,11 @@ class HistoryProcess:
         answer: Answer = await asyncio.to_thread(connection.recv)
         return answer
 
-    def _started(self) -> tuple[SpawnProcess, Connection]:
-        context = multiprocessing.get_context("spawn")
-        ours, theirs = context.Pipe()
-        with theirs:
-            arguments = (theirs, self._model, self._database, self._archive)
-            process = context.Process(target=_work, args=arguments, daemon=True, name="looking-back")
-            process.start()
+    def _started(self) -> tuple[Child, Connection]:
+        ours, theirs = Pipe()
+        arguments = (self._model, self._database, self._archive)
+        # Named and not handed over: the server does without what that imports.
+        process = start("sequence_planner.history.worker:work", *arguments, name="looking-back", connection=theirs)
         return process, ours
 
     def _keep_alive(self, seconds: float | None) -> None:
@@ -90,9 +88,3 @@ class HistoryProcess:
         if self._idle is not None:
             self._idle.cancel()
         self._idle = None if seconds is None else asyncio.get_running_loop().call_later(seconds, self.close)
-
-
-def _work(connection: Connection, model: Path, database: str, archive: Path | None) -> None:
-    from sequence_planner.history.worker import work  # noqa: PLC0415 - the server does without what that imports
-
-    work(connection, model, database, archive)

@@ -24,7 +24,6 @@ from sequence_planner.history.view import Answer, BranchView, LookBack, Question
 from sequence_planner.journal.archive import Archive
 from sequence_planner.journal.archive_file import ArchiveError
 from sequence_planner.journal.whole_run import WholeRun
-from sequence_planner.lifeline import end_without_parent
 from sequence_planner.model.source import ModelError
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.storage.database import Database
@@ -71,7 +70,6 @@ class _Room:
 def work(connection: Connection, model: Path, database: str, archive: Path | None) -> None:
     """Answer questions until the other end is closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
-    end_without_parent()
     os.nice(_NICENESS)
     room = _Room(model, database, Archive(archive))
     while True:

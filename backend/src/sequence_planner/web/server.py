@@ -13,7 +13,7 @@ import signal
 import socket
 import ssl
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from functools import partial
 from types import FrameType
 from typing import Any, NoReturn, cast
@@ -67,17 +67,6 @@ def serve(settings: Settings, listener: socket.socket | None = None) -> None:
         listener = listener or bind(settings)
         _require_database(settings)
         config = uvicorn_config(settings)
-    _run(config, listener)
-
-
-def serve_when_needed(settings: Settings, listener: socket.socket, needed: Callable[[], bool]) -> None:
-    """Prepare all that can be, and serve as `serve` does once `needed` says so; return when it says no."""
-    with _refusing():
-        config = uvicorn_config(settings)
-        config.load()
-        if not needed():
-            return
-        _require_database(settings)
     _run(config, listener)
 
 

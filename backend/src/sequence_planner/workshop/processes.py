@@ -1,7 +1,6 @@
 """Processes of the workshop, each for one piece of work: it can be killed at any time, and disturbs no tick.
 
-They are forked from one that has imported all that they need, so that they begin at once. What they do is named and not
-handed over, since the server does without what that imports.
+What they do is named and not handed over, since the server does without what that imports.
 """
 
 from __future__ import annotations
@@ -9,24 +8,19 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import importlib
-import multiprocessing
 import os
 import signal
 import tempfile
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
-from multiprocessing.connection import Connection
-from multiprocessing.context import ForkServerProcess
+from multiprocessing.connection import Connection, Pipe
 from pathlib import Path
 from typing import Any
 
-from sequence_planner.lifeline import end_without_parent
+from sequence_planner.forking.child import Child
+from sequence_planner.forking.starting import start
 from sequence_planner.memory_limit import MemoryLimit, memory_limit
 
-_CONTEXT = multiprocessing.get_context("forkserver")
-_CONTEXT.set_forkserver_preload(
-    [f"{__package__}.{each}" for each in ("checking", "tasks", "editing_worker", "language_worker", "pipelines.worker")]
-)
 PATIENCE = 60.0  # seconds for a task
 _ANSWERING, _WORKING = 5, 15  # niceness: ticks come first, then whoever waits for an answer, then checks
 _PREFIX = "sequence-planner-workshop-"  # of folders
@@ -46,12 +40,10 @@ async def working(module: str, name: str, *arguments: object) -> AsyncIterator[A
     """
     limit = MemoryLimit(memory_limit())
     with tempfile.TemporaryDirectory(prefix=_PREFIX) as folder:
-        ours, theirs = _CONTEXT.Pipe(duplex=False)
+        ours, theirs = Pipe(duplex=False)
         with ours:
-            given = (theirs, f"{__package__}.{module}", name, arguments, Path(folder))
-            process = _CONTEXT.Process(target=_work, args=given, daemon=True, name=name)
-            with theirs:
-                await asyncio.to_thread(process.start)
+            given = (f"{__package__}.{module}", name, arguments, Path(folder))
+            process = await asyncio.to_thread(start, _work, *given, name=name, connection=theirs, modules=given[:1])
             try:
                 with limit.held(process):
                     yield _heard(ours, limit)
@@ -79,7 +71,7 @@ class Answering:
     def __init__(self, module: str, name: str) -> None:
         self._what = module, name
         self._turn = asyncio.Lock()
-        self._kept: tuple[ForkServerProcess, Connection, tempfile.TemporaryDirectory[str]] | None = None
+        self._kept: tuple[Child, Connection, tempfile.TemporaryDirectory[str]] | None = None
 
     @property
     def begun(self) -> bool:
@@ -115,7 +107,7 @@ class Answering:
         async with self._turn:
             await self._end()
 
-    async def _start(self) -> tuple[ForkServerProcess, Connection, tempfile.TemporaryDirectory[str]]:
+    async def _start(self) -> tuple[Child, Connection, tempfile.TemporaryDirectory[str]]:
         starting = asyncio.create_task(asyncio.to_thread(self._started))
         try:
             return await asyncio.shield(starting)
@@ -123,14 +115,12 @@ class Answering:
             self._kept = await starting  # so that it is ended
             raise
 
-    def _started(self) -> tuple[ForkServerProcess, Connection, tempfile.TemporaryDirectory[str]]:
+    def _started(self) -> tuple[Child, Connection, tempfile.TemporaryDirectory[str]]:
         module, name = self._what
         folder = tempfile.TemporaryDirectory(prefix=_PREFIX)
-        ours, theirs = _CONTEXT.Pipe()
-        with theirs:
-            given = (theirs, f"{__package__}.{module}", name, Path(folder.name))
-            process = _CONTEXT.Process(target=_answer, args=given, daemon=True, name=module)
-            process.start()
+        ours, theirs = Pipe()
+        given = (f"{__package__}.{module}", name, Path(folder.name))
+        process = start(_answer, *given, name=module, connection=theirs, modules=given[:1])
         return process, ours, folder
 
     async def _end(self) -> None:
@@ -181,7 +171,6 @@ def _answer(connection: Connection, module: str, name: str, folder: Path) -> Non
 
 def _begun(module: str, name: str, niceness: int) -> Callable[..., Any]:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
-    end_without_parent()
     os.nice(niceness)
     found: Callable[..., Any] = getattr(importlib.import_module(module), name)
     return found

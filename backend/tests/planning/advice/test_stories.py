@@ -219,7 +219,7 @@ class Asked:
 
     def __init__(self, model: Model) -> None:
         self._words: SimpleQueue[Word] = SimpleQueue()
-        self.companion: Companion[Model, Request] = Companion(work, model, self._words.put, "advice", daemon=False)
+        self.companion: Companion[Model, Request] = Companion(work, model, self._words.put, "advice")
         self._number = 0
 
     def answer(self, request: Request) -> Answer | str:

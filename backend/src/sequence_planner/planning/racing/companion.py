@@ -7,19 +7,17 @@ In the process itself a thread reads too, so that a question can be called off w
 
 from __future__ import annotations
 
-import atexit
 import contextlib
-import multiprocessing
 import signal
 import threading
 import traceback
 from collections.abc import Callable, Iterator
-from multiprocessing.connection import Connection
+from multiprocessing.connection import Connection, Pipe
 from queue import SimpleQueue
 from typing import Any, Generic, TypeVar
 
+from sequence_planner.forking.starting import start
 from sequence_planner.immutable import Immutable
-from sequence_planner.lifeline import end_without_parent
 from sequence_planner.planning.budget import Budget
 
 Model = TypeVar("Model")
@@ -70,7 +68,7 @@ Word = Ready | Answered[Any] | Finished | Ended
 class Companion(Generic[Model, Content]):
     """One process that runs `serve`, which calls `stand_by`. `hear` is called with each word, in a thread of its own.
 
-    Raises OSError when no process can be started. One that is not a `daemon` may have companions itself.
+    Raises OSError when no process can be started.
     """
 
     def __init__(
@@ -79,17 +77,12 @@ class Companion(Generic[Model, Content]):
         model: Model,
         hear: Callable[[Word], None],
         name: str,
-        daemon: bool = True,
     ) -> None:
         self._hear = hear
         self._words: SimpleQueue[Model | Question[Content] | CallOff | None] = SimpleQueue()
         self._words.put(model)
-        context = multiprocessing.get_context("spawn")
-        self._connection, theirs = context.Pipe()
-        with theirs:
-            self._process = context.Process(target=serve, args=(theirs,), daemon=daemon, name=name)
-            self._process.start()
-        atexit.register(self._process.kill)  # the interpreter waits at its end for those that are no daemons
+        self._connection, theirs = Pipe()
+        self._process = start(serve, name=name, connection=theirs)
         self._threads = [threading.Thread(target=each, daemon=True, name=name) for each in (self._write, self._read)]
         for thread in self._threads:
             thread.start()
@@ -104,7 +97,6 @@ class Companion(Generic[Model, Content]):
 
     def close(self) -> None:
         """End process and threads, whatever they are doing. Not from `hear`."""
-        atexit.unregister(self._process.kill)
         self._process.kill()
         self._process.join()
         self._words.put(None)
@@ -134,11 +126,9 @@ class Companion(Generic[Model, Content]):
 def stand_by(connection: Connection, prepare: Callable[[Any], Callable[[Any, Budget], Iterator[Any]]]) -> None:
     """Hear of a model, then answer one question after the other with what `prepare` makes of it; a process's life.
 
-    It ends when the other end is closed, when its parent has ended, and after an error that nobody thought of: what it
-    has learnt could be wrong.
+    It ends when the other end is closed, and after an error that nobody thought of: what it has learnt could be wrong.
     """
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
-    end_without_parent()
     with contextlib.suppress(EOFError, ConnectionError):  # whoever asked is gone
         model = connection.recv()
         inbox = _Inbox(connection)

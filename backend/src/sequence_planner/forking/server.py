@@ -1,0 +1,228 @@
+"""The fork server: it imports what processes need, and forks one whenever it is asked to.
+
+It has one thread, and nothing but imports ever happens in it, so that what is forked from it begins as a new process
+does. It ends with whoever has started it: its standard input is a pipe from there.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import importlib
+import os
+import pickle
+import selectors
+import signal
+import socket
+import sys
+import threading
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from typing import Any, Final
+
+from setproctitle import setproctitle
+
+from sequence_planner.forking.request import Request, read_request, send_begun, send_code
+
+_STANDARD_INPUT: Final = 0
+_PATIENCE: Final = 5.0  # seconds for the whole of a request: its parts are sent one right after the other
+_OWN = "sequence_planner."  # what is imported here; anything else is imported by the process that needs it
+Life = Callable[[], None]
+"""What a process does from its beginning to its end."""
+
+
+@dataclass
+class _Forked:
+    """A process, and the connection to whoever has asked for it; None when that was closed."""
+
+    request: Request
+    connection: socket.socket | None
+
+
+class ForkServer:
+    """Forks for whoever connects to `listener`; imports `modules` while it has nothing else to do."""
+
+    def __init__(self, listener: socket.socket, modules: Iterable[str]) -> None:
+        self._listener = listener
+        self._modules = iter(modules)
+        self._forked: dict[int, _Forked] = {}
+        self._selector = selectors.DefaultSelector()
+        self._selector.register(listener, selectors.EVENT_READ)
+        self._selector.register(_STANDARD_INPUT, selectors.EVENT_READ)
+        self._woken, self._waking = socket.socketpair()
+        for each in (self._woken, self._waking):
+            each.setblocking(False)
+        self._selector.register(self._woken, selectors.EVENT_READ)
+        signal.set_wakeup_fd(self._waking.fileno(), warn_on_full_buffer=False)
+        signal.signal(signal.SIGCHLD, lambda *_: None)  # or no signal wakes anybody
+        signal.signal(signal.SIGINT, signal.SIG_IGN)  # it is for whoever has started this
+        gc.disable()  # whatever is imported stays
+
+    def serve(self) -> Life | None:
+        """Serve; returns in each process that was forked, with its life, and without one in the end."""
+        importing = True
+        while True:
+            events = self._selector.select(0 if importing else None)
+            if not events:
+                importing = self._import_next()
+            for key, _ in events:
+                if key.fileobj == _STANDARD_INPUT:
+                    self._end()
+                    return None
+                if key.fileobj is self._listener:
+                    life = self._accept()
+                    if life is not None:
+                        return life
+                elif key.fileobj is self._woken:
+                    with contextlib.suppress(BlockingIOError):
+                        self._woken.recv(4096)
+                    self._reap()
+                else:
+                    self._hang_up(key.data)
+
+    def _import_next(self) -> bool:
+        """Import the next module; false when there is none."""
+        for module in self._modules:
+            _import(module)
+            return True
+        gc.collect()
+        return False
+
+    def _accept(self) -> Life | None:
+        """Fork for the next who asks: the life of the process in it, None here."""
+        connection, _ = self._listener.accept()
+        connection.settimeout(_PATIENCE)
+        try:
+            request, descriptors = read_request(connection)
+        except (EOFError, OSError, pickle.UnpicklingError):
+            connection.close()
+            return None
+        for module in (request.main.partition(":")[0], *request.modules):
+            _import(module)
+        gc.freeze()  # what is shared is not touched by the collectors of those that share it
+        try:
+            pid = os.fork()
+        except OSError as error:  # there are too many, or memory is short
+            sys.stderr.write(f"no process can be forked: {error.strerror}\n")
+            for each in descriptors:
+                os.close(each)
+            connection.close()
+            return None
+        if pid == 0:
+            return self._become(request, descriptors, connection)
+        for each in descriptors:
+            os.close(each)
+        self._forked[pid] = _Forked(request, connection)
+        self._selector.register(connection, selectors.EVENT_READ, pid)
+        handle = os.pidfd_open(pid)
+        try:
+            send_begun(connection, pid, handle)
+        except OSError:
+            self._hang_up(pid)
+        finally:
+            os.close(handle)
+        return None
+
+    def _hang_up(self, pid: int) -> None:
+        """Whoever has asked for the process is gone, or wants it to end."""
+        forked = self._forked[pid]
+        if forked.connection is None:
+            return
+        self._selector.unregister(forked.connection)
+        if not forked.request.left:
+            _kill(pid, forked.request)
+            return  # how it has ended is still said to who waits for that
+        forked.connection.close()
+        forked.connection = None
+
+    def _reap(self) -> None:
+        """Tell whoever has asked of all that have ended."""
+        while self._forked:
+            try:
+                pid, status = os.waitpid(-1, os.WNOHANG)
+            except ChildProcessError:
+                return
+            if pid == 0:
+                return
+            forked = self._forked.pop(pid, None)
+            if forked is None or forked.connection is None:
+                continue
+            with contextlib.suppress(KeyError):  # it has been hung up
+                self._selector.unregister(forked.connection)
+            with contextlib.suppress(OSError):
+                send_code(forked.connection, os.waitstatus_to_exitcode(status))
+            forked.connection.close()
+
+    def _end(self) -> None:
+        for pid, forked in self._forked.items():
+            if not forked.request.left:
+                _kill(pid, forked.request)
+
+    def _become(self, request: Request, descriptors: list[int], connection: socket.socket) -> Life:
+        """Leave behind, in a process that was just forked, all that is the server's."""
+        gc.enable()
+        signal.set_wakeup_fd(-1)
+        signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+        self._selector.close()
+        for each in (self._listener, self._woken, self._waking):
+            each.close()
+        for forked in self._forked.values():
+            if forked.connection is not None:
+                forked.connection.close()
+        self._forked.clear()
+        if request.leads:
+            os.setsid()
+        connections = [Connection(each) for each in descriptors[: request.connections]]
+        places = dict(zip(request.places, descriptors[request.connections :], strict=True))
+        if _STANDARD_INPUT not in places:
+            places[_STANDARD_INPUT] = os.open(os.devnull, os.O_RDONLY)
+        for place, descriptor in places.items():
+            os.dup2(descriptor, place, inheritable=False)
+            os.close(descriptor)
+        os.environ.clear()
+        os.environ.update(request.environment)
+        sys.path[:] = request.path
+        os.chdir(request.folder)
+        setproctitle(request.title)
+        if request.left:
+            connection.detach()  # it stays open, so that it tells whether this process lives if the server is gone
+        else:
+            _end_with(connection, leads=request.leads)
+        module, _, name = request.main.partition(":")
+
+        def life() -> None:
+            arguments: tuple[Any, ...] = pickle.loads(request.arguments)
+            getattr(importlib.import_module(module), name)(*connections, *arguments)
+
+        return life
+
+
+def _import(module: str) -> None:
+    """Import it here, for all who will need it; what is not the program's own, each imports for itself."""
+    if module.startswith(_OWN) and module not in sys.modules:
+        with contextlib.suppress(Exception):
+            importlib.import_module(module)
+
+
+def _kill(pid: int, request: Request) -> None:
+    """End a process that was not waited for yet, so that its number is no other's."""
+    with contextlib.suppress(ProcessLookupError):
+        if request.leads:
+            os.killpg(pid, signal.SIGKILL)
+    with contextlib.suppress(ProcessLookupError):
+        os.kill(pid, signal.SIGKILL)  # it may not lead yet
+
+
+def _end_with(connection: socket.socket, *, leads: bool) -> None:
+    """End this process when `connection` is closed, should the server be gone by then."""
+    connection.setblocking(True)
+
+    def watch() -> None:
+        with contextlib.suppress(OSError):
+            while connection.recv(1, socket.MSG_PEEK):
+                pass
+        (os.killpg if leads else os.kill)(os.getpid(), signal.SIGKILL)
+
+    threading.Thread(target=watch, daemon=True, name="lifeline").start()

@@ -1,0 +1,27 @@
+"""What the processes of a station import: the fork server does so once for all of them, while the launcher starts."""
+
+from __future__ import annotations
+
+from typing import Final
+
+EMULATOR: Final = ("sequence_planner.cli.emulating",)
+CONTROLLER: Final = ("sequence_planner.cli.controlling",)
+SERVER: Final = ("sequence_planner.cli.serving", "sequence_planner.web.server")
+OTHERS: Final = tuple(
+    f"sequence_planner.{each}"
+    for each in (
+        "planning.worker",
+        "planning.racing.lane",
+        "analysis.never_together_process",
+        "planning.advice.worker",
+        "planning.reasons.diagnoser",
+        "mes.sequencing.process",
+        "history.worker",
+        "workshop.checking",
+        "workshop.tasks",
+        "workshop.editing_worker",
+        "workshop.language_worker",
+        "workshop.pipelines.worker",
+    )
+)
+ALL: Final = (*EMULATOR, *CONTROLLER, *SERVER, *OTHERS)
