@@ -25,6 +25,7 @@ from typing import Any
 
 import httpx
 from argon2 import PasswordHasher
+from stations.processes import part
 
 from sequence_planner.control.asks import AboutFlows
 from sequence_planner.control.commands import CommandRefused
@@ -107,10 +108,9 @@ def wait_for(condition: Callable[[], bool]) -> None:
 
 def controller_socket(launcher: int) -> Path:
     """The socket of the controller that the launcher has started."""
-    asked = ["ps", "-ww", "--ppid", str(launcher), "--sort=start_time", "-o", "args="]
-    listed = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
-    lines = [line for line in listed.splitlines() if " controller " in line]
-    words = lines[0].split()
+    controller = part(launcher, "controller")
+    assert controller is not None
+    words = controller.title.split()
     return Path(words[words.index("--socket") + 1])
 
 

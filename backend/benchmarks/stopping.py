@@ -2,8 +2,8 @@
 
 Run with `make bench`. The bolt tightening station runs as its users run it, with emulated devices and a database of
 SQLite on the disk. An operator holds and pauses it every 50 ms, one request after the other, while somebody else does
-one kind of work again and again. Then the server is killed again and again, each time once it has a spare, and the
-operator pauses at once. Times are on the wall, of the operator. With `killed` it is that alone.
+one kind of work again and again. Then the server is killed again and again, and the operator pauses at once. Times are
+on the wall, of the operator. With `killed` it is that alone.
 """
 
 from __future__ import annotations
@@ -12,7 +12,6 @@ import os
 import shutil
 import signal
 import statistics
-import subprocess
 import sys
 import tempfile
 import threading
@@ -23,13 +22,12 @@ from typing import Any
 
 import httpx
 from access import GIVEN, NAME, PASSWORD, STATION, add_administrator, station
+from stations.processes import part
 
 SECONDS = 15.0  # of each kind of work
 EVERY = 0.05  # seconds between two stops
 KILLS = 20
-SPARED = 2  # processes: the server, and its spare
-SETTLING = 15.0  # seconds in which a spare has imported what it needs, on a busy machine too
-PATIENCE = 120.0  # seconds
+SETTLING = 15.0  # seconds between two kills: whoever dies sooner is started again only after a pause
 VARIABLES = 20_000
 # A short text that stands for millions of entries.
 BOMB = "a: &a [x, x, x, x, x, x, x, x, x, x]\n" + "".join(
@@ -146,13 +144,10 @@ def measure(operator: httpx.Client, what: str, work: Callable[[int], None]) -> N
 
 def pause_after_kill(operator: httpx.Client, launcher: int) -> float:
     """Seconds from when the server is killed until a Pause is accepted, whatever becomes of requests meanwhile."""
-    end = time.monotonic() + PATIENCE
-    while len(servers(launcher)) < SPARED:
-        if time.monotonic() > end:
-            raise TimeoutError("the server gets no spare")
-        time.sleep(0.2)
     time.sleep(SETTLING)
-    os.kill(servers(launcher)[0], signal.SIGKILL)
+    server = part(launcher, "server")
+    assert server is not None
+    os.kill(server.number, signal.SIGKILL)
     began = time.perf_counter()
     while True:
         try:
@@ -161,13 +156,6 @@ def pause_after_kill(operator: httpx.Client, launcher: int) -> float:
         except httpx.HTTPError:
             pass  # the connection was the one of the server that is gone
         time.sleep(0.01)
-
-
-def servers(launcher: int) -> list[int]:
-    """The process ids of the server and of its spare, the oldest first."""
-    asked = ["ps", "-ww", "--ppid", str(launcher), "--sort=start_time", "-o", "pid=,args="]
-    listed = subprocess.run(asked, capture_output=True, text=True, check=True).stdout
-    return [int(line.split()[0]) for line in listed.splitlines() if "sequence_planner.cli server " in line]
 
 
 def say_how_long(times: list[float]) -> None:

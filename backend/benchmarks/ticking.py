@@ -28,6 +28,7 @@ from functools import partial
 from pathlib import Path
 
 import httpx
+from stations.processes import part
 from websockets.asyncio.client import connect
 
 from sequence_planner.control.controller import Controller
@@ -113,7 +114,7 @@ def say(what: str, measured: Mapping[str, Sequence[float]]) -> None:
 def restarts() -> Iterator[float]:
     """Seconds from when a controller is killed until its station is shown again as it is.
 
-    By then there is a spare, as there is where controllers do not die one after the other.
+    They do not die one after the other, so that none is started again only after a pause.
     """
     port = free_port()
     command = [sys.executable, "-m", "sequence_planner.cli", "run", str(STATION), "--emulator", "--demonstration"]
@@ -123,20 +124,15 @@ def restarts() -> Iterator[float]:
         wait_for(lambda: production(client) == "waiting")
         for _ in range(RESTARTS):
             time.sleep(BETWEEN)
-            os.kill(controller_of(launcher.pid), signal.SIGKILL)
+            controller = part(launcher.pid, "controller")
+            assert controller is not None
+            os.kill(controller.number, signal.SIGKILL)
             killed, began = time.time(), time.monotonic()
             wait_for(partial(is_live, client, killed), 0.02)
             yield time.monotonic() - began
     finally:
         launcher.terminate()
         launcher.wait(PATIENCE)
-
-
-def controller_of(launcher: int) -> int:
-    """The process id of the controller that a launcher has started; 0 while there is none."""
-    asked = ["ps", "-ww", "--ppid", str(launcher), "--sort=start_time", "-o", "pid=,args="]
-    listed = subprocess.run(asked, capture_output=True, text=True, check=False).stdout
-    return next((int(line.split()[0]) for line in listed.splitlines() if " controller " in line), 0)
 
 
 def free_port() -> int:

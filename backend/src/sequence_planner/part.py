@@ -23,6 +23,7 @@ UNUSABLE: Final = 2  # the exit code with which a process says that it cannot be
 FIRST_PAUSE: Final = 0.5  # seconds before a process is started again; doubled each time, up to the longest
 LONGEST_PAUSE: Final = 10.0
 BRIEF: Final = 10.0  # seconds; a process that has lived longer is started again without a pause
+LONGEST_BEGINNING: Final = 60.0  # seconds until the fork server, whatever else it does, has forked a process
 STEADY: Final = 60.0  # seconds after which a process that lives has recovered
 PATIENCE: Final = 5.0  # seconds in which a process may end in good order
 
@@ -152,6 +153,10 @@ class Part:
     def look(self) -> None:
         """See whether it has ended. All that is done because of that goes by the same look, whenever it ends."""
         self.ended = None if self.process is None else self.process.poll()
+        if isinstance(self.process, Child) and not self.process.has_begun and self._age > LONGEST_BEGINNING:
+            say(f"the {self.name} was not forked within {LONGEST_BEGINNING:g} s; another fork server is started")
+            OWN.replace()
+            self._begun = time.monotonic()
 
     def said(self, code: int) -> str:
         """Why it has ended: what it said last, if anything."""

@@ -10,10 +10,12 @@ from pathlib import Path
 import pytest
 from pydantic import JsonValue
 
+from control.mixing import mixer
 from control.rig import Rig
+from sequence_planner.automaton.reactions import Reactions
 from sequence_planner.automaton.structure import State, target
-from sequence_planner.automaton.tick import apply_effects
-from sequence_planner.control.by_hand import KIND, LATENCY, LONGEST, STAYS, ByHand, WentOn
+from sequence_planner.automaton.tick import apply_effects, initial_state
+from sequence_planner.control.by_hand import KIND, LATENCY, LONGEST, STAYS, ByHand, WentOn, on_its_way
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.view import Mode
 from sequence_planner.expressions.types import Value
@@ -111,6 +113,18 @@ def _can_be_said(rig: Watched, name: str, value: Value) -> bool:
     """Whether a device that has this value is heard to have it, which takes more than one where one field says two."""
     topics = rig.station.pipelines.topics_of(rig.station.pipelines.feeds[name])
     return len(topics) == 1 and name not in ("robot.previous_pose",)
+
+
+def test_a_goal_that_a_server_has_taken_up_is_on_its_way_and_nobody_has_moved_anything() -> None:
+    """It is accepted before it is executed. Mostly nobody sees that; on a busy machine it is heard on its own."""
+    station, _ = mixer()
+    reactions = Reactions(station.automaton, on_its_way(station.pipelines))
+    before = {**initial_state(station.automaton), "tank.stirring": "idle"}
+    wanted = {**before, "tank.stir": True}
+    for status in ("accepted", "executing"):
+        assert reactions.explain([wanted], "tank.stirring", status)
+        assert not reactions.explain([before], "tank.stirring", status), "nobody wants anything"
+    assert not reactions.explain([wanted], "tank.stirring", "lost")
 
 
 def test_how_the_station_went_on_is_told_and_the_notice_goes() -> None:

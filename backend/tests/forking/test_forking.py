@@ -186,6 +186,27 @@ def test_all_end_with_a_parent_that_is_killed(how: signal.Signals, alone: bool, 
         until(lambda: list(short_path.iterdir()) == [])
 
 
+def test_where_the_server_stands_still_nobody_waits_for_it() -> None:
+    with started(works.wait) as (first, connection), started(works.wait) as (second, other):
+        number = connection.recv()
+        server = int(Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[1])
+        os.kill(server, signal.SIGSTOP)
+        try:
+            os.kill(other.recv(), signal.SIGKILL)
+            assert second.wait(PATIENCE) == LOST
+            first.kill()
+            assert first.wait(PATIENCE) == LOST
+            with started(works.wait) as (never, _):
+                assert never.poll() is None
+                assert not never.has_begun
+                never.kill()
+                assert never.wait(PATIENCE) == LOST
+        finally:
+            os.kill(server, signal.SIGCONT)
+    with started(works.wait) as (child, connection):
+        assert connection.recv() == child.pid
+
+
 def test_where_the_server_has_died_it_can_still_be_ended_and_another_server_forks_the_next() -> None:
     with started(works.wait) as (child, connection):
         number = connection.recv()

@@ -7,7 +7,7 @@ doubt about unknown values too. Faults are effects: the model knows of them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from itertools import chain
 
 from sequence_planner.automaton.structure import Automaton, Effect, State, reads, target
@@ -29,9 +29,9 @@ class _Cone(Immutable):
 
 
 class Reactions:
-    """The effects of `automaton`; `between` says what a variable is while it goes from one value to another."""
+    """The effects of `automaton`; `between` says what a variable can be while it goes from one value to another."""
 
-    def __init__(self, automaton: Automaton, between: Mapping[str, Value] | None = None) -> None:
+    def __init__(self, automaton: Automaton, between: Mapping[str, Collection[Value]] | None = None) -> None:
         self._between = between or {}
         self._writers: dict[str, list[Effect]] = {}
         for effect in automaton.effects:
@@ -84,7 +84,7 @@ class Reactions:
     def _does(self, name: str, value: Value, written: Mapping[str, Value], state: State) -> bool:
         if name not in written:
             return False
-        return written[name] == value or (self._between.get(name) == value and written[name] != state[name])
+        return written[name] == value or (value in self._between.get(name, ()) and written[name] != state[name])
 
     def _cone(self, name: str) -> _Cone:
         if name not in self._cones:

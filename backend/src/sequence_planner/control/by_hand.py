@@ -23,6 +23,7 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.view import Production
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.expressions.types import Value
+from sequence_planner.pipelines.goal_states import GOAL_ON_ITS_WAY
 from sequence_planner.pipelines.graph import StationPipelines
 
 KIND: Final = "by-hand"  # of the records
@@ -66,10 +67,9 @@ class ByHand:
     """Listens to `execution`; `tell` hears of each change that nothing explains, and of how the station went on."""
 
     def __init__(self, execution: Execution, pipelines: StationPipelines, tell: Tell) -> None:
-        between = {w.variable: w.between for node in pipelines.nodes for w in node.writings if w.between is not None}
         self._execution = execution
         self._tell = tell
-        self._reactions = Reactions(execution.automaton, between)
+        self._reactions = Reactions(execution.automaton, on_its_way(pipelines))
         self._begins_anew = frozenset(name for use in pipelines.answers.values() for name in use.variables)
         measured = frozenset(execution.automaton.names(Kind.MEASURED))
         self._watched = self._reactions.variables & measured & pipelines.feeds.keys()
@@ -174,6 +174,13 @@ class ByHand:
                 if abilities[name].resource == moved.resource or not self._reading[name].isdisjoint(moved.values):
                     return name, how
         return None, None
+
+
+def on_its_way(pipelines: StationPipelines) -> dict[str, Collection[Value]]:
+    """What a variable is on its way: between two named values, or a goal before it has come to its end."""
+    named = {w.variable: (w.between,) for node in pipelines.nodes for w in node.writings if w.between is not None}
+    goals = {name: GOAL_ON_ITS_WAY for use in pipelines.actions.values() for name in use.status.variables}
+    return {**named, **goals}
 
 
 def _went_on(moved: Moved) -> dict[str, JsonValue]:

@@ -95,7 +95,7 @@ class ForkServer:
         connection.settimeout(_PATIENCE)
         try:
             request, descriptors = read_request(connection)
-        except (EOFError, OSError, pickle.UnpicklingError):
+        except Exception:  # whatever it was that came, it asks for nothing
             connection.close()
             return None
         for module in (request.main.partition(":")[0], *request.modules):
@@ -126,8 +126,8 @@ class ForkServer:
 
     def _hang_up(self, pid: int) -> None:
         """Whoever has asked for the process is gone, or wants it to end."""
-        forked = self._forked[pid]
-        if forked.connection is None:
+        forked = self._forked.get(pid)
+        if forked is None or forked.connection is None:  # it was waited for in the same turn
             return
         self._selector.unregister(forked.connection)
         if not forked.request.left:

@@ -59,6 +59,14 @@ class OwnServer:
             self._asked = True
             return self._see_to_it()
 
+    def replace(self) -> None:
+        """End the one that does not answer. What it was asked for and has not taken up the next one is asked for."""
+        with self._lock:
+            if self._process is not None:
+                self._process.kill()
+                self._process.wait()
+            self._see_to_it()
+
     def _see_to_it(self) -> Path:
         if self._listener is None:
             self._listener = _listening(_short_folder() / _SOCKET)

@@ -22,6 +22,9 @@ class GoalState(StrEnum):
     LOST = "lost"
 
 
+# A goal that a server has taken up and not done with is in one of these states, for however short a time.
+GOAL_ON_ITS_WAY = (GoalState.ACCEPTED, GoalState.EXECUTING)
+
 # The enumeration that a `status` has without being declared.
 GOAL_STATE = "goal_state"
 
