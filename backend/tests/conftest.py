@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -75,12 +76,18 @@ LIGHT = (
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Mark the tests that are heavy."""
     for item in items:
-        if _is_in(item, HEAVY) and not _is_in(item, LIGHT):
+        if is_heavy(item.path):
             item.add_marker(pytest.mark.heavy)
 
 
-def _is_in(item: pytest.Item, places: tuple[str, ...]) -> bool:
-    return any(item.path.is_relative_to(TESTS / each) for each in places)
+@cache
+def is_heavy(path: Path) -> bool:
+    """Whether the tests of a file are heavy."""
+    return _is_in(path, HEAVY) and not _is_in(path, LIGHT)
+
+
+def _is_in(path: Path, places: tuple[str, ...]) -> bool:
+    return any(path.is_relative_to(TESTS / each) for each in places)
 
 
 @pytest.fixture(scope="session", autouse=True)
