@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Final
 
+from sequence_planner.durable import sync_folder
 from sequence_planner.workshop.files import (
     FOLDERS,
     Contents,
@@ -75,7 +76,7 @@ def _kept(model: Path, before: Contents, note: str) -> Iterator[None]:
             fcntl.flock(lock, fcntl.LOCK_EX)
             _sync(new)
             new.replace(model / FOLDER)
-            _sync_folder(model)
+            sync_folder(model)
             yield
     finally:
         _forget(new)
@@ -91,7 +92,7 @@ def _bring_back(model: Path) -> None:
 def _remove(model: Path) -> None:
     """At once: what is half removed is no exchange."""
     (model / FOLDER).replace(model / _OLD)
-    _sync_folder(model)
+    sync_folder(model)
     _forget(model / _OLD)
 
 
@@ -105,20 +106,12 @@ def _sync(folder: Path) -> None:
         for name in files:
             with (Path(path) / name).open("rb") as file:
                 os.fsync(file.fileno())
-        _sync_folder(Path(path))
+        sync_folder(Path(path))
 
 
 def _sync_folders(model: Path) -> None:
     """Let it be on the disk which files the model has: what is in each was written there as it was put in place."""
-    _sync_folder(model)
+    sync_folder(model)
     for below in FOLDERS:
         for path, _, _ in os.walk(model / below):
-            _sync_folder(Path(path))
-
-
-def _sync_folder(folder: Path) -> None:
-    handle = os.open(folder, os.O_RDONLY | os.O_DIRECTORY)
-    try:
-        os.fsync(handle)
-    finally:
-        os.close(handle)
+            sync_folder(Path(path))

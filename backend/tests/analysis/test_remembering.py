@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
 
 from core.building import Does, automaton
 from sequence_planner.analysis.analysis import Analysis, analyses
-from sequence_planner.analysis.remembering import NAME, remember, remembered
+from sequence_planner.analysis.never_together import NeverTogether
+from sequence_planner.analysis.remembering import MOST_KEPT, cache, remember, remembered
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.types import BOOLEAN
 
@@ -31,20 +33,55 @@ def found(of: Automaton) -> Analysis:
 
 def test_it_is_the_same_for_the_same_model_and_nothing_for_another(folder: Path) -> None:
     remember(folder, lamp("lamp"), found(lamp("lamp")))
-    assert remembered(folder, lamp("lamp")) == found(lamp("lamp"))
-    assert remembered(folder, lamp("not lamp")) is None
+    assert remembered(folder, lamp("lamp"), Analysis) == found(lamp("lamp"))
+    assert remembered(folder, lamp("not lamp"), Analysis) is None
 
 
 def test_nothing_is_known_at_first_or_of_a_damaged_file(folder: Path) -> None:
-    assert remembered(folder, lamp("lamp")) is None
-    (folder / NAME).write_bytes(b"\x80\x04nonsense")
-    assert remembered(folder, lamp("lamp")) is None
+    assert remembered(folder, lamp("lamp"), Analysis) is None
+    remember(folder, lamp("lamp"), found(lamp("lamp")))
+    [file] = folder.iterdir()
+    file.write_bytes(b"\x80\x04nonsense")
+    assert remembered(folder, lamp("lamp"), Analysis) is None
 
 
 def test_a_folder_that_others_can_use_is_neither_written_nor_read(folder: Path) -> None:
     remember(folder, lamp("lamp"), found(lamp("lamp")))
     folder.chmod(0o755)
-    assert remembered(folder, lamp("lamp")) is None
-    (folder / NAME).unlink()
+    assert remembered(folder, lamp("lamp"), Analysis) is None
+    [file] = folder.iterdir()
+    file.unlink()
     remember(folder, lamp("lamp"), found(lamp("lamp")))
-    assert not (folder / NAME).exists()
+    assert not list(folder.iterdir())
+
+
+def test_only_the_newest_are_kept_of_each_kind(folder: Path) -> None:
+    nothing = NeverTogether(frozenset(), None)
+    remember(folder, lamp("lamp"), nothing)
+    for number in range(MOST_KEPT + 5):
+        goal = " and ".join(["lamp"] * (number + 1))
+        remember(folder, lamp(goal), found(lamp("lamp")))
+        file = max(folder.glob("analysis-*"), key=lambda each: each.stat().st_mtime_ns)
+        os.utime(file, (number, number))
+    assert len(list(folder.glob("analysis-*"))) == MOST_KEPT
+    assert remembered(folder, lamp("lamp"), Analysis) is None, "it was the first"
+    assert remembered(folder, lamp(goal), Analysis) == found(lamp("lamp"))
+    assert remembered(folder, lamp("lamp"), NeverTogether) == nothing
+
+
+def test_the_cache_is_used_where_it_is_the_users_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    found_here = cache()
+    assert found_here == tmp_path / "sequence-planner"
+    assert found_here.stat().st_mode & 0o777 == 0o700
+    found_here.chmod(0o750)
+    assert cache() is None
+    found_here.rmdir()
+    found_here.write_text("in the way")
+    assert cache() is None
+
+
+def test_where_there_are_too_many_states_they_are_not_counted_and_all_else_is_found() -> None:
+    *_, last = analyses(lamp("lamp"), 0)
+    assert (last.pending, last.reachable_states, last.supervised_states) == (None, None, None)
+    assert (last.supervisor, last.warnings) == (found(lamp("lamp")).supervisor, found(lamp("lamp")).warnings)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
@@ -12,6 +13,7 @@ from sequence_planner.checking.connections import Connections
 from sequence_planner.checking.supervised import check_supervision
 from sequence_planner.checking.unmeetable import unmeetable
 from sequence_planner.checking.warning import ModelWarning, place
+from sequence_planner.synthesis.effort import Effort, TooMuchError
 from sequence_planner.synthesis.guards import Guard, shown_guards
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor
@@ -37,8 +39,11 @@ class Analysis:
     warnings: tuple[ModelWarning, ...] | None = None
 
 
-def analyses(automaton: Automaton) -> Iterator[Analysis]:
-    """What is found of `automaton`, again and again, each time more of it."""
+def analyses(automaton: Automaton, counting: int | None = None) -> Iterator[Analysis]:
+    """What is found of `automaton`, again and again, each time more of it.
+
+    No more is spent on `counting` states than so much `Effort`; None: as much as it takes.
+    """
     found = Analysis("the safe states")
     yield found
     supervision = Supervision(Plant(automaton, relevant(automaton)))
@@ -54,12 +59,15 @@ def analyses(automaton: Automaton) -> Iterator[Analysis]:
         found = replace(found, guards=shown_guards(supervision))
     found = replace(found, pending=COUNTING)
     yield found
-    whole = _of_all_variables(supervision)
-    diagrams = whole.plant.diagrams
-    found = replace(found, reachable_states=diagrams.count(whole.reachable(supervised=False)))
-    yield found
-    if found.supervisor is not None:
-        found = replace(found, supervised_states=diagrams.count(whole.reachable(supervised=True)))
+    effort = None if counting is None else Effort(counting)
+    with contextlib.suppress(TooMuchError):
+        whole = _of_all_variables(supervision)
+        diagrams = whole.plant.diagrams
+        found = replace(found, reachable_states=diagrams.count(whole.reachable(supervised=False, effort=effort)))
+        yield found
+        if found.supervisor is not None:
+            states = whole.reachable(supervised=True, effort=effort)
+            found = replace(found, supervised_states=diagrams.count(states))
     yield replace(found, pending=None)
 
 

@@ -1,54 +1,78 @@
 """What was found of the model that a station runs, kept for its controller's next start.
 
-It lies in the folder of the running station, which is the user's alone and goes with the station. What lies in a folder
-that somebody else can write to is never read: it decides what is safe.
+It lies in the user's cache, by the content of the model and of the program, or, where that cannot be used, in the
+folder of the running station and goes with it. What lies in a folder that somebody else can write to is never read: it
+decides what is safe.
 """
 
 from __future__ import annotations
 
+import contextlib
 import os
 import pickle
 import stat
 import tempfile
 from pathlib import Path
+from typing import Final, TypeVar
 
 import structlog
 
 from sequence_planner.analysis.analysis import Analysis
-from sequence_planner.analysis.store import key
+from sequence_planner.analysis.never_together import NeverTogether
+from sequence_planner.analysis.store import folder, key
 from sequence_planner.automaton.structure import Automaton
 
 LOG = structlog.get_logger(__name__)
-NAME = "analysis"  # of the file
+NAMES: Final[dict[type, str]] = {Analysis: "analysis", NeverTogether: "never-together"}  # how files begin
+MOST_KEPT: Final = 20  # files of each kind; the oldest are removed
+
+Found = TypeVar("Found", Analysis, NeverTogether)
 
 
-def remember(folder: Path, automaton: Automaton, found: Analysis) -> None:
+def cache() -> Path | None:
+    """The user's cache; None where there is none that is the user's alone."""
+    with contextlib.suppress(OSError, RuntimeError):  # there may be no home
+        found = folder()
+        found.mkdir(mode=0o700, parents=True, exist_ok=True)
+        if _is_own(found) and os.access(found, os.W_OK):
+            return found
+    return None
+
+
+def remember(where: Path, automaton: Automaton, found: Analysis | NeverTogether) -> None:
     """Keep what was found, if the folder is the user's alone."""
-    if not _is_own(folder):
+    if not _is_own(where):
         return
     try:
-        with tempfile.NamedTemporaryFile(dir=folder, delete=False) as file:
-            pickle.dump((key(automaton), found), file)
-        Path(file.name).replace(folder / NAME)
+        with tempfile.NamedTemporaryFile(dir=where, delete=False) as file:
+            pickle.dump(found, file)
+        Path(file.name).replace(_file(where, automaton, type(found)))
+        of_its_kind = sorted(where.glob(f"{NAMES[type(found)]}-*"), key=lambda each: each.stat().st_mtime, reverse=True)
+        for each in of_its_kind[MOST_KEPT:]:
+            each.unlink(missing_ok=True)
     except OSError as error:
-        LOG.warning("the next start of the controller has to compute the safe states anew", because=str(error))
+        LOG.warning("the next start of the controller has to find out about the model anew", because=str(error))
 
 
-def remembered(folder: Path, automaton: Automaton) -> Analysis | None:
+def remembered(where: Path, automaton: Automaton, kind: type[Found]) -> Found | None:
     """What was found of this very model, by this very program; None if nothing was, or it cannot be read."""
     try:
-        if not _is_own(folder):
+        if not _is_own(where):
             return None
-        with (folder / NAME).open("rb") as file:
-            of, found = pickle.load(file)
+        with _file(where, automaton, kind).open("rb") as file:
+            found = pickle.load(file)
     except FileNotFoundError:
         return None
     except Exception as error:  # whatever a damaged file makes of it
         LOG.warning("what was found of the model before cannot be read", because=repr(error))
         return None
-    return found if of == key(automaton) and isinstance(found, Analysis) else None
+    return found if isinstance(found, kind) else None
 
 
-def _is_own(folder: Path) -> bool:
-    status = folder.stat()
+def _file(where: Path, automaton: Automaton, kind: type) -> Path:
+    return where / f"{NAMES[kind]}-{key(automaton)}"
+
+
+def _is_own(where: Path) -> bool:
+    status = where.stat()
     return status.st_uid == os.getuid() and not stat.S_IMODE(status.st_mode) & 0o077

@@ -1,6 +1,6 @@
 """What was found of a model, kept in the user's cache by the content of the model and of the program itself.
 
-It serves commands that are given one after the other. A running station never takes its supervisor from here.
+It serves commands that are given one after the other. What a running station keeps lies beside it, see `remembering`.
 """
 
 from __future__ import annotations

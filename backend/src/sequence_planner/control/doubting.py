@@ -10,6 +10,7 @@ import structlog
 
 from sequence_planner.analysis.never_together import NeverTogether, Pair
 from sequence_planner.analysis.never_together_process import find_never_together
+from sequence_planner.analysis.remembering import cache, remember, remembered
 from sequence_planner.automaton.structure import Kind, State
 from sequence_planner.control.contradictions import Contradictions, contradictions, questions
 from sequence_planner.control.execution import Execution
@@ -20,7 +21,7 @@ from sequence_planner.control.view import Production
 LOG = structlog.get_logger(__name__)
 
 START_AFTER = 10.0  # seconds; a station that begins has other things to do
-MOST_WORK = 300.0  # seconds of a processor to find out what is never together
+MOST_WORK = 60.0  # seconds of a processor to find out what is never together
 SETTLED = 1.0  # seconds that a contradiction lasts before anybody is asked: messages of several devices come in turn
 
 
@@ -38,7 +39,7 @@ class Doubting:
         self.questions: Sequence[QuestionView] = ()
 
     def begin(self, after: float = START_AFTER) -> None:
-        """Search for what is never together, in a while."""
+        """Search for what is never together, in a while, unless it is known from an earlier run."""
         self._search = asyncio.get_running_loop().create_task(self._learn(after))
 
     def close(self) -> None:
@@ -87,9 +88,16 @@ class Doubting:
         return {name: None if name in unseen else value for name, value in state.items()}
 
     async def _learn(self, after: float) -> None:
-        await asyncio.sleep(after)
         automaton = self._execution.automaton
-        if automaton.names(Kind.ESTIMATED):
+        if not automaton.names(Kind.ESTIMATED):
+            return
+        where = cache()
+        if where is not None:
+            self._known = await asyncio.to_thread(remembered, where, automaton, NeverTogether)
+        if self._known is None:
+            await asyncio.sleep(after)
             self._known = await find_never_together(automaton, self._execution.supervisor, MOST_WORK)
+            if where is not None and self._known is not None:
+                await asyncio.to_thread(remember, where, automaton, self._known)
             pairs, exact = len(self.impossible()), self._known is not None and self._known.fits is not None
             LOG.info("what is never together", known=self._known is not None, pairs=pairs, exact=exact)

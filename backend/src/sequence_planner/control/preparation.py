@@ -248,7 +248,7 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
     What an earlier life of the controller has left of it in `folder` is there at once.
     """
     try:
-        known = await asyncio.to_thread(remembered, folder, automaton)
+        known = await asyncio.to_thread(remembered, folder, automaton, Analysis)
         if known is not None and known.supervisor is not None:
             preparation.take(document_of(automaton, known), known)
             if known.pending is None:

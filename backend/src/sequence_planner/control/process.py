@@ -12,6 +12,7 @@ from pathlib import Path
 
 import structlog
 
+from sequence_planner.analysis.remembering import cache
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.collection import keep_everything
 from sequence_planner.control.asks import Ask
@@ -161,7 +162,7 @@ class _Life:
             return
         keeper = self.keeper
         alone = self._living.create_task(self._alone(station) if keeper is None else keeper.taken())
-        analysing = analyse(station.automaton, self._preparation, self._running.socket.parent)
+        analysing = analyse(station.automaton, self._preparation, cache() or self._running.socket.parent)
         async with self._link, _beside(analysing):
             async with _beside(self._show_preparing()):
                 supervisor = await _prepared(self._preparation)

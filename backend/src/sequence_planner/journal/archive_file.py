@@ -16,6 +16,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
+from sequence_planner.durable import sync_folder
 from sequence_planner.storage.error import StorageError
 
 ENDING: Final = ".jsonl.gz"
@@ -58,7 +59,7 @@ def write(file: Path, lines: Iterable[str]) -> Written:
                 os.fsync(out.fileno())
             written = _sum(partial)
             partial.replace(file)
-            _sync_folder(file.parent)
+            sync_folder(file.parent)
         except BaseException:
             with contextlib.suppress(OSError):
                 partial.unlink(missing_ok=True)
@@ -112,15 +113,6 @@ def _digest(opened: IO[bytes]) -> str:
     while chunk := opened.read(_CHUNK):
         total.update(chunk)
     return total.hexdigest()
-
-
-def _sync_folder(folder: Path) -> None:
-    """Have the file's name on the disk too."""
-    descriptor = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
 
 
 def _changed(file: Path) -> ArchiveError:

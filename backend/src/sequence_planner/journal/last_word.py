@@ -25,6 +25,7 @@ from typing import Final
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
+from sequence_planner.durable import sync_folder
 from sequence_planner.journal.chain import Position
 from sequence_planner.journal.entry import Entry
 from sequence_planner.storage.address import PostgresqlServer, SqliteFile
@@ -117,7 +118,7 @@ class LastWord:
             fcntl.lockf(descriptor, fcntl.LOCK_EX | fcntl.LOCK_NB)
             os.posix_fallocate(descriptor, 0, 2 * _PLACE)
             os.fsync(descriptor)
-            _sync_folder(path.parent)
+            sync_folder(path.parent)
             return cls(path, descriptor)
         except OSError as error:
             os.close(descriptor)
@@ -161,12 +162,3 @@ class LastWord:
             return Life.model_validate_json(text)
         except ValidationError:  # of another version
             return None
-
-
-def _sync_folder(folder: Path) -> None:
-    """Let the file's name be on the disk, too."""
-    descriptor = os.open(folder, os.O_RDONLY | os.O_CLOEXEC)
-    try:
-        os.fsync(descriptor)
-    finally:
-        os.close(descriptor)
