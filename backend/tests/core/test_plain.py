@@ -172,6 +172,30 @@ def test_plans_have_the_fewest_transitions_and_there_is_none_exactly_where_exhau
             assert reaches(automaton, supervisor, begin, each.transitions, goals)
 
 
+@examples(100)
+@given(made_by(document_with_goals))
+def test_of_several_initial_states_a_plan_begins_in_the_best(written: dict[str, Any]) -> None:
+    explicit, automaton = meant(written)
+    if automaton is None or not explicit.initial <= explicit.safe:
+        return
+    supervisor, goals = synthesise(automaton), goals_of(automaton, automaton.operations)
+    distances = [distance(explicit, key, goals) for key in explicit.initial]
+    found = [least for least in distances if least is not None]
+    answer = plan_transitions(automaton, supervisor, goals, budget=Budget.seconds(60))
+    fast = plan_transitions(automaton, supervisor, goals, contract=Contract.FAST, budget=Budget.seconds(60))
+    if not found:
+        assert answer.verdict is fast.verdict is Verdict.NONE_AT_ALL
+        return
+    assert answer.verdict is fast.verdict is Verdict.FOUND
+    assert answer.minimal
+    assert len(answer.transitions) == answer.searched == min(found)
+    assert fast.searched <= min(found) <= len(fast.transitions)
+    for each in (answer, fast):
+        begin = each.begin or automaton.initial_valuation
+        assert tuple(begin[name] for name in explicit.types) in explicit.initial
+        assert reaches(automaton, supervisor, begin, each.transitions, goals)
+
+
 @examples(60)
 @given(made_by(document_with_goals))
 def test_the_unrolled_run_finds_as_few_transitions_as_exhaustive_search(written: dict[str, Any]) -> None:

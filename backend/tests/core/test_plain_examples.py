@@ -14,7 +14,8 @@ from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.planning.plain import PlainAnswer, plan_transitions
+from sequence_planner.planning.plain import plan_transitions
+from sequence_planner.planning.plain_answer import PlainAnswer
 from sequence_planner.planning.plan import Verdict, goals_of
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
@@ -214,3 +215,30 @@ def test_an_update_that_can_never_fit_disables_its_transition(value: object) -> 
         transitions=[event("leaps", "true", {"n": value})],
     )
     assert print_expression(automaton.abilities["leaps"].start_guard) == "false"
+
+
+def counter(initial: str, most: int = 10) -> Automaton:
+    return read(
+        variables={"n": {"min": 0, "max": most}, "free": "bool"},
+        initial=initial,
+        transitions=[event("up", "free", {"n": "n + 1"})],
+        goal=["F (n == 9)", "F (n == 0)"],
+    )
+
+
+def test_of_several_initial_states_the_best_is_begun_with() -> None:
+    """It once was planned from one of them alone, and said to be the fewest, or none at all."""
+    answer = planned(counter("n < 5 or (n == 7 and free)"), "goal_1")
+    assert (answer.events, answer.minimal, answer.begin) == (("up", "up"), True, {"n": 7, "free": True})
+    holds_there = planned(counter("n <= 5"), "goal_2")
+    assert (holds_there.transitions, holds_there.minimal) == ((), True)
+    assert holds_there.begin is not None
+    assert holds_there.begin["n"] == 0
+    assert planned(counter("n > 3 and not free and n < 9"), "goal_1").verdict is Verdict.NONE_AT_ALL
+    assert planned(counter("n == 7 and free"), "goal_1").begin is None, "there is no other"
+
+
+def test_more_initial_states_than_can_be_planned_from_are_refused() -> None:
+    with pytest.raises(ValueError, match="`initial` describes more than 100 states: say with --state in which one"):
+        planned(counter("free", 500), "goal_1")
+    assert planned(counter("free", 500), "goal_1", state={"n": 8, "free": True}).events == ("up",)

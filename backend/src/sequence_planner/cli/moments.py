@@ -41,7 +41,7 @@ def named(known: Mapping[str, T], name: str, what: str) -> T:
 def moment(automaton: Automaton, file: str | None) -> Moment:
     """What `file` holds, as `tick --json` writes it.
 
-    Variables that are left out have their initial value, and flags that are left out equal their predicates.
+    Variables that are left out have their initial value, which must be one alone, and flags equal their predicates.
     """
     if file is None:
         return Moment(initial_state(automaton), frozenset())
@@ -63,6 +63,8 @@ def moment(automaton: Automaton, file: str | None) -> Moment:
             refuse(f"{file}: `{value}` is no value of `{name}`, which ranges over {automaton.types[name]}")
     for name in active:
         named(automaton.operations, str(name), "operation")
+    if automaton.initial is not None and (left := [name for name in automaton.variables if name not in values]):
+        refuse(f"{file}: `initial` describes several states, so each variable needs a value: {', '.join(left)}")
     now = frozenset(map(str, active))
     state = record_activity(automaton, synchronise(automaton, {**automaton.initial_valuation, **values}), now)
     return Moment({**state, **values}, now)

@@ -24,13 +24,15 @@ from sequence_planner.exporting.sequential import ExportError
 from sequence_planner.exporting.ticks import sequential
 from sequence_planner.exporting.unified import UnifiedPlanning, planners
 from sequence_planner.expressions.parser import parse
+from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.resolution import Scope, resolve_predicate, suggestion
 from sequence_planner.expressions.syntax import Expression, ExpressionError
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import Engines, Lane
 from sequence_planner.planning.goals.monitor import monitor_of
-from sequence_planner.planning.plain import PlainAnswer, as_station, plan_transitions
+from sequence_planner.planning.plain import as_station, plan_transitions
+from sequence_planner.planning.plain_answer import PlainAnswer
 from sequence_planner.planning.plan import (
     Circumstances,
     Contract,
@@ -108,7 +110,7 @@ def plan(
     if not automaton.one_at_a_time:
         found = _of_station(automaton, supervisor, request, other, expected, json)
     elif other is None:
-        found = _of_plain(automaton, supervisor, request, json)
+        found = _of_plain(automaton, supervisor, request, state is not None, json)
     else:
         refuse("--with is for stations: have a plain automaton planned elsewhere with `export --to pddl`")
     if not found:
@@ -167,21 +169,28 @@ def _diagnosis(
     return diagnose(automaton, supervisor, supervisor_for, task, Budget.seconds(request.deadline - answer.seconds))
 
 
-def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest, json: bool) -> bool:
+def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest, begins: bool, json: bool) -> bool:
+    """Plan from the state of the request where it `begins` there, or else from the best initial state."""
     if request.circumstances != Circumstances():
         what = "--offline, --without, --restart and --avoid"
         refuse(f"a plain automaton has no resources, modes or ticks: {what} are for stations")
     budget = Budget.seconds(request.deadline)
     try:
-        answer = plan_transitions(automaton, supervisor, request.goals, request.state, request.contract, budget=budget)
+        start = request.state if begins else None
+        answer = plan_transitions(automaton, supervisor, request.goals, start, request.contract, budget=budget)
     except ValueError as error:
         refuse(str(error))
-    derived, task = as_station(automaton, request.state, request.goals)
-    more = FewerSpecifications(automaton, supervisor)
-    diagnosis = _diagnosis(derived, supervisor, more, task, request, answer)
+    diagnosis = None
+    if begins or automaton.initial is None:  # what keeps one of several initial states from it says nothing of others
+        derived, task = as_station(automaton, request.state, request.goals)
+        more = FewerSpecifications(automaton, supervisor)
+        diagnosis = _diagnosis(derived, supervisor, more, task, request, answer)
     if json:
         print_json(plain_document(answer, request.goals, diagnosis))
         return answer.verdict is Verdict.FOUND
+    if answer.begin is not None:
+        values = [f"{name} == {print_value(value)}" for name, value in answer.begin.items() if value is not None]
+        typer.echo(f"      begins with {', '.join(values)}")
     for number, name in enumerate(answer.transitions, 1):
         typer.echo(f"{number:>4}  {name}")
     for line in (said_of_plain(answer, request.goals), *because(diagnosis)):

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import Any
 
 from sequence_planner.expressions.printing import print_value
-from sequence_planner.planning.plain import PlainAnswer
+from sequence_planner.planning.plain_answer import PlainAnswer
 from sequence_planner.planning.plan import Clause, Goal, PlanAnswer, Proof, Verdict
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, correction_text, member_text
 
@@ -47,6 +47,7 @@ def plain_document(answer: PlainAnswer, goals: Iterable[Goal], diagnosis: Diagno
         "status": _STATUS[answer.verdict],
         "contract": None if not found else "minimal" if answer.minimal else "fast",
         "goals": [goal.name for goal in goals],
+        "begin": answer.begin,
         "starts": answer.events,
         "transitions": answer.transitions,
         "ticks": len(answer.transitions),

@@ -10,7 +10,6 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 
-from sequence_planner.automaton.plain.meaning import event_of
 from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, Flag, State
@@ -21,8 +20,10 @@ from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.heuristic.best_first import HeuristicSearch
 from sequence_planner.planning.heuristic.fewest import FewestStarts
+from sequence_planner.planning.initial_states import best_plan, initial_states
 from sequence_planner.planning.one_at_a_time import OneAtATime
 from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.plain_answer import PlainAnswer
 from sequence_planner.planning.plan import Circumstances, Contract, Goal, Proof, Verdict, starts_of
 from sequence_planner.planning.planner import PlannerError
 from sequence_planner.planning.relaxed.relaxation import reachable, unreached
@@ -30,28 +31,6 @@ from sequence_planner.planning.replaying.replay import missing
 
 _LONGEST = 1000  # transitions, unless it is said otherwise
 _SECONDS = 5.0
-
-
-class PlainAnswer(Immutable):
-    """Whether there is a plan, and its transitions by name; `minimal` says that it is proven that none has fewer.
-
-    No plan has up to `searched` transitions, or, when there is a plan, none has fewer than `searched`. `engine` gave
-    the answer. That there is none at all is proven by `proof`, or, without one, by having looked at all that can be
-    reached.
-    """
-
-    verdict: Verdict
-    transitions: tuple[str, ...]
-    minimal: bool
-    searched: int
-    seconds: float
-    engine: str = ""
-    proof: Proof | None = None
-
-    @property
-    def events(self) -> tuple[str, ...]:
-        """The events of the plan."""
-        return tuple(map(event_of, self.transitions))
 
 
 def for_planning(automaton: Automaton) -> Automaton:
@@ -83,15 +62,36 @@ def plan_transitions(
     longest: int = _LONGEST,
     budget: Budget | None = None,
 ) -> PlainAnswer:
-    """A way of the plain `automaton` from `state`, or else from its declared initial state, on which each of `goals`
-    holds in some state.
+    """A way of the plain `automaton` from `state`, or else from the best of its initial states, on which each of
+    `goals` holds in some state.
 
     A minimal plan has the fewest transitions, at most `longest`. Without a budget there are five seconds. Raises
-    ValueError when `state` is not safe and for goals with a local formula, and `PlannerError` when a plan is none by
-    the steps of the automaton.
+    ValueError when `state` is not safe, for goals with a local formula and for too many initial states, and
+    `PlannerError` when a plan is none by the steps of the automaton.
     """
+    budget = budget or Budget.seconds(_SECONDS)
+
+    def plan_from(start: State, most: int, time_for_it: Budget) -> PlainAnswer:
+        return _planned(automaton, supervisor, goals, start, contract, most, time_for_it)
+
+    if state is not None:
+        return plan_from(state, longest, budget)
+    states = initial_states(automaton)
+    if len(states) == 1:
+        return plan_from(states[0], longest, budget)
+    return best_plan(states, plan_from, goals, contract, longest, budget)
+
+
+def _planned(
+    automaton: Automaton,
+    supervisor: Supervisor,
+    goals: Sequence[Goal],
+    start: State,
+    contract: Contract,
+    longest: int,
+    budget: Budget,
+) -> PlainAnswer:
     began = time.monotonic()
-    start = automaton.initial_valuation if state is None else state
     if not supervisor.safe.includes(start):
         raise ValueError(f"no plan begins outside the safe set: {dict(start)}")
     if local := [goal.name for goal in goals if goal.local != TRUE]:
@@ -99,7 +99,7 @@ def plan_transitions(
     derived, task = as_station(automaton, start, goals)
     if task.goals:
         question = _Question(derived, supervisor, start, replace(task, contract=contract), longest)
-        found = question.answer(budget or Budget.seconds(_SECONDS))
+        found = question.answer(budget)
     else:
         found = _Found((), least=0)
     _verify(automaton, supervisor, goals, start, found.order or ())

@@ -1,0 +1,85 @@
+"""The best plan of a plain automaton over all of its initial states."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from itertools import islice
+from math import inf
+from typing import Final
+
+from sequence_planner.automaton.plain.valuations import TooEntangledError, valuations_of
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.immutable import replace
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.plain_answer import PlainAnswer
+from sequence_planner.planning.plan import Contract, Goal, Verdict
+from sequence_planner.planning.replaying.replay import missing
+
+MOST_INITIAL: Final = 100  # states that are planned from, one after the other
+_SAY_ONE: Final = "say with --state in which one to begin"
+
+PlanFrom = Callable[[State, int, Budget], PlainAnswer]
+"""A plan from a state, of at most so many transitions."""
+
+
+def initial_states(automaton: Automaton) -> list[State]:
+    """All of them. Raises ValueError when they are more than `MOST_INITIAL`, or are not found in reasonable time."""
+    if automaton.initial is None:
+        return [automaton.initial_valuation]
+    try:
+        types = {name: variable.type for name, variable in automaton.variables.items()}
+        found = [*islice(valuations_of(automaton.initial, types), MOST_INITIAL + 1)]
+    except TooEntangledError:
+        raise ValueError(f"the initial states were not found in reasonable time: {_SAY_ONE}") from None
+    if len(found) > MOST_INITIAL:
+        raise ValueError(f"`initial` describes more than {MOST_INITIAL} states: {_SAY_ONE}")
+    return [{**automaton.initial_valuation, **values} for values in found]
+
+
+def best_plan(
+    states: Sequence[State],
+    plan_from: PlanFrom,
+    goals: Sequence[Goal],
+    contract: Contract,
+    longest: int,
+    budget: Budget,
+) -> PlainAnswer:
+    """The best of the plans from `states`, which share the time: the shortest, or by the fast contract the first.
+
+    It is minimal where none from any of the states is shorter, and there is none at all where there is none from each.
+    """
+    began = time.monotonic()
+    ordered = sorted(states, key=lambda state: bool(missing(goals, state)))  # where all hold already there is no better
+    answers: list[tuple[State, PlainAnswer]] = []
+    best: PlainAnswer | None = None
+    for number, state in enumerate(ordered):
+        most = longest if best is None else len(best.transitions) - 1
+        answer = plan_from(state, most, budget.part(1 / (len(ordered) - number)))
+        answers.append((state, answer))
+        if answer.verdict is Verdict.FOUND:
+            best = replace(answer, begin=state)
+            if contract is Contract.FAST or len(best.transitions) <= 1:
+                break
+    seconds = time.monotonic() - began
+    if best is not None:
+        rest = ordered[len(answers) :]
+        least = min([*(_least(answer) for _, answer in answers), *(float(bool(missing(goals, each))) for each in rest)])
+        searched = int(min(least, len(best.transitions)))
+        return replace(best, minimal=searched == len(best.transitions), searched=searched, seconds=seconds)
+    open_ = [answer for _, answer in answers if answer.verdict is not Verdict.NONE_AT_ALL]
+    if not open_:
+        return PlainAnswer(Verdict.NONE_AT_ALL, (), False, 0, seconds, answers[-1][1].engine)
+    verdict = Verdict.LATE if any(each.verdict is Verdict.LATE for each in open_) else Verdict.NONE_UP_TO
+    return PlainAnswer(verdict, (), False, min(each.searched for each in open_), seconds)
+
+
+def _least(answer: PlainAnswer) -> float:
+    """No plan from there has fewer transitions."""
+    match answer.verdict:
+        case Verdict.FOUND:
+            return answer.searched
+        case Verdict.NONE_AT_ALL:
+            return inf
+        case _:
+            return answer.searched + 1
