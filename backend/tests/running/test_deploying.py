@@ -11,7 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from running.stations import eventually, finished, foreign_node, free_port
+from running.stations import PATIENCE, eventually, finished, foreign_node, free_port
 from running.workshops import NEVER_GIVEN, ROBOT, SINGLE_BOLT, STATION, EditedStation, edited
 from sequence_planner.part import UNUSABLE
 from sequence_planner.ros.transport import QualityOfService
@@ -166,8 +166,10 @@ def moved(station: EditedStation) -> None:
     """The robot stands above the bolt, for production is started, and paused."""
     station.control()
     station.asked("PUT", "mode", {"mode": "paused"})
-    station.asked("POST", "production/start", {})
-    station.asked("POST", "trials", {"ability": "robot.move_to(above)", "reason": "to try it"})
+    begin(station)
+    trial = {"ability": "robot.move_to(above)", "reason": "to try it"}
+    # Refused until its first commands are sent, and the robot answers them.
+    eventually(lambda: station.browser.post("trials", json=trial, timeout=PATIENCE).is_success)
     eventually(lambda: station.value("robot.pose") == "above")
     eventually(lambda: station.get("errand", "station") is None)
 
