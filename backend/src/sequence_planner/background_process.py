@@ -8,6 +8,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Callable
+from functools import partial
 from importlib import import_module
 from multiprocessing.connection import Connection, Pipe
 from typing import Final
@@ -33,7 +34,8 @@ async def carried_out(
     ours, theirs = Pipe(duplex=False)
     with ours:
         module = work.partition(":")[0]
-        process = start(_work, work, task, name=module, connection=theirs, modules=(module,), leads=True)
+        given = partial(start, name=module, connection=theirs, modules=(module,), leads=True)
+        process = await asyncio.shield(asyncio.to_thread(given, _work, work, task))
         try:
             async with asyncio.timeout(longest):
                 while not (told := await _told(ours))[0]:

@@ -30,6 +30,7 @@ from sequence_planner.control.unix_socket import LONGEST_PATH
 from sequence_planner.deployment_folder import DeploymentFolder, DeploymentNote
 from sequence_planner.deployment_under_way import UnderWay
 from sequence_planner.emulation.standing import standing_file
+from sequence_planner.forking.orphans import reap_orphans
 from sequence_planner.forking.starting import OWN
 from sequence_planner.identity.openid.options import ProviderOptions
 from sequence_planner.journal.last_word import set_aside
@@ -191,6 +192,7 @@ class _Launcher:
 
     def run(self) -> int:
         """Start everything and watch over it."""
+        reap_orphans()
         try:
             if self._request.emulator:
                 self._emulator.spawn()
@@ -204,7 +206,8 @@ class _Launcher:
                     told = restarts
                 for each in (self._controller, self._server, self._emulator):
                     each.look()
-                OWN.path()  # it is started again if it has died
+                with contextlib.suppress(OSError):  # then it is tried once more
+                    OWN.look_after()
                 self._deployment.look()
                 code = self._notice_emulator() or self._controller.look_after() or self._server.look_after()
                 if code:

@@ -14,7 +14,7 @@ from typing import Final, Protocol
 
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.request import Request
-from sequence_planner.forking.starting import OWN, VARIABLE, ask
+from sequence_planner.forking.starting import OWN, VARIABLE, ask, working_folder
 from sequence_planner.lifeline import DEPLOYED, LAST_WORDS_FILE, OVERTAKEN
 from sequence_planner.logs import say
 from sequence_planner.secret_variables import environment
@@ -23,7 +23,6 @@ UNUSABLE: Final = 2  # the exit code with which a process says that it cannot be
 FIRST_PAUSE: Final = 0.5  # seconds before a process is started again; doubled each time, up to the longest
 LONGEST_PAUSE: Final = 10.0
 BRIEF: Final = 10.0  # seconds; a process that has lived longer is started again without a pause
-LONGEST_BEGINNING: Final = 60.0  # seconds until the fork server, whatever else it does, has forked a process
 STEADY: Final = 60.0  # seconds after which a process that lives has recovered
 PATIENCE: Final = 5.0  # seconds in which a process may end in good order
 
@@ -71,9 +70,13 @@ class Forked:
 
     def start(self, more: Sequence[str], environment: Mapping[str, str], standard_input: int) -> Process:
         """Start it."""
-        lived, server = OWN.lives, OWN.path()
+        lives = OWN.lives
+        try:
+            server = OWN.path()
+        except OSError:  # memory is short, say
+            return self._executed.start(more, environment, standard_input)
         environment = {**environment, VARIABLE: str(server)}
-        if not lived:
+        if not lives:
             return self._executed.start(more, environment, standard_input)
         arguments = [*self._arguments, *more]
         request = Request(
@@ -83,12 +86,15 @@ class Forked:
             " ".join(["sequence-planner", *arguments]),
             environment,
             list(sys.path),
-            str(Path.cwd()),
+            working_folder(),
             places=(0, *self._inherited),
             leads=True,
             left=True,
         )
-        return ask(server, request, [standard_input, *self._inherited], arguments[0])
+        try:
+            return ask(server, request, [standard_input, *self._inherited], arguments[0])
+        except OSError:  # it does not take it
+            return self._executed.start(more, environment, standard_input)
 
 
 class Part:
@@ -116,6 +122,7 @@ class Part:
             self._environment = {**self._environment, LAST_WORDS_FILE: str(last_words)}
         self.process: Process | None = None
         self._lifeline = -1  # the other end of its standard input
+        self._kept_open: list[int] = []  # those of processes that were not wanted before they had begun
         self.ended: int | None = None
         """The exit code of a process that was seen to have ended (`look`) and was not looked after yet."""
         self._pause = FIRST_PAUSE
@@ -153,10 +160,6 @@ class Part:
     def look(self) -> None:
         """See whether it has ended. All that is done because of that goes by the same look, whenever it ends."""
         self.ended = None if self.process is None else self.process.poll()
-        if isinstance(self.process, Child) and not self.process.has_begun and self._age > LONGEST_BEGINNING:
-            say(f"the {self.name} was not forked within {LONGEST_BEGINNING:g} s; another fork server is started")
-            OWN.replace()
-            self._begun = time.monotonic()
 
     def said(self, code: int) -> str:
         """Why it has ended: what it said last, if anything."""
@@ -175,7 +178,7 @@ class Part:
         now = time.monotonic()
         if self.process is None:
             if now >= self._due:
-                self.spawn(*self._told_again)
+                self._spawn_again(now)
             return 0
         code = self.ended
         if code is None:
@@ -190,17 +193,28 @@ class Part:
         if code in (DEPLOYED, OVERTAKEN):
             if code == OVERTAKEN:
                 say("another station has taken the command, and this one stands by")
-            self.spawn(*self._told_again)
+            self._spawn_again(now)
             return 0
         self.restarts += 1
         if lived >= BRIEF:
             say(f"the {self.name} ended with code {code} and is started again")
-            self.spawn(*self._told_again)
+            self._spawn_again(now)
             return 0
         say(f"the {self.name} ended with code {code} and is started again in {self._pause:g} s")
+        self._put_off(now)
+        return 0
+
+    def _spawn_again(self, now: float) -> None:
+        try:
+            self.spawn(*self._told_again)
+        except OSError as error:
+            say(f"the {self.name} cannot be started: {error.strerror}; it is tried again in {self._pause:g} s")
+            self._forget()
+            self._put_off(now)
+
+    def _put_off(self, now: float) -> None:
         self._due = now + self._pause
         self._pause = min(self._pause * 2, LONGEST_PAUSE)
-        return 0
 
     def terminate(self) -> None:
         """Ask it to end."""
@@ -231,5 +245,9 @@ class Part:
             self._lifeline = -1
 
     def _forget(self) -> None:
+        if isinstance(self.process, Child) and self.process.was_withdrawn:
+            # Should it begin all the same it is ended at once, and must not take that for the end of the launcher.
+            self._kept_open.append(self._lifeline)
+            self._lifeline = -1
         self.hang_up()
         self.process = self.ended = None

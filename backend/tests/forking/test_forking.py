@@ -16,8 +16,9 @@ from pathlib import Path
 import pytest
 
 from forking import works
+from sequence_planner.forking import starting
 from sequence_planner.forking.child import LOST, Child
-from sequence_planner.forking.starting import children, start
+from sequence_planner.forking.starting import children, hang_up, start
 
 PATIENCE = 20.0
 TESTS = Path(__file__).parents[1]
@@ -27,7 +28,7 @@ def is_there(pid: int) -> bool:
     """Whether a process lives; one that nobody has waited for does not."""
     try:
         return Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
+    except (FileNotFoundError, ProcessLookupError):  # it ends just now
         return False
 
 
@@ -137,6 +138,11 @@ def test_many_are_started_and_ended_from_many_threads() -> None:
 
 def test_one_that_leads_ends_with_all_that_it_has_started() -> None:
     with started(works.wait_with_another, leads=True) as (child, connection):
+        itself, other = connection.recv()
+        os.kill(itself, signal.SIGKILL)  # as the system does when memory is short
+        child.join()
+        until(lambda: not is_there(other))
+    with started(works.wait_with_another, leads=True) as (child, connection):
         numbers = connection.recv()
         child.kill()
         child.join()
@@ -193,18 +199,87 @@ def test_where_the_server_stands_still_nobody_waits_for_it() -> None:
         os.kill(server, signal.SIGSTOP)
         try:
             os.kill(other.recv(), signal.SIGKILL)
-            assert second.wait(PATIENCE) == LOST
+            with pytest.raises(subprocess.TimeoutExpired):
+                second.wait(0.5)  # the server may say yet how it has ended
+            began = time.monotonic()
             first.kill()
-            assert first.wait(PATIENCE) == LOST
-            with started(works.wait) as (never, _):
+            assert first.wait(PATIENCE) == -signal.SIGKILL
+            assert time.monotonic() - began < 1
+            with started(works.wait) as (never, nothing):
                 assert never.poll() is None
                 assert not never.has_begun
-                never.kill()
+
+                def hear(nothing: Connection = nothing) -> None:
+                    with pytest.raises((EOFError, OSError)):
+                        nothing.recv()
+
+                hearing = threading.Thread(target=hear)
+                hearing.start()
+                began = time.monotonic()
+                never.terminate()
                 assert never.wait(PATIENCE) == LOST
+                assert never.pid is None
+                hang_up(nothing)
+                hearing.join(PATIENCE)
+                assert not hearing.is_alive()
+                assert time.monotonic() - began < 1, "nobody waits for what stands still"
         finally:
             os.kill(server, signal.SIGCONT)
+            assert second.poll() is None
     with started(works.wait) as (child, connection):
         assert connection.recv() == child.pid
+
+
+def test_what_was_not_wanted_any_more_before_it_had_begun_does_not_begin() -> None:
+    with started(works.wait) as (_, connection):
+        number = connection.recv()
+        server = int(Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[1])
+        os.kill(server, signal.SIGSTOP)
+        dropped: list[int] = []
+        for _ in range(5):
+            with started(works.wait) as (child, ours):
+                child.kill()
+                dropped.append(os.dup(ours.fileno()))
+        os.kill(server, signal.SIGCONT)
+        for descriptor in dropped:
+            with Connection(descriptor) as theirs, pytest.raises((EOFError, ConnectionError)):
+                theirs.recv()
+
+
+def test_two_threads_that_wait_for_the_number_both_get_it() -> None:
+    for _ in range(20):
+        with started(works.wait) as (child, connection):
+            found: list[int | None] = []
+            threads = [threading.Thread(target=lambda child=child, found=found: found.append(child.pid)) for _ in "abc"]
+            for each in threads:
+                each.start()
+            for each in threads:
+                each.join(PATIENCE)
+            assert found == [connection.recv()] * 3
+            assert child.poll() is None
+
+
+def test_a_server_that_stands_still_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
+    own = starting.OwnServer()
+    monkeypatch.setattr(starting, "OWN", own)
+    monkeypatch.setattr(starting, "_PROBE_EVERY", 0.0)
+    monkeypatch.setattr(starting, "LONGEST_SILENCE", 1.0)
+    with started(works.wait) as (child, connection):
+        number = connection.recv()
+        server = int(Path(f"/proc/{number}/stat").read_text().rpartition(")")[2].split()[1])
+        for _ in range(30):  # it answers, and stays
+            own.look_after()
+            time.sleep(0.05)
+        assert is_there(server)
+        os.kill(server, signal.SIGSTOP)
+        with started(works.wait) as (waiting, other):
+            end = time.monotonic() + PATIENCE
+            while not other.poll(0.05):
+                own.look_after()
+                assert time.monotonic() < end
+            assert waiting.pid == other.recv()
+        assert not is_there(server)
+        assert child.poll() is None
 
 
 def test_where_the_server_has_died_it_can_still_be_ended_and_another_server_forks_the_next() -> None:

@@ -16,7 +16,7 @@ import httpx
 
 from running.judging import Kept
 from running.signing_in import signed_in
-from running.stations import MODEL, REPOSITORY, command, environment, eventually, free_port
+from running.stations import MODEL, REPOSITORY, command, descendants, environment, eventually, free_port
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.environment import DATABASE
@@ -102,11 +102,8 @@ class Mortal:
             each.wait(timeout=PATIENCE)
 
     def children(self, part: str) -> list[int]:
-        """The processes that a part has started."""
-        listed = subprocess.run(
-            ["ps", "--ppid", str(self.pid(part)), "-o", "pid="], capture_output=True, text=True, check=False
-        )
-        return [int(line) for line in listed.stdout.split()]
+        """The processes that a part has started, and that from which they are forked."""
+        return [each.number for each in descendants(self.pid(part))]
 
     def pid(self, part: str) -> int:
         """The process id of one of its processes."""

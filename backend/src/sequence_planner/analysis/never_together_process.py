@@ -10,7 +10,7 @@ from multiprocessing.connection import Connection, Pipe
 from sequence_planner.analysis.never_together import NeverTogether, never_together
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.forking.starting import start
+from sequence_planner.forking.starting import hang_up, start
 from sequence_planner.planning.budget import Budget
 
 _NICENESS = 15  # it only serves questions
@@ -18,7 +18,7 @@ _NICENESS = 15  # it only serves questions
 
 async def find_never_together(automaton: Automaton, supervisor: Supervisor, seconds: float) -> NeverTogether | None:
     """What is never together; None when that is not found within so many seconds of work. It can be cancelled."""
-    ours, theirs = Pipe(duplex=False)
+    ours, theirs = Pipe()
     with ours:
         process = await asyncio.to_thread(
             start, _work, automaton, supervisor, seconds, name="never-together", connection=theirs
@@ -28,6 +28,7 @@ async def find_never_together(automaton: Automaton, supervisor: Supervisor, seco
             return await asyncio.shield(hearing)
         finally:
             process.kill()
+            hang_up(ours)
             await asyncio.wait({hearing})  # at once, as nobody is left who could speak
             process.join()
 

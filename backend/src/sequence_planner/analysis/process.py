@@ -17,7 +17,7 @@ from typing import Generic, TypeVar
 
 from sequence_planner.analysis.analysis import Analysis, analyses
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.forking.starting import start
+from sequence_planner.forking.starting import hang_up, start
 from sequence_planner.memory_limit import MemoryLimit, memory_limit
 
 _NICENESS = 5  # ticks come first
@@ -58,10 +58,10 @@ async def telling(
 
     Iterating raises `SynthesisEndedError` when the process ends before it is done, or has more than so much memory.
     """
-    ours, theirs = Pipe(duplex=False)
+    ours, theirs = Pipe()
     limit = MemoryLimit(gigabytes)
     with ours:
-        process = start(_work, work, arguments, name="synthesis", connection=theirs)
+        process = await asyncio.to_thread(start, _work, work, arguments, name="synthesis", connection=theirs)
         words: _Words[Word] = _Words(ours, limit)
         try:
             with limit.held(process):
@@ -69,6 +69,7 @@ async def telling(
         finally:
             process.kill()
             process.join()
+            hang_up(ours)
             await words.end()
 
 

@@ -361,6 +361,7 @@ def server(
     from sequence_planner.web.server import serve  # noqa: PLC0415
 
     begin(launched, socket.parent)
+    os.nice(_NICENESS)
     provider = _provider(
         ProviderOptions(
             issuer=oidc_issuer,

@@ -15,7 +15,8 @@ from typing import Final
 from sequence_planner.forking.request import read_begun, read_code
 
 LOST: Final = -signal.SIGKILL  # the exit code of a process that has ended when nobody was there to see how
-_PATIENCE: Final = 1.0  # seconds in which the server says how a process has ended that certainly has
+_PATIENCE: Final = 10.0  # seconds in which the server says how a process has ended that certainly has
+_LOOK: Final = 1.0  # seconds after which whoever waits sees for itself whether somebody else has heard
 
 
 class Child:
@@ -29,36 +30,46 @@ class Child:
         self._lock = threading.RLock()
         self._pid: int | None = None
         self._handle = -1  # the descriptor that means the process, once it has begun
+        self._gone: float | None = None  # since when, on the clock of `time.monotonic`, it is known to have ended
         self._killed = False
+
+    def __del__(self) -> None:
+        if self._handle >= 0:
+            os.close(self._handle)
 
     @property
     def pid(self) -> int | None:
         """Its number, as soon as it has begun, which is waited for; None if it never has."""
-        if self._pid is None:
-            self._ready(None)  # nobody who ends it waits for that
-            self._hear()
+        while not self.has_begun:
+            self._ready(_LOOK)
         return self._pid
 
     @property
     def has_begun(self) -> bool:
-        """Whether there is, or was, such a process."""
-        if self._pid is None and self._ready(0):
+        """Whether there is, or was, such a process, or never will be."""
+        if self._pid is None and self.returncode is None and self._ready(0):
             self._hear()
         return self._pid is not None or self.returncode is not None
 
+    @property
+    def was_withdrawn(self) -> bool:
+        """Whether it was ended before it had begun."""
+        return self._pid is None and self.returncode is not None
+
     def poll(self) -> int | None:
         """Its exit code, once it has ended; a signal's number, negative, where that has ended it."""
-        self._look(0)
+        self._hear()
         return self.returncode
 
     def wait(self, timeout: float | None = None) -> int:
         """Wait until it has ended: its exit code. Raises `subprocess.TimeoutExpired`."""
         end = None if timeout is None else time.monotonic() + timeout
-        while self.returncode is None:
-            rest = None if end is None else end - time.monotonic()
-            if rest is not None and rest <= 0:
+        while self.poll() is None:
+            rest = _LOOK if end is None else min(_LOOK, end - time.monotonic())
+            if rest <= 0:
                 raise subprocess.TimeoutExpired(self.name, timeout or 0.0)
-            self._look(rest)
+            self._ready(rest, *(() if self._gone else (self._handle,)))
+        assert self.returncode is not None
         return self.returncode
 
     def join(self) -> None:
@@ -66,25 +77,29 @@ class Child:
         self.wait()
 
     def terminate(self) -> None:
-        """Ask it to end."""
-        if self.pid is not None:
+        """Ask it to end. One that has not begun yet never does."""
+        if self.has_begun:
             self._signal(signal.SIGTERM)
+        else:
+            self._withdraw()
 
     def kill(self) -> None:
         """End it at once, and all that it has started if it leads. One that has not begun yet never does."""
-        self._look(0)
+        if not self.has_begun:
+            self._withdraw()
+            return
         with self._lock:
-            if self.returncode is not None:
+            if self.poll() is not None or self._pid is None:
                 return
             self._killed = True
-            if self._pid is None:
-                with contextlib.suppress(OSError):
-                    self._connection.shutdown(socket.SHUT_WR)  # the server ends it, should it have begun
-                return
             if self._leads:
                 with contextlib.suppress(ProcessLookupError):
                     os.killpg(self._pid, signal.SIGKILL)
             self._signal(signal.SIGKILL)
+
+    def _withdraw(self) -> None:
+        """Nobody wants it any more: the server does not fork it, or ends it should it have done so just now."""
+        self._end(LOST)
 
     def _signal(self, number: signal.Signals) -> None:
         with self._lock:
@@ -92,32 +107,43 @@ class Child:
                 with contextlib.suppress(ProcessLookupError):
                     signal.pidfd_send_signal(self._handle, number)
 
-    def _look(self, seconds: float | None) -> None:
-        """See whether it has ended, for at most so many seconds; None: until something is said."""
-        over = self._killed and self._pid is None
-        if self._ready(_PATIENCE if over else seconds, self._handle):
-            self._hear()
-        elif over:
-            self._end(LOST)
-
     def _hear(self) -> None:
-        """Take what was said, or see that nothing more will be."""
+        """Take what was said, if anything was, or see that nothing more will be. It waits for nobody."""
         with self._lock:
-            if self.returncode is not None:
+            if self.returncode is not None or not self._ready(0, self._handle):
+                return
+            if not self._ready(0):
+                self._is_gone()
                 return
             try:
                 if self._pid is None:
                     self._pid, self._handle = read_begun(self._connection)
-                elif self._ready(_PATIENCE):
+                else:
                     self._end(read_code(self._connection))
-                else:  # it has ended, and its server stands still
-                    self._end(LOST)
             except (EOFError, OSError):  # the server is gone, and so is whoever else had this connection: the process
-                if self._pid is not None:
-                    _poll(None, self._handle)
-                self._end(LOST)
+                self._end(self._seen())
 
-    def _ready(self, seconds: float | None, *others: int) -> bool:
+    def _is_gone(self) -> None:
+        """It has ended, and its server has not said how."""
+        now = time.monotonic()
+        self._gone = self._gone or now
+        if self._killed:
+            self._end(-signal.SIGKILL)
+        elif now - self._gone > _PATIENCE:
+            self._end(LOST)
+
+    def _seen(self) -> int:
+        """How it has ended, of one without a server: whoever is the reaper of this process's orphans can see it."""
+        if self._pid is None:
+            return LOST
+        _poll(None, self._handle)  # it has let go of the connection, and ends
+        with contextlib.suppress(OSError):
+            seen = os.waitid(os.P_PIDFD, self._handle, os.WEXITED)
+            if seen is not None:
+                return seen.si_status if seen.si_code == os.CLD_EXITED else -seen.si_status
+        return LOST
+
+    def _ready(self, seconds: float, *others: int) -> bool:
         """Whether something is said within so many seconds, or one of the `others` is ready."""
         with contextlib.suppress(ValueError, OSError):  # it was closed meanwhile
             return _poll(seconds, self._connection.fileno(), *(each for each in others if each >= 0))
@@ -129,7 +155,7 @@ class Child:
                 return
             self.returncode = code
             with contextlib.suppress(OSError):
-                self._connection.shutdown(socket.SHUT_RDWR)  # whoever waits for it is woken
+                self._connection.shutdown(socket.SHUT_RDWR)
             self._connection.close()
             if self._handle >= 0:
                 os.close(self._handle)

@@ -1,12 +1,14 @@
 """What a fork server is asked for, and what it says of a process that it has forked.
 
-A request is one connection: the length of a pickle, the pickle and the descriptors that come with it go in, a `Begun`
-comes out as soon as there is a process, and its exit code when it has ended. Whoever closes the connection before, or
-ends, wants the process to end. Both ends are processes of one station, in a folder that is open to nobody else.
+A request is one connection: the length of a pickle, the pickle and the descriptors that come with it go in. What comes
+out is the number of the process and a descriptor that means it, said by the process itself as it begins, and its exit
+code when it has ended. Whoever closes the connection before, or ends, wants the process to end. Both ends are processes
+of one station, in a folder that is open to nobody else.
 """
 
 from __future__ import annotations
 
+import os
 import pickle
 import socket
 import struct
@@ -35,7 +37,7 @@ class Request:
     title: str
     environment: dict[str, str]
     path: list[str]
-    folder: str
+    folder: str | None
     connections: int = 0
     places: tuple[int, ...] = ()
     leads: bool = False
@@ -52,8 +54,15 @@ def send_request(to: socket.socket, request: Request, descriptors: list[int]) ->
 def read_request(of: socket.socket) -> tuple[Request, list[int]]:
     """The request that comes next, and its descriptors. Raises EOFError when it is not whole."""
     head, descriptors, _, _ = socket.recv_fds(of, _LENGTH.size, MOST_DESCRIPTORS)
-    head += _read(of, _LENGTH.size - len(head))
-    request: Request = pickle.loads(_read(of, _LENGTH.unpack(head)[0]))
+    try:
+        for each in descriptors:
+            os.set_inheritable(each, False)
+        head += _read(of, _LENGTH.size - len(head))
+        request: Request = pickle.loads(_read(of, _LENGTH.unpack(head)[0]))
+    except BaseException:
+        for each in descriptors:
+            os.close(each)
+        raise
     return request, descriptors
 
 
@@ -67,6 +76,7 @@ def read_begun(of: socket.socket) -> tuple[int, int]:
     number, handles, _, _ = socket.recv_fds(of, BYTES_OF_NUMBER, 1)
     if len(number) < BYTES_OF_NUMBER or not handles:
         raise EOFError
+    os.set_inheritable(handles[0], False)
     return _NUMBER.unpack(number)[0], handles[0]
 
 

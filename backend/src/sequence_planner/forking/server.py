@@ -7,6 +7,7 @@ does. It ends with whoever has started it: its standard input is a pipe from the
 from __future__ import annotations
 
 import contextlib
+import fcntl
 import gc
 import importlib
 import os
@@ -16,6 +17,7 @@ import signal
 import socket
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
@@ -26,6 +28,8 @@ from setproctitle import setproctitle
 from sequence_planner.forking.request import Request, read_request, send_begun, send_code
 
 _STANDARD_INPUT: Final = 0
+_LEAVING: Final = 0.5  # seconds after which one that was hung up is ended, unless that was the end of the launcher
+ABOVE: Final = 300  # no place has such a number
 _PATIENCE: Final = 5.0  # seconds for the whole of a request: its parts are sent one right after the other
 _OWN = "sequence_planner."  # what is imported here; anything else is imported by the process that needs it
 Life = Callable[[], None]
@@ -36,7 +40,8 @@ Life = Callable[[], None]
 class _Forked:
     """A process, and the connection to whoever has asked for it; None when that was closed."""
 
-    request: Request
+    leads: bool
+    left: bool
     connection: socket.socket | None
 
 
@@ -47,6 +52,7 @@ class ForkServer:
         self._listener = listener
         self._modules = iter(modules)
         self._forked: dict[int, _Forked] = {}
+        self._unwanted: dict[int, float] = {}  # processes that were to be left, and when they are ended
         self._selector = selectors.DefaultSelector()
         self._selector.register(listener, selectors.EVENT_READ)
         self._selector.register(_STANDARD_INPUT, selectors.EVENT_READ)
@@ -63,9 +69,10 @@ class ForkServer:
         """Serve; returns in each process that was forked, with its life, and without one in the end."""
         importing = True
         while True:
-            events = self._selector.select(0 if importing else None)
-            if not events:
+            events = self._selector.select(0 if importing else _LEAVING if self._unwanted else None)
+            if not events and importing:
                 importing = self._import_next()
+            self._end_unwanted()
             for key, _ in events:
                 if key.fileobj == _STANDARD_INPUT:
                     self._end()
@@ -91,7 +98,12 @@ class ForkServer:
 
     def _accept(self) -> Life | None:
         """Fork for the next who asks: the life of the process in it, None here."""
-        connection, _ = self._listener.accept()
+        try:
+            connection, _ = self._listener.accept()
+        except OSError as error:  # too many files are open
+            sys.stderr.write(f"nothing can be forked: {error.strerror}\n")
+            time.sleep(_LEAVING)
+            return None
         connection.settimeout(_PATIENCE)
         try:
             request, descriptors = read_request(connection)
@@ -101,27 +113,16 @@ class ForkServer:
         for module in (request.main.partition(":")[0], *request.modules):
             _import(module)
         gc.freeze()  # what is shared is not touched by the collectors of those that share it
-        try:
-            pid = os.fork()
-        except OSError as error:  # there are too many, or memory is short
-            sys.stderr.write(f"no process can be forked: {error.strerror}\n")
-            for each in descriptors:
-                os.close(each)
-            connection.close()
-            return None
+        pid = -1 if _is_closed(connection) else _forked()
         if pid == 0:
             return self._become(request, descriptors, connection)
         for each in descriptors:
             os.close(each)
-        self._forked[pid] = _Forked(request, connection)
+        if pid < 0:
+            connection.close()
+            return None
+        self._forked[pid] = _Forked(request.leads, request.left, connection)
         self._selector.register(connection, selectors.EVENT_READ, pid)
-        handle = os.pidfd_open(pid)
-        try:
-            send_begun(connection, pid, handle)
-        except OSError:
-            self._hang_up(pid)
-        finally:
-            os.close(handle)
         return None
 
     def _hang_up(self, pid: int) -> None:
@@ -130,22 +131,29 @@ class ForkServer:
         if forked is None or forked.connection is None:  # it was waited for in the same turn
             return
         self._selector.unregister(forked.connection)
-        if not forked.request.left:
-            _kill(pid, forked.request)
-            return  # how it has ended is still said to who waits for that
-        forked.connection.close()
-        forked.connection = None
+        if forked.left:
+            self._unwanted[pid] = time.monotonic() + _LEAVING
+        else:
+            _kill(pid, forked)  # how it has ended is still said to who waits for that
+
+    def _end_unwanted(self) -> None:
+        """End those that were to be left, but were hung up by somebody who lives on."""
+        now = time.monotonic()
+        for pid in [each for each, when in self._unwanted.items() if when <= now]:
+            del self._unwanted[pid]
+            if (forked := self._forked.get(pid)) is not None:
+                _kill(pid, forked)
 
     def _reap(self) -> None:
         """Tell whoever has asked of all that have ended."""
         while self._forked:
-            try:
-                pid, status = os.waitpid(-1, os.WNOHANG)
-            except ChildProcessError:
+            ended = os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+            if ended is None:
                 return
-            if pid == 0:
-                return
-            forked = self._forked.pop(pid, None)
+            forked = self._forked.pop(ended.si_pid, None)
+            if forked is not None and forked.leads and not forked.left:
+                _kill_group(ended.si_pid)  # what it has started, before its number can be another's
+            _, status = os.waitpid(ended.si_pid, 0)
             if forked is None or forked.connection is None:
                 continue
             with contextlib.suppress(KeyError):  # it has been hung up
@@ -156,11 +164,15 @@ class ForkServer:
 
     def _end(self) -> None:
         for pid, forked in self._forked.items():
-            if not forked.request.left:
-                _kill(pid, forked.request)
+            if not forked.left:
+                _kill(pid, forked)
 
     def _become(self, request: Request, descriptors: list[int], connection: socket.socket) -> Life:
         """Leave behind, in a process that was just forked, all that is the server's."""
+        handle = os.pidfd_open(os.getpid())
+        with contextlib.suppress(OSError):  # nobody waits for it any more, as is seen soon
+            send_begun(connection, os.getpid(), handle)
+        os.close(handle)
         gc.enable()
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
@@ -174,17 +186,21 @@ class ForkServer:
         self._forked.clear()
         if request.leads:
             os.setsid()
+        # Above all places that somebody asks for, or one could be in the way of another.
+        descriptors = [_above(each) for each in descriptors]
+        connection = socket.socket(fileno=_above(connection.detach()))
         connections = [Connection(each) for each in descriptors[: request.connections]]
         places = dict(zip(request.places, descriptors[request.connections :], strict=True))
         if _STANDARD_INPUT not in places:
             places[_STANDARD_INPUT] = os.open(os.devnull, os.O_RDONLY)
         for place, descriptor in places.items():
-            os.dup2(descriptor, place, inheritable=False)
+            os.dup2(descriptor, place, inheritable=place == _STANDARD_INPUT)
             os.close(descriptor)
         os.environ.clear()
         os.environ.update(request.environment)
         sys.path[:] = request.path
-        os.chdir(request.folder)
+        if request.folder is not None:
+            os.chdir(request.folder)
         setproctitle(request.title)
         if request.left:
             connection.detach()  # it stays open, so that it tells whether this process lives if the server is gone
@@ -206,13 +222,46 @@ def _import(module: str) -> None:
             importlib.import_module(module)
 
 
-def _kill(pid: int, request: Request) -> None:
+def _forked() -> int:
+    """Fork: 0 in the process, its number here, and less where there can be none."""
+    if len(os.listdir("/proc/self/task")) > 1:  # noqa: PTH208
+        sys.stderr.write("the fork server has threads: what it forks may stand still\n")
+    try:
+        return os.fork()
+    except OSError as error:  # there are too many, or memory is short
+        sys.stderr.write(f"no process can be forked: {error.strerror}\n")
+        return -1
+
+
+def _is_closed(connection: socket.socket) -> bool:
+    """Whether the other end wants nothing any more."""
+    connection.setblocking(False)
+    try:
+        return not connection.recv(1, socket.MSG_PEEK)
+    except BlockingIOError:
+        return False
+    except OSError:
+        return True
+
+
+def _above(descriptor: int) -> int:
+    """The same at a number from `ABOVE` on."""
+    there = fcntl.fcntl(descriptor, fcntl.F_DUPFD_CLOEXEC, ABOVE)
+    os.close(descriptor)
+    return there
+
+
+def _kill(pid: int, forked: _Forked) -> None:
     """End a process that was not waited for yet, so that its number is no other's."""
-    with contextlib.suppress(ProcessLookupError):
-        if request.leads:
-            os.killpg(pid, signal.SIGKILL)
+    if forked.leads:
+        _kill_group(pid)
     with contextlib.suppress(ProcessLookupError):
         os.kill(pid, signal.SIGKILL)  # it may not lead yet
+
+
+def _kill_group(pid: int) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(pid, signal.SIGKILL)
 
 
 def _end_with(connection: socket.socket, *, leads: bool) -> None:

@@ -12,6 +12,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import weakref
 from collections.abc import Callable
 from multiprocessing.connection import Connection
@@ -25,6 +26,12 @@ from sequence_planner.secret_variables import environment
 VARIABLE: Final = "SEQUENCE_PLANNER_FORK_SERVER"  # of the environment: the socket of the station's fork server
 _BACKLOG: Final = 64
 _SOCKET: Final = "fork.socket"
+_PATIENCE: Final = 2.0  # seconds until a request has been taken, of which much fits into a socket
+_LAST_WORDS: Final = 5.0  # seconds in which it may end in good order
+_FIRST_PAUSE: Final = 0.5  # seconds before one that has died is started again, doubled each time up to the longest
+_LONGEST_PAUSE: Final = 10.0
+_PROBE_EVERY: Final = 10.0  # seconds between two questions whether it answers
+LONGEST_SILENCE: Final = 60.0  # seconds: on a busy machine it may import for long
 _PREFIX: Final = "sequence-planner-fork-"
 _LONGEST_FOLDER: Final = 60  # bytes: the path of a socket has 107 at most, unix(7)
 _children: weakref.WeakSet[Child] = weakref.WeakSet()
@@ -41,6 +48,10 @@ class OwnServer:
         self._process: subprocess.Popen[bytes] | None = None
         self._modules: tuple[str, ...] = ()
         self._asked = False
+        self._again = 0.0  # when it may be started again, on the clock of `time.monotonic`
+        self._pause = _FIRST_PAUSE
+        self._probe: tuple[socket.socket, float] | None = None  # a question whether it answers, and since when
+        self._probed = 0.0
 
     @property
     def lives(self) -> bool:
@@ -48,24 +59,62 @@ class OwnServer:
         return self._process is not None and self._process.poll() is None
 
     def prepare(self, *modules: str) -> None:
-        """Start it, and have it import `modules` while nobody asks."""
+        """Start it, and have it import `modules` while nobody asks. Raises OSError."""
         self._modules = modules
         with self._lock:
             self._see_to_it()
 
     def path(self) -> Path:
-        """Where it is asked."""
+        """Where it is asked; it is started if need be. Raises OSError."""
         with self._lock:
             self._asked = True
             return self._see_to_it()
 
-    def replace(self) -> None:
-        """End the one that does not answer. What it was asked for and has not taken up the next one is asked for."""
+    def look_after(self) -> None:
+        """Start it again some time after it has died, and replace it when it has not answered for long.
+
+        What it was asked for and has not taken up the next one is asked for.
+        """
+        now = time.monotonic()
         with self._lock:
-            if self._process is not None:
+            if self._listener is None:
+                return
+            if not self.lives:
+                self._forget_probe()
+                if now >= self._again:
+                    self._again, self._pause = now + self._pause, min(2 * self._pause, _LONGEST_PAUSE)
+                    self._see_to_it()
+            elif self._probe is None:
+                if now - self._probed > _PROBE_EVERY:
+                    self._ask_whether_it_answers(now)
+            elif self._has_answered(self._probe[0]):
+                self._forget_probe()
+                self._pause = _FIRST_PAUSE
+            elif now - self._probe[1] > LONGEST_SILENCE:
+                self._forget_probe()
+                assert self._process is not None
                 self._process.kill()
-                self._process.wait()
-            self._see_to_it()
+
+    def _ask_whether_it_answers(self, now: float) -> None:
+        """It closes a connection on which nothing is asked."""
+        assert self._listener is not None
+        probe = socket.socket(socket.AF_UNIX)
+        probe.setblocking(False)
+        with contextlib.suppress(OSError):  # too many wait already: then it does not answer
+            probe.connect(self._listener.getsockname())
+            probe.shutdown(socket.SHUT_WR)
+        self._probe, self._probed = (probe, now), now
+
+    def _has_answered(self, probe: socket.socket) -> bool:
+        try:
+            return probe.recv(1) == b""
+        except OSError:
+            return False
+
+    def _forget_probe(self) -> None:
+        if self._probe is not None:
+            self._probe[0].close()
+            self._probe = None
 
     def _see_to_it(self) -> Path:
         if self._listener is None:
@@ -87,6 +136,7 @@ class OwnServer:
 
     def _end(self, listener: socket.socket, at: Path) -> None:
         listener.close()
+        self._forget_probe()
         self._hang_up()
         shutil.rmtree(at.parent, ignore_errors=True)
 
@@ -94,9 +144,12 @@ class OwnServer:
         if self._process is not None:
             assert self._process.stdin is not None
             self._process.stdin.close()
-            if not self._asked:
-                self._process.kill()  # it may import for some time yet, and has nothing to see to
-            self._process.wait()
+            try:
+                # It may import for some time yet; if it was never asked it has nothing to see to.
+                self._process.wait(_LAST_WORDS if self._asked else 0)
+            except subprocess.TimeoutExpired:
+                self._process.kill()
+                self._process.wait()
             self._process = None
 
 
@@ -127,7 +180,7 @@ def start(
             f"sequence-planner: {name}",
             {**os.environ, VARIABLE: str(server)},
             list(sys.path),
-            str(Path.cwd()),
+            working_folder(),
             connections=1,
             leads=leads,
         )
@@ -143,6 +196,23 @@ def start(
         return asked(OWN.path())
 
 
+def working_folder() -> str | None:
+    """Where this process is; None where that is gone."""
+    try:
+        return str(Path.cwd())
+    except OSError:
+        return None
+
+
+def hang_up(connection: Connection) -> None:
+    """Let nothing more come over a connection of both directions: whoever waits for it is told so at once.
+
+    To close it would not do: its other end may be on its way to a fork server that stands still.
+    """
+    with contextlib.suppress(OSError), socket.socket(fileno=os.dup(connection.fileno())) as end:
+        end.shutdown(socket.SHUT_RDWR)
+
+
 def children() -> list[Child]:
     """The processes that this one has started here and that live."""
     return [each for each in list(_children) if each.poll() is None]
@@ -151,9 +221,11 @@ def children() -> list[Child]:
 def ask(server: Path, request: Request, descriptors: list[int], name: str) -> Child:
     """Have a process forked by the server at that socket. Raises OSError when it cannot be asked."""
     to = socket.socket(socket.AF_UNIX)
+    to.settimeout(_PATIENCE)
     try:
         to.connect(str(server))
         send_request(to, request, descriptors)
+        to.settimeout(None)
     except OSError:
         to.close()
         raise

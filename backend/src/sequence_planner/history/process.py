@@ -63,7 +63,7 @@ class HistoryProcess:
 
     async def _asked(self, question: Question) -> Answer:
         if self._running is None:
-            self._running = self._started()
+            self._running = await asyncio.shield(asyncio.to_thread(self._started))
         connection = self._running[1]
         connection.send(question)
         heard = asyncio.Event()

@@ -16,7 +16,7 @@ from multiprocessing.connection import Connection, Pipe
 from queue import SimpleQueue
 from typing import Any, Generic, TypeVar
 
-from sequence_planner.forking.starting import start
+from sequence_planner.forking.starting import hang_up, start
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 
@@ -100,6 +100,7 @@ class Companion(Generic[Model, Content]):
         self._process.kill()
         self._process.join()
         self._words.put(None)
+        hang_up(self._connection)
         for thread in self._threads:
             thread.join()
         self._connection.close()
