@@ -246,6 +246,16 @@ def test_what_was_not_wanted_any_more_before_it_had_begun_does_not_begin() -> No
                 theirs.recv()
 
 
+def test_one_to_which_nobody_refers_any_more_ends() -> None:
+    ours, theirs = Pipe()
+    with ours:
+        child = start(works.wait, name="wait", connection=theirs)
+        number = ours.recv()
+        assert child.pid == number
+        del child
+        until(lambda: not is_there(number))
+
+
 def test_two_threads_that_wait_for_the_number_both_get_it() -> None:
     for _ in range(20):
         with started(works.wait) as (child, connection):

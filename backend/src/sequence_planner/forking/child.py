@@ -34,6 +34,7 @@ class Child:
         self._killed = False
 
     def __del__(self) -> None:
+        self._connection.close()
         if self._handle >= 0:
             os.close(self._handle)
 
