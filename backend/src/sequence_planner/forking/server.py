@@ -38,11 +38,11 @@ Life = Callable[[], None]
 
 @dataclass
 class _Forked:
-    """A process, and the connection to whoever has asked for it; None when that was closed."""
+    """A process, and the connection to whoever has asked for it."""
 
     leads: bool
     left: bool
-    connection: socket.socket | None
+    connection: socket.socket
 
 
 class ForkServer:
@@ -113,7 +113,7 @@ class ForkServer:
         for module in (request.main.partition(":")[0], *request.modules):
             _import(module)
         gc.freeze()  # what is shared is not touched by the collectors of those that share it
-        pid = -1 if _is_closed(connection) else _forked()
+        pid = -1 if _is_closed(connection) else _fork()
         if pid == 0:
             return self._become(request, descriptors, connection)
         for each in descriptors:
@@ -128,7 +128,7 @@ class ForkServer:
     def _hang_up(self, pid: int) -> None:
         """Whoever has asked for the process is gone, or wants it to end."""
         forked = self._forked.get(pid)
-        if forked is None or forked.connection is None:  # it was waited for in the same turn
+        if forked is None:  # it was waited for in the same turn
             return
         self._selector.unregister(forked.connection)
         if forked.left:
@@ -151,10 +151,11 @@ class ForkServer:
             if ended is None:
                 return
             forked = self._forked.pop(ended.si_pid, None)
+            self._unwanted.pop(ended.si_pid, None)
             if forked is not None and forked.leads and not forked.left:
                 _kill_group(ended.si_pid)  # what it has started, before its number can be another's
             _, status = os.waitpid(ended.si_pid, 0)
-            if forked is None or forked.connection is None:
+            if forked is None:
                 continue
             with contextlib.suppress(KeyError):  # it has been hung up
                 self._selector.unregister(forked.connection)
@@ -181,8 +182,7 @@ class ForkServer:
         for each in (self._listener, self._woken, self._waking):
             each.close()
         for forked in self._forked.values():
-            if forked.connection is not None:
-                forked.connection.close()
+            forked.connection.close()
         self._forked.clear()
         if request.leads:
             os.setsid()
@@ -222,7 +222,7 @@ def _import(module: str) -> None:
             importlib.import_module(module)
 
 
-def _forked() -> int:
+def _fork() -> int:
     """Fork: 0 in the process, its number here, and less where there can be none."""
     if len(os.listdir("/proc/self/task")) > 1:  # noqa: PTH208
         sys.stderr.write("the fork server has threads: what it forks may stand still\n")
