@@ -154,7 +154,7 @@ def counter(bits: int) -> Automaton:
 def test_when_the_time_is_over_it_says_how_far_it_came() -> None:
     station = counter(12)
     engine = BoundedModelChecking(station, Supervisor(StateSet((), ()), {}))
-    task = Task(initial_state(station), goals_of(station, ("full",)), longest=5000)
+    task = Task(initial_state(station), goals_of(station, ("full",)), longest=5000, depth=5000)
     budget = Budget.seconds(0.4)
     finding = engine.solve(task, budget)
     assert budget.spent

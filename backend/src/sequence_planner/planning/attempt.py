@@ -106,7 +106,7 @@ class Attempt:
             return
         if self._plan is not None and self.task.contract is Contract.FAST:
             self._grace_ends = now + min(max(_SHARE * took, _LEAST_GRACE), _MOST_GRACE)
-        elif self._plan is None and self._searched >= self.task.longest:
+        elif self._plan is None and self._searched >= self.task.bound:
             self._grace_ends = now + max(_PROOF_GRACE, took)
 
 

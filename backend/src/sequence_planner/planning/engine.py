@@ -8,17 +8,26 @@ from sequence_planner.automaton.structure import State
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import ORDINARY, Circumstances, Contract, Plan, Proof
+from sequence_planner.planning.plan import DEPTH, LONGEST, ORDINARY, Circumstances, Contract, Plan, Proof
 
 
 class Task(Immutable):
-    """Reach all of `goals`, none of which holds in `state`, in at most `longest` ticks."""
+    """Reach all of `goals`, none of which holds in `state`, in at most `longest` ticks.
+
+    Engines that prove that no shorter plan exists look for plans of up to `depth` ticks.
+    """
 
     state: State
     goals: Goals
     circumstances: Circumstances = ORDINARY
     contract: Contract = Contract.MINIMAL
-    longest: int = 60
+    longest: int = LONGEST
+    depth: int = DEPTH
+
+    @property
+    def bound(self) -> int:
+        """The number of ticks up to which it is worth while to prove that there is no plan."""
+        return min(self.depth, self.longest)
 
 
 class Finding(Immutable):

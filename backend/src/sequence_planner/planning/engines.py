@@ -19,9 +19,10 @@ FIRST_TURN = 0.1
 LONG_FIRST_TURNS = {
     "first sight": 1.0,
     "partial sight": 2.0,
-    "goal by goal": 2.0,
-    "projection": 2.0,
+    "goal by goal": 0.5,
+    "projection": 0.5,
     "search": 0.5,
+    "operation by operation": 1.0,
     "bmc": 1.5,
 }
 
@@ -69,6 +70,7 @@ FACTORIES: Mapping[str, Factory] = {
     "goal by goal": Maker("relaxed.goal_by_goal", "GoalByGoal"),
     "projection": Maker("relaxed.projection", "Projection"),
     "search": Maker("heuristic.best_first", "HeuristicSearch"),
+    "operation by operation": Maker("decomposed.operation_by_operation", "OperationByOperation"),
     "breadth-first": Maker("heuristic.breadth_first", "ShortestSearch"),
     "relaxation": Maker("relaxed.relaxing", "Relaxing"),
     "pdr": Maker("pdr.engine", "Reachability"),
@@ -78,7 +80,13 @@ FACTORIES: Mapping[str, Factory] = {
 # Racing, in processes of their own.
 LANES = (
     Lane("sat", {Contract.MINIMAL: ("partial sight", "bmc"), Contract.FAST: ("goal by goal", "projection", "bmc")}),
-    Lane("search", {Contract.MINIMAL: ("breadth-first", "search"), Contract.FAST: ("search",)}),
+    Lane(
+        "search",
+        {
+            Contract.MINIMAL: ("breadth-first", "search", "operation by operation"),
+            Contract.FAST: ("search", "operation by operation"),
+        },
+    ),
     Lane("proof", dict.fromkeys(Contract, ("relaxation", "pdr")), niceness=10),
 )
 
@@ -86,8 +94,26 @@ LANES = (
 ALONE = Lane(
     "alone",
     {
-        Contract.MINIMAL: ("first sight", "partial sight", "bmc", "relaxation", "pdr", "breadth-first"),
-        Contract.FAST: ("first sight", "goal by goal", "projection", "search", "relaxation", "bmc", "pdr"),
+        Contract.MINIMAL: (
+            "first sight",
+            "partial sight",
+            "bmc",
+            "relaxation",
+            "pdr",
+            "breadth-first",
+            "search",
+            "operation by operation",
+        ),
+        Contract.FAST: (
+            "first sight",
+            "goal by goal",
+            "projection",
+            "search",
+            "operation by operation",
+            "relaxation",
+            "bmc",
+            "pdr",
+        ),
     },
 )
 

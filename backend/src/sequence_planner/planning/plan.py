@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
+from typing import Final
 
 from sequence_planner.automaton.structure import Ability, Automaton, Operation
 from sequence_planner.expressions.syntax import TRUE, Expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import Immutable
+
+LONGEST: Final = 1000  # ticks of a plan: a shift of work
+DEPTH: Final = 60  # ticks up to which it is proven that there is no plan: each costs more than the one before
 
 
 class Contract(StrEnum):
@@ -78,12 +82,15 @@ class Plan(Immutable):
 
 
 class PlanRequest(Immutable):
-    """A state to plan from and the goals that shall be reached, until `deadline` seconds have passed."""
+    """A state to plan from and the goals that shall be reached, until `deadline` seconds have passed.
+
+    A plan has at most `longest` ticks; see `Task` for the rest.
+    """
 
     state: Mapping[str, Value | None]
     goals: tuple[Goal, ...]
     deadline: float = 5.0
-    longest: int = 60
+    longest: int = LONGEST
     contract: Contract = Contract.MINIMAL
     circumstances: Circumstances = ORDINARY
 

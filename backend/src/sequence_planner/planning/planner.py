@@ -74,7 +74,7 @@ class _Outcome(Immutable):
             return Verdict.FOUND
         if not self.possible:
             return Verdict.NONE_AT_ALL
-        complete = not self.goals and self.attempt.searched >= self.attempt.task.longest
+        complete = not self.goals and self.attempt.searched >= self.attempt.task.bound
         return Verdict.NONE_UP_TO if complete else Verdict.LATE
 
     def fewer(self) -> _Outcome:

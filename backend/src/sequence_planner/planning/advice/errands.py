@@ -16,7 +16,7 @@ from sequence_planner.planning.advice.situation import Situation
 from sequence_planner.planning.advice.walking import Walk, walked
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
-from sequence_planner.planning.plan import Goal, Plan, PlanTick, starts_of
+from sequence_planner.planning.plan import DEPTH, Goal, Plan, PlanTick, starts_of
 from sequence_planner.planning.way_back import WaysBack
 
 _TIGHTENING = 0.1  # of the time that is left
@@ -99,7 +99,7 @@ class Errands:
 
     def into_safe(self, here: Situation, share: float) -> Errand | None:
         """The shortest way into the safe states, by written guards. Raises `SearchTimeoutError`."""
-        way = self._ways.way(here.state, here.circumstances, here.longest, self._budget.part(share))
+        way = self._ways.way(here.state, here.circumstances, min(here.longest, DEPTH), self._budget.part(share))
         if way is None:
             return None
         # The goal of an errand is looked at after step 3.

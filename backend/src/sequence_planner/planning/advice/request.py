@@ -9,7 +9,7 @@ from sequence_planner.expressions.syntax import Expression
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import ORDINARY, Circumstances
+from sequence_planner.planning.plan import LONGEST, ORDINARY, Circumstances
 
 Pairing = tuple[str, Value, str, Value]  # a variable and a value, and another with the value it never has together
 
@@ -34,7 +34,7 @@ class AdviceRequest(Immutable):
     violated: Goals = ()
     waiting: Goals = ()
     deadline: float = 1.8
-    longest: int = 60
+    longest: int = LONGEST
 
 
 class ErrandRequest(Immutable):
@@ -51,4 +51,4 @@ class ErrandRequest(Immutable):
     stalled: frozenset[str] = frozenset()
     violated: Goals = ()
     deadline: float = 1.8
-    longest: int = 60
+    longest: int = LONGEST

@@ -6,7 +6,7 @@ from sequence_planner.automaton.structure import State
 from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plan import Circumstances, Contract, Goal
+from sequence_planner.planning.plan import LONGEST, Circumstances, Contract, Goal
 from sequence_planner.planning.replaying.replay import missing
 
 
@@ -16,7 +16,7 @@ class Situation(Immutable):
     state: State
     goals: Goals
     circumstances: Circumstances
-    longest: int = 60
+    longest: int = LONGEST
 
     def production(self) -> Task:
         """To reach all goals in an ordinary mode."""

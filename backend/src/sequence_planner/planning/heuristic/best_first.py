@@ -79,14 +79,14 @@ class HeuristicSearch:
         few = len(ticks) == 1  # no start, and none of fewer ticks, as some goal is still missing
         return Finding(Plan(ticks, minimal_ticks=few, minimal_starts=few))
 
-    def ticks(self, task: Task, budget: Budget) -> tuple[PlanTick, ...] | None:
-        """Ticks of a plan, however many. Raises `SpentError`."""
+    def ticks(self, task: Task, budget: Budget, most: int | None = None) -> tuple[PlanTick, ...] | None:
+        """Ticks of a plan, however many, if it is found from at most so many positions. Raises `SpentError`."""
         if self._compiled is None:
             self._compiled = CompiledTick(self._automaton, hot=False)
         if self._relaxed is None:
             self._relaxed = RelaxedTask(self._automaton, self._supervisor)
         space = Space(self._compiled, self._supervisor, task, self._at_once)
-        way = _Search(space, self._relaxed, task, budget).way()
+        way = _Search(space, self._relaxed, task, budget).way(most)
         if way is None:
             return None
         steady = Space(self._compiled, self._supervisor, task, at_once=False)
@@ -120,10 +120,11 @@ class _Search:
         self._reached: set[object] = set()
         self._best = 1 << 60
 
-    def way(self) -> tuple[Move, ...] | None:
-        """The moves of a run that reaches the goals; None if the search gives up."""
+    def way(self, most: int | None = None) -> tuple[Move, ...] | None:
+        """The moves of a run that reaches the goals; None if the search gives up, at `most` positions at the latest."""
         node: _Node | None = _Node(self._space.begin(), None, ())
-        most = _MOST_VALUES // max(len(node.position.run.values), 1) if node else 0
+        kept = _MOST_VALUES // max(len(node.position.run.values), 1) if node else 0
+        most = kept if most is None else min(most, kept)
         while node is not None:
             nearest = 1 << 60  # of the positions that one leap after the other has led to
             while node is not None:

@@ -11,9 +11,10 @@ from heapq import heapify, heappop, heappush
 
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import Immutable
-from sequence_planner.planning.heuristic.graph import Graph, Operator
+from sequence_planner.planning.heuristic.graph import Graph, Kind, Operator
 
 _NEVER = 1 << 60
+_PRICES: Mapping[Kind, int] = {}
 _SHIFT = 24  # of a cost before its node in one number, so that a queue of numbers does
 _NODE = (1 << _SHIFT) - 1
 
@@ -39,11 +40,14 @@ class Estimate(Immutable):
 
 
 class Estimator:
-    """Estimates how far nodes of `graph`, as it is now, are from a state without the operators `idle`."""
+    """Estimates how far nodes of `graph`, as it is now, are from a state without the operators `idle`.
 
-    def __init__(self, graph: Graph, idle: frozenset[Operator]) -> None:
+    Of each kind an operator costs what `prices` say, or else 1.
+    """
+
+    def __init__(self, graph: Graph, idle: frozenset[Operator], prices: Mapping[Kind, int] = _PRICES) -> None:
         self._graph = graph
-        self._costs = [0 if operator is None else 1 for operator in graph.operators]
+        self._costs = [0 if operator is None else prices.get(operator[0], 1) for operator in graph.operators]
         self._left = [
             len(body) + (operator in idle) for body, operator in zip(graph.bodies, graph.operators, strict=True)
         ]
@@ -125,10 +129,11 @@ class Estimator:
                             now.append(head)
         queue: list[int] = []
         for rule in fired:
+            cost = totals[rule]
             for head in heads[rule]:
-                if costs[head] > 1:
-                    supporter[head], costs[head] = rule, 1
-                    queue.append(1 << _SHIFT | head)
+                if costs[head] > cost:
+                    supporter[head], costs[head] = rule, cost
+                    queue.append(cost << _SHIFT | head)
         heapify(queue)
         while queue and missing:
             entry = heappop(queue)

@@ -14,6 +14,8 @@ class Kind(Enum):
     EFFECT = auto()
     FINISH = auto()
     START = auto()
+    OPERATION = auto()
+    ASSUMPTION = auto()  # that a fact comes about, whatever brings it
 
 
 Operator = tuple[Kind, str]

@@ -40,15 +40,22 @@ class Trimmer:
         if self._elimination is not None and self._elimination.suits(order):
             order = self._elimination.eliminated(order, self._budget)
             return self._followed(order, (), free=False, most=len(order) + 1) or ticks
-        best, found = self._shortened(ticks), True
+        best, found = self._shortened(self._quicker(ticks) or ticks), True
         while found and not self._budget.spent:
-            helpful = tuple(dict.fromkeys(effect for tick in best for effect in tick.effects))
-            found = False
-            for free in (True, False):
-                quicker = self._followed(_order(best), helpful, free, len(best))
-                if quicker is not None and _size(quicker) < _size(best):
-                    best, found = self._shortened(quicker), True
+            quicker = self._quicker(best)
+            found = quicker is not None
+            if quicker is not None:
+                best = self._shortened(quicker)
         return best
+
+    def _quicker(self, ticks: Ticks) -> Ticks | None:
+        """A smaller run with the starts of `ticks`, each as soon as it can be; None if neither way leads to one."""
+        helpful = tuple(dict.fromkeys(effect for tick in ticks for effect in tick.effects))
+        for free in (True, False):
+            quicker = self._followed(_order(ticks), helpful, free, len(ticks))
+            if quicker is not None and _size(quicker) < _size(ticks):
+                return quicker
+        return None
 
     def _shortened(self, ticks: Ticks) -> Ticks:
         return self._lighter(self._denser(self._lighter(ticks)))
@@ -56,15 +63,18 @@ class Trimmer:
     def _lighter(self, ticks: Ticks) -> Ticks:
         """Without starts that can be left out, one by one with all that cannot happen without them.
 
-        Whatever else there is stays in its tick.
+        Whatever else there is stays in its tick. What reaches the goals although all happens that can still does: a
+        start that is needless only if some device tarries stays.
         """
-        best = self._as_written((), self._space.begin(), ticks)
+        best = self._as_written((), self._space.begin(), ticks, eager=True)
+        eager = best is not None
+        best = best or self._as_written((), self._space.begin(), ticks)
         found = best is not None
         while best is not None and found:  # what was tried may have become needless
             found = False
             number = len(best) - 1
             while number >= 0 and not self._budget.spent:
-                lighter = self._lighter_tick(best, number)
+                lighter = self._lighter_tick(best, number, eager)
                 if lighter is None:
                     number -= 1
                 else:
@@ -72,13 +82,13 @@ class Trimmer:
                     number = min(number, len(best) - 1)
         return ticks if best is None else tuple(moment.tick for moment in best)
 
-    def _lighter_tick(self, run: tuple[_Moment, ...], number: int) -> tuple[_Moment, ...] | None:
+    def _lighter_tick(self, run: tuple[_Moment, ...], number: int, eager: bool) -> tuple[_Moment, ...] | None:
         """The run without one of the starts of a tick, a late one if possible; None if each is needed."""
         tick = run[number].tick
         rest = tuple(moment.tick for moment in run[number + 1 :])
         for index in reversed(range(len(tick.starts))):
             without = PlanTick(tick.effects, tick.starts[:index] + tick.starts[index + 1 :])
-            trial = self._as_written(run[:number], run[number].before, (without, *rest))
+            trial = self._as_written(run[:number], run[number].before, (without, *rest), eager)
             if trial is not None:
                 return trial
         return None
@@ -104,8 +114,8 @@ class Trimmer:
     ) -> tuple[_Moment, ...] | None:
         """The run that goes on from `position` with `ticks`, less what cannot happen in its tick, up to the goals.
 
-        When it is `eager`, all else that can happen in a tick happens too. None if the goals are not reached, or if too
-        much gets lost.
+        Ticks in which nothing happens are left out. When it is `eager`, all else that can happen in a tick happens too.
+        None if the goals are not reached, or if too much gets lost.
         """
         moments = list(begun)
         lost = 0
@@ -118,6 +128,8 @@ class Trimmer:
             after = self._space.wait(position, effects)
             if after is None:
                 return None
+            if not tick.starts and position.begun and after.key == position.key:
+                continue  # nothing waits for such a tick
             before, position = position, after
             taken: list[str] = []
             for name in tick.starts if position.goals else ():

@@ -101,7 +101,7 @@ class Projection:
 
     def take_up(self, outline: Outline) -> None:
         """Begin to work on its task, which is asked for next."""
-        longest = min(outline.task.longest, _LONGER * outline.layers + _MORE)
+        longest = min(outline.task.bound, _LONGER * outline.layers + _MORE)
         self._work = _Work(outline.task, longest, self._parts(outline))
 
     def _plan(self, work: _Work, budget: Budget) -> Plan | None:

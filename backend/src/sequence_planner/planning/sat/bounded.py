@@ -49,14 +49,14 @@ class BoundedModelChecking:
             plan = (
                 self._searched(task, seen, budget)
                 .search(task.state)
-                .plan(task.state, task.goals, task.circumstances, task.longest, budget, task.contract)
+                .plan(task.state, task.goals, task.circumstances, task.bound, budget, task.contract)
             )
         except SpentError:
             return Finding()
         except SearchTimeoutError as late:
             return Finding(searched=late.searched if exact else 0)
         if plan is None:
-            return Finding(searched=task.longest if exact else 0)
+            return Finding(searched=task.bound if exact else 0)
         if not exact:
             return Finding(replace(plan, minimal_ticks=False, minimal_starts=False))
         return Finding(plan, searched=len(plan.ticks))

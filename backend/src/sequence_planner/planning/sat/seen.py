@@ -52,7 +52,7 @@ class _Part:
             oracles = frozenset(seen.oracles)
             self._search = Search(seen.automaton, seen.supervisor, order, frozenset(), inside=True, oracles=oracles)
         return self._search.plan(
-            seen.state(task.state), task.goals, task.circumstances, task.longest, budget, promising=promising
+            seen.state(task.state), task.goals, task.circumstances, task.bound, budget, promising=promising
         )
 
     def made_of(self, plan: Plan) -> frozenset[str]:
@@ -109,7 +109,7 @@ class PartialSight:
                 part = self._part(kept)
                 plan = part.plan(task, partial(self._acceptance.accepts, task), budget)
                 if plan is None:
-                    return Finding(searched=task.longest)
+                    return Finding(searched=task.bound)
                 if self._acceptance.accepts(task, plan):
                     return Finding(plan, searched=len(plan.ticks))
                 searched = max(searched, len(plan.ticks) - 1)

@@ -1,0 +1,1 @@
+"""Plans for far goals, made of plans for the operations that lead to them."""

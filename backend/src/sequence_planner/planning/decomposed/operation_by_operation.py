@@ -1,0 +1,140 @@
+"""The engine that plans for one operation after the other, as those who modelled the station have sliced the work.
+
+A goal that is a hundred ticks away is out of reach of engines that search or unroll. The operations on the way to it
+are not: each is planned for from where the last one has ended, and after each of them it is looked anew which lead on.
+What is found is a plan like any other, made short, and says nothing about others.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from functools import cached_property
+
+from sequence_planner.automaton.compiled import CompiledTick
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.collection import collection_put_off
+from sequence_planner.expressions.evaluation import holds
+from sequence_planner.immutable import replace
+from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.planning.decomposed.operation_task import OperationTask
+from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.planning.heuristic.best_first import HeuristicSearch
+from sequence_planner.planning.heuristic.interference import Interference
+from sequence_planner.planning.heuristic.space import Move, Position, Space
+from sequence_planner.planning.heuristic.trimming import Trimmer
+from sequence_planner.planning.plan import Goal, Plan, PlanTick
+from sequence_planner.planning.relaxed.relaxation import Possible, reachable
+
+_MOST_POSITIONS = 400  # that the search for one operation's goal may come to
+_LEAST_TRIMMING = 0.2  # seconds, or as long as finding the plan took
+
+
+class _Work:
+    """What has been done of a task: the ticks so far, where they lead, and what was tried in vain from there."""
+
+    def __init__(self, task: Task, space: Space, possible: Possible) -> None:
+        self.task = task
+        self.space = space
+        self.possible = possible
+        self.ticks: tuple[PlanTick, ...] = ()
+        self.position = space.begin()
+        self.in_vain: set[str | None] = set()
+        self.seconds = 0.0
+
+
+class OperationByOperation:
+    """Plans for one automaton under one supervisor; asked again, it goes on where the budget was spent."""
+
+    name = "operation by operation"
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self._automaton = automaton
+        self._supervisor = supervisor
+        self._work: _Work | None = None
+
+    @collection_put_off()
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        """A plan by way of operations; nothing where none seems to lead to the goals, or not all of the way."""
+        began = time.monotonic()
+        if self._work is None or self._work.task is not task:
+            self._work = self._begun(task)
+        work = self._work
+        try:
+            while work is not None and work.position.goals:
+                if not self._advanced(work, budget):
+                    work = None
+        except SpentError:
+            return Finding()
+        finally:
+            if work is not None:
+                work.seconds += time.monotonic() - began
+        self._work = None
+        if work is None:
+            return Finding()
+        share = max(work.seconds, _LEAST_TRIMMING) / max(budget.remaining, _LEAST_TRIMMING)
+        trimmer = Trimmer(work.space, self._interference, None, budget.part(min(share, 0.5)))
+        ticks = trimmer.trimmed(work.ticks)
+        if len(ticks) > task.longest:
+            return Finding()
+        return Finding(Plan(ticks, minimal_ticks=False, minimal_starts=False))
+
+    @cached_property
+    def _operations(self) -> OperationTask:
+        return OperationTask(self._automaton)
+
+    @cached_property
+    def _search(self) -> HeuristicSearch:
+        return HeuristicSearch(self._automaton, self._supervisor)
+
+    @cached_property
+    def _compiled(self) -> CompiledTick:
+        return CompiledTick(self._automaton, hot=False)
+
+    @cached_property
+    def _interference(self) -> Interference:
+        return Interference(self._automaton)
+
+    def _begun(self, task: Task) -> _Work | None:
+        """Nothing done yet; None where no operation is on the way."""
+        if not task.goals or not self._automaton.operations:
+            return None
+        possible = reachable(self._automaton, task.state, task.circumstances).possible
+        work = _Work(task, Space(self._compiled, self._supervisor, task, at_once=False), possible)
+        return work if next(self._milestones(work), None) is not None else None
+
+    def _advanced(self, work: _Work, budget: Budget) -> bool:
+        """Go on to the goal of an operation, or to the goals themselves; False when there is no way on."""
+        values = work.position.run.values
+        for name in (*self._milestones(work), None):
+            if name in work.in_vain:
+                continue
+            goals = work.position.goals if name is None else (Goal(name, self._automaton.operations[name].goal),)
+            part = replace(work.task, state=dict(values), goals=goals)
+            ticks = self._search.ticks(part, budget, _MOST_POSITIONS)
+            if ticks and len(work.ticks) + len(ticks) <= work.task.longest:
+                after = _walked(work.space, work.position, ticks)
+                if after is not None:
+                    work.position, work.ticks, work.in_vain = after, (*work.ticks, *ticks), set()
+                    return True
+            work.in_vain.add(name)
+        return False
+
+    def _milestones(self, work: _Work) -> Iterator[str]:
+        """The operations whose goals can be pursued now, of those that seem to lead to what is still missing."""
+        values, goals = work.position.run.values, [goal.predicate for goal in work.position.goals]
+        for name in self._operations.towards(values, goals, work.possible) or ():
+            if holds(self._automaton.operations[name].precondition, values):
+                yield name
+
+
+def _walked(space: Space, position: Position, ticks: tuple[PlanTick, ...]) -> Position | None:
+    """Where `ticks` lead, at most as far as the goals; None if that must not be."""
+    here: Position | None = position
+    for tick in ticks:
+        moves: tuple[Move, ...] = (tick.effects, *tick.starts)
+        for move in moves:
+            if here is not None and here.goals:
+                here = space.moved(here, move)
+    return here
