@@ -8,9 +8,10 @@ from pathlib import Path
 import pytest
 
 from core.building import Does, automaton
+from sequence_planner.analysis import remembering
 from sequence_planner.analysis.analysis import Analysis, analyses
 from sequence_planner.analysis.never_together import NeverTogether
-from sequence_planner.analysis.remembering import MOST_KEPT, cache, remember, remembered
+from sequence_planner.analysis.remembering import MOST_KEPT, cache, remember, remembered, supervisor_of
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.types import BOOLEAN
 
@@ -85,3 +86,23 @@ def test_where_there_are_too_many_states_they_are_not_counted_and_all_else_is_fo
     *_, last = analyses(lamp("lamp"), 0)
     assert (last.pending, last.reachable_states, last.supervised_states) == (None, None, None)
     assert (last.supervisor, last.warnings) == (found(lamp("lamp")).supervisor, found(lamp("lamp")).warnings)
+
+
+def test_a_supervisor_is_computed_once_by_whoever_needs_it_first(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    first = supervisor_of(lamp("lamp"))
+    monkeypatch.delattr(remembering, "synthesise")
+    assert supervisor_of(lamp("lamp")) == first
+    with pytest.raises(NameError):
+        supervisor_of(lamp("not lamp"))
+
+
+def test_what_a_controller_has_found_serves_commands_too(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    where = cache()
+    assert where is not None
+    remember(where, lamp("lamp"), found(lamp("lamp")))
+    monkeypatch.delattr(remembering, "synthesise")
+    assert supervisor_of(lamp("lamp")) == found(lamp("lamp")).supervisor

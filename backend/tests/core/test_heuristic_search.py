@@ -10,10 +10,12 @@ from hypothesis import given
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.tick import initial_state
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import Expression
+from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.model.plain_documents import read_plain
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
@@ -27,6 +29,7 @@ from sequence_planner.planning.plan import Contract, Goal, Plan, PlanTick, goals
 from sequence_planner.planning.replaying.acceptance import Acceptance
 from sequence_planner.planning.replaying.replay import missing
 
+from . import building
 from .breadth_first import Shortest, shortest
 from .budget import TIMED, examples
 from .choices import Choices, made_by
@@ -182,3 +185,28 @@ def test_goals_one_by_one_are_reached_like_goals_together() -> None:
 
 def _at(automaton: Automaton, place: str) -> Expression:
     return resolve_predicate(parse(f"at == {place}"), Scope(automaton.types))
+
+
+def test_what_is_needless_only_where_a_device_tarries_stays() -> None:
+    """A part that nobody holds slips away soon, and would have to wait until it is drilled."""
+    off = (BOOLEAN, False)
+    station = building.automaton(
+        {
+            "hold": building.Does(start=("held := true",), enabled="not held"),
+            "drill": building.Does(start=("drilling := true",), enabled="not drilling"),
+        },
+        measured={"there": (BOOLEAN, True), "turning": off, "deep": off},
+        output={"held": off, "drilling": off},
+        effects={
+            "slips": ("drilling and not held and there", ("there := false",)),
+            "turns": ("drilling and not turning", ("turning := true",)),
+            "drills": ("turning and there and not deep", ("deep := true",)),
+        },
+        goals={"drilled": "deep"},
+    )
+    task = Task(initial_state(station), goals_of(station, ("drilled",)), contract=Contract.FAST)
+    plan = HeuristicSearch(station, FREE).solve(task, budget()).plan
+    assert plan is not None
+    assert sorted(name for _, name in plan.starts) == ["drill", "hold"]
+    tarrying = (PlanTick((), ("drill",)), PlanTick(("turns",), ()), PlanTick(("drills",), ()))
+    assert Acceptance(station, FREE).accepts(task, Plan(tarrying, False, False))

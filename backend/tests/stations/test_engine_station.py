@@ -18,13 +18,34 @@ from sequence_planner.emulation.truck_station.node import NODE_TYPES, PACKAGE, P
 from sequence_planner.emulation.truck_station.poses import PAIRS, POSES
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.plan import Contract, PlanAnswer, PlanRequest, Verdict, goal_of
+from sequence_planner.planning.plan import Contract, PlanAnswer, PlanRequest, Verdict, goal_of, goals_of
 from sequence_planner.planning.planner import Planner
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervision import synthesise
 
 MODEL = Path(__file__).parents[3] / "models" / "truck_engine_station"
 LONGEST_SYNTHESIS, LONGEST_PLAN = 10.0, 1.0  # seconds of CPU time, on a busy machine
+
+LONGEST_FAR, LONGEST_WHOLE = 4.0, 8.0  # twice what is wanted
+_WORK = (
+    "identify_engine",
+    "bring_kit",
+    "return_kit",
+    "take_lf_tool",
+    "mount_ladder_frame",
+    *(f"place_bolt_pair({pair})" for pair in PAIRS),
+    "take_nutrunner",
+    *(f"tighten_bolt_pair({pair})" for pair in PAIRS),
+    "take_filter_tool",
+    "tighten_oil_filter",
+)
+FAR = {  # operations that are far away, and ticks that a plan for them stays below
+    ("mount_ladder_frame",): 35,
+    ("tighten_bolt_pair(AtBoltPair1TCPPose)",): 70,
+    ("tighten_bolt_pair(AtBoltPair6TCPPose)",): 70,
+    ("tighten_oil_filter",): 120,
+    _WORK: 180,
+}
 
 EMPTY: dict[str, Value] = {f"bolts[{pair}]": "empty" for pair in PAIRS}
 PLACED: dict[str, Value] = {f"bolts[{pair}]": "placed" for pair in PAIRS}
@@ -102,6 +123,22 @@ def test_every_operation_is_planned_from_its_precondition(operation: str) -> Non
     answer = planned(operation, state)
     assert answer.verdict is Verdict.FOUND
     assert not TIMED or time.process_time() - began < LONGEST_PLAN
+
+
+@pytest.mark.parametrize("operations", FAR, ids=lambda each: each[-1])
+def test_what_is_an_engine_away_is_planned_from_the_empty_station(operations: tuple[str, ...]) -> None:
+    """By way of the operations, of which nobody asked for most; every plan has been replayed on the reference tick."""
+    station, supervisor, _, _ = ready()
+    automaton = station.automaton
+    request = PlanRequest(
+        initial_state(automaton), goals_of(automaton, operations), 60.0, contract=Contract.FAST
+    )  # a planner that remembers nothing
+    began = time.process_time()
+    answer = Planner(automaton, supervisor).answer(request)
+    assert (answer.verdict, answer.left_out) == (Verdict.FOUND, ())
+    assert answer.plan is not None
+    assert len(answer.plan.ticks) < FAR[operations]
+    assert not TIMED or time.process_time() - began < (LONGEST_FAR if len(operations) == 1 else LONGEST_WHOLE)
 
 
 def test_the_robot_goes_down_to_placed_bolts_only_once_the_tool_was_told_to_turn() -> None:

@@ -1,4 +1,4 @@
-"""What was found of the model that a station runs, kept for its controller's next start.
+"""What was found of a model, kept for the next start of a controller that runs it, and for commands.
 
 It lies in the user's cache, by the content of the model and of the program, or, where that cannot be used, in the
 folder of the running station and goes with it. What lies in a folder that somebody else can write to is never read: it
@@ -20,13 +20,19 @@ import structlog
 from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.analysis.never_together import NeverTogether
 from sequence_planner.analysis.store import folder, key
+from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.synthesis.supervision import synthesise
 
 LOG = structlog.get_logger(__name__)
-NAMES: Final[dict[type, str]] = {Analysis: "analysis", NeverTogether: "never-together"}  # how files begin
+NAMES: Final[dict[type, str]] = {
+    Analysis: "analysis",
+    NeverTogether: "never-together",
+    Supervisor: "supervisor",
+}  # how files begin
 MOST_KEPT: Final = 20  # files of each kind; the oldest are removed
 
-Found = TypeVar("Found", Analysis, NeverTogether)
+Found = TypeVar("Found", Analysis, NeverTogether, Supervisor)
 
 
 def cache() -> Path | None:
@@ -39,7 +45,7 @@ def cache() -> Path | None:
     return None
 
 
-def remember(where: Path, automaton: Automaton, found: Analysis | NeverTogether) -> None:
+def remember(where: Path, automaton: Automaton, found: Analysis | NeverTogether | Supervisor) -> None:
     """Keep what was found, if the folder is the user's alone."""
     if not _is_own(where):
         return
@@ -67,6 +73,23 @@ def remembered(where: Path, automaton: Automaton, kind: type[Found]) -> Found | 
         LOG.warning("what was found of the model before cannot be read", because=repr(error))
         return None
     return found if isinstance(found, kind) else None
+
+
+def supervisor_of(automaton: Automaton) -> Supervisor:
+    """The supervisor of `automaton`: remembered, or computed here and now, and then remembered.
+
+    Raises `SynthesisError` if there is none.
+    """
+    where = cache()
+    known = None
+    if where is not None:
+        analysis = remembered(where, automaton, Analysis)
+        known = analysis.supervisor if analysis is not None else remembered(where, automaton, Supervisor)
+    if known is None:
+        known = synthesise(automaton)
+        if where is not None:
+            remember(where, automaton, known)
+    return known
 
 
 def _file(where: Path, automaton: Automaton, kind: type) -> Path:

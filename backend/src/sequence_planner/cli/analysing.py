@@ -14,6 +14,7 @@ from typing import Annotated
 
 import typer
 
+from sequence_planner.analysis import remembering
 from sequence_planner.analysis.analysis import COUNTING, Analysis, analyses, everything, without_numbers
 from sequence_planner.analysis.document import (
     AnalysisDocument,
@@ -30,7 +31,6 @@ from sequence_planner.checking.connections import Connections
 from sequence_planner.checking.warning import ModelWarning
 from sequence_planner.cli.options import refuse
 from sequence_planner.memory_limit import USUAL
-from sequence_planner.synthesis.supervision import synthesise
 
 Deadline = Annotated[
     float,
@@ -113,7 +113,7 @@ def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Sup
         return read_supervisor(automaton, known.supervisor)
     try:
         with within(deadline):
-            return synthesise(automaton)
+            return remembering.supervisor_of(automaton)
     except TimeoutError:
         refuse(f"the safe states could not be computed within {deadline:g} s: let fewer variables bear on them")
     except MemoryError:

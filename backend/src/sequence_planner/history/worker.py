@@ -15,6 +15,7 @@ from typing import Any
 
 import structlog
 
+from sequence_planner.analysis.remembering import supervisor_of
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.history.branch import branch
 from sequence_planner.history.error import HistoryError
@@ -28,7 +29,7 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
-from sequence_planner.synthesis.supervision import SynthesisError, synthesise
+from sequence_planner.synthesis.supervision import SynthesisError
 
 LOG = structlog.get_logger(__name__)
 _NICENESS = 10  # ticks come first, and plans
@@ -47,7 +48,7 @@ class _Room:
 
     @cached_property
     def _supervisor(self) -> Supervisor:
-        return synthesise(self._station.automaton)
+        return supervisor_of(self._station.automaton)
 
     def answer(self, question: Question) -> Answer:
         """What is asked. Raises `HistoryError`, and what else keeps it from being answered."""
