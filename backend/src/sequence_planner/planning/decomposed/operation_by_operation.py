@@ -56,7 +56,7 @@ class OperationByOperation:
 
     @collection_put_off()
     def solve(self, task: Task, budget: Budget) -> Finding:
-        """A plan by way of operations; nothing where none seems to lead to the goals, or not all of the way."""
+        """A plan by way of operations; nothing for goals that are near, or where no operation leads on."""
         began = time.monotonic()
         if self._work is None or self._work.task is not task:
             self._work = self._begun(task)
@@ -97,12 +97,14 @@ class OperationByOperation:
         return Interference(self._automaton)
 
     def _begun(self, task: Task) -> _Work | None:
-        """Nothing done yet; None where no operation is on the way."""
-        if not task.goals or not self._automaton.operations:
+        """Nothing done yet; None where all operations on the way can be pursued already: those are not far."""
+        operations = self._automaton.operations
+        goals = [goal.predicate for goal in task.goals]
+        on_the_way = self._operations.towards(task.state, goals) if operations else None
+        if not on_the_way or all(holds(operations[name].precondition, task.state) for name in on_the_way):
             return None
         possible = reachable(self._automaton, task.state, task.circumstances).possible
-        work = _Work(task, Space(self._compiled, self._supervisor, task, at_once=False), possible)
-        return work if next(self._milestones(work), None) is not None else None
+        return _Work(task, Space(self._compiled, self._supervisor, task, at_once=False), possible)
 
     def _advanced(self, work: _Work, budget: Budget) -> bool:
         """Go on to the goal of an operation, or to the goals themselves; False when there is no way on."""

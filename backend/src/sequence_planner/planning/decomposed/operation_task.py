@@ -32,14 +32,20 @@ class OperationTask(RelaxedPredicates):
             heads = tuple(self.graph.fact(*fact) for fact in brought[name])
             self.graph.rule(self._needs(operation.precondition), heads, (Kind.OPERATION, name))
 
-    def towards(self, state: State, goals: Iterable[Expression], possible: Possible) -> tuple[str, ...] | None:
-        """Operations that seem to lead from `state` to `goals`, where variables may have the values `possible`.
+    def towards(
+        self, state: State, goals: Iterable[Expression], possible: Possible | None = None
+    ) -> tuple[str, ...] | None:
+        """Operations that seem to lead from `state` to `goals`, where variables may have the values `possible`, or any.
 
         Those that can be pursued sooner come first. None if nothing seems to lead there.
         """
         nodes = [self.reaching(goal) for goal in goals]
         done = ((Kind.OPERATION, name) for name, each in self._automaton.operations.items() if holds(each.goal, state))
-        never = (operator for operator, (name, value) in self._assumed.items() if value not in possible[name])
+        never = (
+            operator
+            for operator, (name, value) in self._assumed.items()
+            if possible is not None and value not in possible[name]
+        )
         found = Estimator(self.graph, frozenset((*done, *never)), _PRICES).estimate(state, nodes)
         if found is None:
             return None
