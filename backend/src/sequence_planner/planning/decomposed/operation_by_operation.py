@@ -8,7 +8,6 @@ What is found is a plan like any other, made short, and says nothing about other
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator
 from functools import cached_property
 
 from sequence_planner.automaton.compiled import CompiledTick
@@ -20,6 +19,7 @@ from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.decomposed.operation_task import OperationTask
 from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.heuristic.best_first import HeuristicSearch
 from sequence_planner.planning.heuristic.interference import Interference
 from sequence_planner.planning.heuristic.space import Move, Position, Space
@@ -40,7 +40,7 @@ class _Work:
         self.possible = possible
         self.ticks: tuple[PlanTick, ...] = ()
         self.position = space.begin()
-        self.in_vain: set[str | None] = set()
+        self.in_vain: set[Goals] = set()
         self.seconds = 0.0
 
 
@@ -107,28 +107,32 @@ class OperationByOperation:
         return _Work(task, Space(self._compiled, self._supervisor, task, at_once=False), possible)
 
     def _advanced(self, work: _Work, budget: Budget) -> bool:
-        """Go on to the goal of an operation, or to the goals themselves; False when there is no way on."""
-        values = work.position.run.values
-        for name in (*self._milestones(work), None):
-            if name in work.in_vain:
+        """Go on to the next milestone that can be reached, or to the goals; False when there is no way on."""
+        for goals in (*self._milestones(work), work.position.goals):
+            if goals in work.in_vain:
                 continue
-            goals = work.position.goals if name is None else (Goal(name, self._automaton.operations[name].goal),)
-            part = replace(work.task, state=dict(values), goals=goals)
+            part = replace(work.task, state=dict(work.position.run.values), goals=goals)
             ticks = self._search.ticks(part, budget, _MOST_POSITIONS)
             if ticks and len(work.ticks) + len(ticks) <= work.task.longest:
                 after = _walked(work.space, work.position, ticks)
                 if after is not None:
                     work.position, work.ticks, work.in_vain = after, (*work.ticks, *ticks), set()
                     return True
-            work.in_vain.add(name)
+            work.in_vain.add(goals)
         return False
 
-    def _milestones(self, work: _Work) -> Iterator[str]:
-        """The operations whose goals can be pursued now, of those that seem to lead to what is still missing."""
+    def _milestones(self, work: _Work) -> list[Goals]:
+        """Of the operations that seem to lead to what is missing: goals that can be pursued, then preconditions."""
         values, goals = work.position.run.values, [goal.predicate for goal in work.position.goals]
+        now: list[Goals] = []
+        later: list[Goals] = []
         for name in self._operations.towards(values, goals, work.possible) or ():
-            if holds(self._automaton.operations[name].precondition, values):
-                yield name
+            operation = self._automaton.operations[name]
+            if holds(operation.precondition, values):
+                now.append((Goal(name, operation.goal),))
+            else:
+                later.append((Goal(name, operation.precondition),))
+        return now + later
 
 
 def _walked(space: Space, position: Position, ticks: tuple[PlanTick, ...]) -> Position | None:
