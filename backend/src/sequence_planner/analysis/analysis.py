@@ -19,7 +19,9 @@ from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor
 from sequence_planner.synthesis.unmeetable import why_unmeetable
 
-COUNTING = "the number of states"  # the last that is computed
+COUNTING = "the number of states"  # the last that is computed, where it is not soon done
+MOST_COUNTING = 50_000_000  # nodes, see `Effort`: a station that runs has other things to do
+_SOON = 2_000_000  # nodes, see `Effort`: whoever waits for guards does not notice
 
 
 @dataclass(frozen=True)
@@ -39,10 +41,11 @@ class Analysis:
     warnings: tuple[ModelWarning, ...] | None = None
 
 
-def analyses(automaton: Automaton, counting: int | None = None) -> Iterator[Analysis]:
+def analyses(automaton: Automaton, counting: int = MOST_COUNTING) -> Iterator[Analysis]:
     """What is found of `automaton`, again and again, each time more of it.
 
-    No more is spent on `counting` states than so much `Effort`; None: as much as it takes.
+    No more is spent on `counting` states than so much `Effort`: with 0 they are not counted. Where they soon are, their
+    numbers come first.
     """
     found = Analysis("the safe states")
     yield found
@@ -54,26 +57,19 @@ def analyses(automaton: Automaton, counting: int | None = None) -> Iterator[Anal
     else:
         found = replace(found, supervisor=supervisor(supervision), pending="the findings")
         yield found
+        found = _counted(found, supervision, min(counting, _SOON))
+        yield found
         found = replace(found, warnings=tuple(check_supervision(automaton, supervision)), pending="the guards")
         yield found
         found = replace(found, guards=shown_guards(supervision))
     found = replace(found, pending=COUNTING)
     yield found
-    effort = None if counting is None else Effort(counting)
-    with contextlib.suppress(TooMuchError):
-        whole = _of_all_variables(supervision)
-        diagrams = whole.plant.diagrams
-        found = replace(found, reachable_states=diagrams.count(whole.reachable(supervised=False, effort=effort)))
-        yield found
-        if found.supervisor is not None:
-            states = whole.reachable(supervised=True, effort=effort)
-            found = replace(found, supervised_states=diagrams.count(states))
-    yield replace(found, pending=None)
+    yield replace(_counted(found, supervision, counting), pending=None)
 
 
 def without_numbers(automaton: Automaton) -> Iterator[Analysis]:
     """What is found of `automaton` but for numbers of states, which few wait for."""
-    for found in analyses(automaton):
+    for found in analyses(automaton, counting=0):
         yield found
         if found.pending == COUNTING:
             return
@@ -95,6 +91,21 @@ def _unmet(supervision: Supervision) -> ModelWarning:
     why = why_unmeetable(supervision.plant, supervision.forbidden)
     broken = () if why.trace is None else why.trace.breaks
     return unmeetable(automaton, why, place(automaton, *broken, "rest", *automaton.specifications))
+
+
+def _counted(found: Analysis, supervision: Supervision, most: int) -> Analysis:
+    """With the numbers of states that are not known yet, as far as so much `Effort` goes."""
+    if not most or (found.reachable_states is not None and found.supervised_states is not None):
+        return found
+    effort = Effort(most)
+    with contextlib.suppress(TooMuchError):
+        whole = _of_all_variables(supervision)
+        count = whole.plant.diagrams.count
+        if found.reachable_states is None:
+            found = replace(found, reachable_states=count(whole.reachable(supervised=False, effort=effort)))
+        if found.supervisor is not None:
+            found = replace(found, supervised_states=count(whole.reachable(supervised=True, effort=effort)))
+    return found
 
 
 def _of_all_variables(supervision: Supervision) -> Supervision:

@@ -21,7 +21,6 @@ from sequence_planner.forking.starting import hang_up, start
 from sequence_planner.memory_limit import MemoryLimit, memory_limit
 
 _NICENESS = 5  # ticks come first
-MOST_COUNTING = 50_000_000  # nodes, see `synthesis.effort`
 
 Word = TypeVar("Word")
 
@@ -43,11 +42,8 @@ class _Last:
 
 
 def analysing(automaton: Automaton) -> AbstractAsyncContextManager[AsyncIterator[Analysis]]:
-    """What synthesis finds of `automaton`, each time more of it, see `telling`. Raises `MemoryLimitError`.
-
-    Where there are too many states to be counted soon, they are not: a station that runs has other things to do.
-    """
-    return telling(memory_limit(), analyses, automaton, MOST_COUNTING)
+    """What synthesis finds of `automaton`, each time more of it, see `telling`. Raises `MemoryLimitError`."""
+    return telling(memory_limit(), analyses, automaton)
 
 
 @asynccontextmanager

@@ -37,6 +37,7 @@ Deadline = Annotated[
     typer.Option("--deadline", min=0.1, max=86_400, help="Seconds that it may take to find out about the model."),
 ]
 USUAL_DEADLINE = 120.0
+_COUNTING = 1_000_000  # nodes for each second of the deadline, see `synthesis.effort`: a twelfth of it or so
 _QUIET = 1.0  # seconds before anything is said about what is being done
 
 
@@ -74,7 +75,8 @@ def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Foun
     known = _kept(automaton, counts)
     if known is not None:
         return known
-    return _found(automaton, limits, _Hearing((analyses if counts else without_numbers, automaton)))
+    work = (analyses, automaton, int(limits.deadline * _COUNTING)) if counts else (without_numbers, automaton)
+    return _found(automaton, limits, _Hearing(work))
 
 
 def checked(automaton: Automaton, connections: Connections | None, limits: Limits) -> Found:

@@ -85,6 +85,8 @@ def _lines(automaton: Automaton, found: Found) -> Iterator[str]:
 def _counts(document: AnalysisDocument) -> str:
     if document.supervised is False:
         return "there is no supervisor"
+    if document.reachable_states is None and document.pending is None:
+        return "more states can be reached than could be counted"
     reachable = "? states" if document.reachable_states is None else counted(document.reachable_states, "state")
     supervised = "?" if document.supervised_states is None else f"{document.supervised_states}"
     return f"{reachable} can be reached, {supervised} of them with the supervisor"
