@@ -76,6 +76,8 @@ from sequence_planner.synthesis.guards import Guard
 LOG = structlog.get_logger(__name__)
 
 LOOK_EVERY = 0.05  # seconds between two looks at the clock
+LOOK_AT_REST = 0.2  # once there was no tick for a second: messages, commands and plans are heard at once all the same
+REST = 1.0
 PATIENCE = 1.0  # seconds for which outputs may wait for their record before nothing more is started
 MOST_UNWRITTEN = 100_000  # records; then nothing more is taken in, and no tick taken
 MOST_TICKS = 100  # in a row without anything new; then the station is taken to be restless
@@ -161,6 +163,7 @@ class Controller:
         self._again = False
         self._due = True  # a tick is wanted whatever the measurements say
         self._in_a_row = 0  # ticks that only followed from the one before
+        self._last = 0, 0.0  # how many ticks there were, and since when
 
     async def run(self) -> None:
         """Tick until cancelled."""
@@ -183,8 +186,12 @@ class Controller:
 
     def _rest(self) -> float:
         """Seconds until the next look at the clock: at the latest when a stage of a pipeline waits for it."""
+        now, ticks = time.monotonic(), self.execution.ticks
+        if ticks != self._last[0]:
+            self._last = ticks, now
+        look = LOOK_EVERY if now - self._last[1] < REST else LOOK_AT_REST
         due = self.devices.due(self._release.released is not None)
-        return LOOK_EVERY if due is None else min(LOOK_EVERY, max(0.0, due - time.monotonic()))
+        return look if due is None else min(look, max(0.0, due - now))
 
     @property
     def commands(self) -> bool:
@@ -230,6 +237,11 @@ class Controller:
     def last_record(self) -> int:
         """The number of the last record of what has happened, which may not be durable yet."""
         return self._writer.end.number
+
+    @property
+    def progress(self) -> tuple[int, int]:
+        """What changes whenever something has happened: numbers of ticks, and of what was recorded."""
+        return self.execution.ticks, self._writer.end.number
 
     async def until_recorded(self, number: int, patience: float) -> bool:
         """Whether what has happened up to a record is durable, or becomes so within so many seconds."""

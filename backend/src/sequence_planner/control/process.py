@@ -47,6 +47,7 @@ LOG = structlog.get_logger(__name__)
 
 SETTLED_WITHIN = 10.0  # seconds in which a process beside one that has died says that all of its is recorded
 SHOW_EVERY = 0.1  # seconds between two views
+SHOW_AT_REST = 0.5  # while nothing happens: only times and numbers change
 WISH_LASTS = 60.0  # seconds for which a station that stands by minds that somebody wanted to stop it
 RECORD_AGAIN = 5.0  # seconds
 NODE = "sequence_planner"
@@ -329,13 +330,16 @@ class _Life:
         return controller.view().model_copy(update={"deployment": self._deployment.view(), "standby": standby})
 
     async def _show(self, controller: Controller) -> None:
-        failed = ""
+        failed, shown, due = "", None, 0.0
         while True:
-            try:
-                self._link.publish(self._seen(controller))
-            except Exception as error:  # who looks on is told that nothing is heard; the station goes on
-                if failed != (failed := repr(error)):
-                    LOG.exception("the station cannot be shown")
+            now, stands = time.monotonic(), (controller.progress, self._deployment.view())
+            if stands != shown or now >= due:
+                shown, due = stands, now + SHOW_AT_REST
+                try:
+                    self._link.publish(self._seen(controller))
+                except Exception as error:  # who looks on is told that nothing is heard; the station goes on
+                    if failed != (failed := repr(error)):
+                        LOG.exception("the station cannot be shown")
             await asyncio.sleep(SHOW_EVERY)
 
     async def _show_preparing(self) -> None:
