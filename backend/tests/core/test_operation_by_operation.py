@@ -127,6 +127,22 @@ def test_operations_come_in_the_order_in_which_they_can_be_pursued() -> None:
     assert towards(station, state, "at == machine_2", offline="station") is None
 
 
+def test_an_operation_does_not_bring_what_another_is_for() -> None:
+    states = EnumerationType(("empty", "placed", "tight"))
+    station = automaton(
+        {"place": Does(start=("bolt := placed",)), "tighten": Does(start=("bolt := tight",), enabled="bolt == placed")},
+        estimated={"bolt": (states, "empty")},
+        goals={"placing": "bolt != empty", "tightening": "bolt == tight"},
+    )
+    operations = dict(station.operations)
+    operations["tightening"] = replace(
+        operations["tightening"], precondition=resolve_predicate(parse("bolt == placed"), Scope(station.types))
+    )
+    station = replace(station, operations=operations)
+    assert towards(station, initial_state(station), "bolt == tight") == ("placing", "tightening")
+    assert towards(station, initial_state(station), "bolt != empty") == ("placing",)
+
+
 def test_it_is_no_engine_where_no_operation_leads_to_the_goals() -> None:
     station = line(3)
     task = Task(initial_state(station), goals_of(station, ("stage_0",)), contract=Contract.FAST)

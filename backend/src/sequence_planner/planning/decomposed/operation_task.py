@@ -1,12 +1,15 @@
 """The relaxed task of operations: which of them, in which order, seem to lead to goals.
 
 An operation is taken to bring every value that its goal allows, once its precondition holds, and nothing to undo any.
-What no operation brings is assumed to come about, at a price, if it can at all: the plan of each operation sees to it.
+Where its goal allows several values of a variable, it does not bring one that is all that another one's goal allows: a
+bolt that is no longer missing is not tight yet, if there is an operation for that. What no operation brings is assumed to
+come about, at a price, if it can at all: the plan of each operation sees to it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections import Counter
+from collections.abc import Iterable, Iterator, Mapping
 
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.evaluation import evaluate, holds
@@ -17,6 +20,8 @@ from sequence_planner.planning.heuristic.graph import Graph, Kind, Operator
 from sequence_planner.planning.heuristic.relaxed_predicates import RelaxedPredicates
 from sequence_planner.planning.relaxed.relaxation import Possible
 
+_Fact = tuple[str, Value]
+
 _PRICES = {Kind.ASSUMPTION: 4}  # of operations: what one of them brings is seldom cheaper to be had otherwise
 
 
@@ -25,7 +30,9 @@ class OperationTask(RelaxedPredicates):
 
     def __init__(self, automaton: Automaton) -> None:
         super().__init__(automaton)
-        brought = {name: dict.fromkeys(self._allowed(each.goal)) for name, each in automaton.operations.items()}
+        brought = _attributed(
+            {name: dict.fromkeys(self._allowed(each.goal)) for name, each in automaton.operations.items()}
+        )
         self._brought = frozenset(fact for facts in brought.values() for fact in facts)
         self._assumed: dict[Operator, tuple[str, Value | None]] = {}
         for name, operation in automaton.operations.items():
@@ -60,7 +67,7 @@ class OperationTask(RelaxedPredicates):
             self.graph.rule((Graph.TRUE,), (node,), operator)
         return node
 
-    def _allowed(self, predicate: Expression, truth: bool = True) -> Iterator[tuple[str, Value]]:
+    def _allowed(self, predicate: Expression, truth: bool = True) -> Iterator[_Fact]:
         """The values of variables that a part of `predicate` has if it is `truth`."""
         match predicate:
             case Not(operand):
@@ -80,3 +87,17 @@ class OperationTask(RelaxedPredicates):
                 for values in self._combinations(names):
                     if evaluate(predicate, values) is truth:
                         yield from values.items()
+
+
+def _attributed(allowed: Mapping[str, Iterable[_Fact]]) -> dict[str, list[_Fact]]:
+    """What each operation brings of what its goal allows."""
+    only: set[_Fact] = set()
+    for facts in allowed.values():
+        values = Counter(name for name, _ in facts)
+        only.update(fact for fact in facts if values[fact[0]] == 1)
+    brought: dict[str, list[_Fact]] = {}
+    for operation, facts in allowed.items():
+        values = Counter(name for name, _ in facts)
+        own = [fact for fact in facts if values[fact[0]] == 1 or fact not in only]
+        brought[operation] = own or list(facts)
+    return brought
