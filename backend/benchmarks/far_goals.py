@@ -1,9 +1,9 @@
 """Goals that are far away on the truck engine station: from the empty station, from moments of a day, and after faults.
 
-Run with `make bench`; `--seed` draws the same again, `--quick` draws few, and both it and `--alone` ask no peer. The times are CPU time of
-fast plans, of this process without its start and without the safe states. A cold planner knows nothing of the station;
-a warm one has been asked all that stands before. ABC (`bmc3`) looks for a shortest plan, in a circuit that is made
-beforehand; nobody else here takes the station's question.
+Run with `make bench`; `--seed` draws the same again, `--quick` draws few, and both it and `--alone` ask no peer. The
+times are CPU time of fast plans, of this process without its start and without the safe states. A cold planner knows
+nothing of the station; a warm one has been asked all that stands before. ABC (`bmc3`) looks for a shortest plan, in a
+circuit that is made beforehand; nobody else here takes the station's question.
 """
 
 from __future__ import annotations

@@ -2,8 +2,8 @@
 
 An operation is taken to bring every value that its goal allows, once its precondition holds, and nothing to undo any.
 Where its goal allows several values of a variable, it does not bring one that is all that another one's goal allows: a
-bolt that is no longer missing is not tight yet, if there is an operation for that. What no operation brings is assumed to
-come about, at a price, if it can at all: the plan of each operation sees to it.
+bolt that is no longer missing is not tight yet, if there is an operation for that. What no operation brings is assumed
+to come about, at a price, if it can at all: the plan of each operation sees to it.
 """
 
 from __future__ import annotations
