@@ -56,7 +56,7 @@ def check(given_: Problem, planner: Planner | None = None) -> None:
     """
     station, supervisor, state = given_.automaton, given_.supervisor, given_.state
     planner = planner or Planner(station, supervisor)
-    relaxed = relaxation.reachable(station, state, given_.circumstances)
+    relaxed = relaxation.reachable(station, state, given_.circumstances, supervisor)
     possible = tuple(goal for goal in given_.goals if relaxed.may(goal.predicate))
     some = expected(given_, possible)
     all_ = expected(given_, tuple(goal for goal in possible if reachable(given_, goal)))
@@ -116,7 +116,7 @@ def test_plans_keep_to_formulas_and_circumstances(given_: Problem) -> None:
 @examples(150)
 @given(made_by(lambda choices: problem(choices, unknown=choices.chance(2), demanding=choices.chance(2))))
 def test_no_goal_that_can_be_reached_is_called_unreachable(given_: Problem) -> None:
-    relaxed = relaxation.reachable(given_.automaton, given_.state, given_.circumstances)
+    relaxed = relaxation.reachable(given_.automaton, given_.state, given_.circumstances, given_.supervisor)
     for goal in given_.goals:
         if relaxed.may(goal.predicate):
             continue

@@ -127,7 +127,7 @@ class Prover:
         hindered = circumstances.offline or circumstances.barred or _unknown(task.state)
         if not hindered and not self._refuted and self._more is None:
             return True
-        relaxed = reachable(self.automaton, task.state, circumstances)
+        relaxed = reachable(self.automaton, task.state, circumstances, self.supervisor)
         if all(relaxed.may(goal.predicate) for goal in task.goals):
             return True
         self._keep(task, unreached(self.automaton, relaxed))

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from itertools import product
 from math import prod
 
+from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Flag, State, target
 from sequence_planner.automaton.transitions import Transition, transitions
 from sequence_planner.expressions.evaluation import evaluate
@@ -29,6 +30,7 @@ from sequence_planner.expressions.syntax import (
 )
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.plan import Circumstances, Clause, Literal, Proof
+from sequence_planner.planning.relaxed.permission import Permission
 
 Possible = Mapping[str, set[Value | None]]
 
@@ -36,13 +38,16 @@ Possible = Mapping[str, set[Value | None]]
 _MOST_COMBINATIONS = 4096
 
 
-def reachable(automaton: Automaton, state: State, circumstances: Circumstances) -> Relaxation:
+def reachable(
+    automaton: Automaton, state: State, circumstances: Circumstances, supervisor: Supervisor | None = None
+) -> Relaxation:
     """All that runs from `state` can make of variables and flags, and perhaps more.
 
-    Operations stay as active as they are.
+    Operations stay as active as they are. With a `supervisor` nothing starts that it never allows, which takes longer.
     """
     first: dict[str, set[Value | None]] = {name: {value} for name, value in state.items()}
-    return Relaxation(automaton, first, counted_on(automaton, circumstances))
+    permission = None if supervisor is None else Permission(supervisor)
+    return Relaxation(automaton, first, counted_on(automaton, circumstances), permission)
 
 
 def unreached(automaton: Automaton, relaxed: Relaxation) -> Proof:
@@ -63,22 +68,44 @@ def counted_on(automaton: Automaton, circumstances: Circumstances) -> tuple[Tran
 
 
 class Relaxation:
-    """What each variable and flag may become from `first`, where each has some values already, by `moves`."""
+    """What each variable and flag may become from `first`, where each has some values already, by permitted `moves`."""
 
-    def __init__(self, automaton: Automaton, first: Possible, moves: Iterable[Transition]) -> None:
+    def __init__(
+        self, automaton: Automaton, first: Possible, moves: Iterable[Transition], permission: Permission | None = None
+    ) -> None:
         self._automaton = automaton
+        self._permission = permission
         self.possible = {name: set(values) for name, values in first.items()}
         self._true: set[tuple[int, bool]] = set()  # expressions known to have a truth value, which they never lose
         self._kept: list[Expression] = []  # so that no identity is given to another expression
         steps: list[Transition | Flag] = [*automaton.flags, *moves]
+        permitted: set[int] = set()
         readers: dict[str, list[int]] = defaultdict(list)
         for number, step in enumerate(steps):
             for name in set(variables(step.predicate)) if isinstance(step, Flag) else step.reads:
                 readers[name].append(number)
         waiting = dict.fromkeys(range(len(steps)))
+        held: dict[int, Transition] = {}  # that only the supervisor keeps from being taken
         while waiting:
-            for name in self._taken(steps[waiting.popitem()[0]]):
-                waiting.update(dict.fromkeys(readers[name]))
+            number = waiting.popitem()[0]
+            step = steps[number]
+            if (
+                permission is not None
+                and isinstance(step, Transition)
+                and step.controllable
+                and number not in permitted
+            ):
+                if self.may(step.guard):
+                    held[number] = step
+            else:
+                for name in self._taken(step):
+                    waiting.update(dict.fromkeys(readers[name]))
+            if not waiting and held:  # once nothing else is to be done, as this takes longest
+                now = [each for each, start in held.items() if self._may_start(start)]
+                permitted.update(now)
+                for each in now:
+                    del held[each]
+                waiting.update(dict.fromkeys(now))
 
     def may(self, predicate: Expression, truth: bool = True) -> bool:
         """Whether some choice of possible values may give `predicate` the value `truth`."""
@@ -90,6 +117,9 @@ class Relaxation:
         self._true.add(key)
         self._kept.append(predicate)
         return True
+
+    def _may_start(self, start: Transition) -> bool:
+        return self._permission is None or self._permission.may(start, self.possible)
 
     def _taken(self, step: Transition | Flag) -> list[str]:
         """Take a step if it may be; what has gained values."""

@@ -10,15 +10,16 @@ from sequence_planner.planning.relaxed.relaxation import reachable, unreached
 
 
 class Relaxing:
-    """Proves that a goal cannot be reached where not even the delete relaxation reaches it."""
+    """Proves that a goal cannot be reached where not even the delete relaxation reaches it under the supervisor."""
 
     name = "relaxation"
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self._automaton = automaton
+        self._supervisor = supervisor
 
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A proof, or nothing."""
-        relaxed = reachable(self._automaton, task.state, task.circumstances)
+        relaxed = reachable(self._automaton, task.state, task.circumstances, self._supervisor)
         reached = all(relaxed.may(goal.predicate) for goal in task.goals)
         return Finding() if reached else Finding(proof=unreached(self._automaton, relaxed))
