@@ -18,7 +18,10 @@ from sequence_planner.emulation.truck_station.node import NODE_TYPES, PACKAGE, P
 from sequence_planner.emulation.truck_station.poses import PAIRS, POSES
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.types import Value
-from sequence_planner.planning.plan import Contract, PlanAnswer, PlanRequest, Verdict, goal_of, goals_of
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.pdr.certificate import check
+from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest, Verdict, goal_of, goals_of
 from sequence_planner.planning.planner import Planner
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.synthesis.supervision import synthesise
@@ -139,6 +142,20 @@ def test_what_is_an_engine_away_is_planned_from_the_empty_station(operations: tu
     assert answer.plan is not None
     assert len(answer.plan.ticks) < FAR[operations]
     assert not TIMED or time.process_time() - began < (LONGEST_FAR if len(operations) == 1 else LONGEST_WHOLE)
+
+
+@pytest.mark.parametrize("operation", ["mount_ladder_frame", "tighten_bolt_pair(AtBoltPair1TCPPose)"])
+def test_without_its_planning_scene_the_robot_is_known_at_once_to_go_nowhere(operation: str) -> None:
+    """What the scene has is not known, so the supervisor lets nothing start that moves the robot."""
+    station, supervisor, _, _ = ready()
+    goals = goals_of(station.automaton, (operation,))
+    silent = situation({"scene.attached": None})
+    circumstances = Circumstances(offline=frozenset({"scene"}))
+    request = PlanRequest(silent, goals, 60.0, contract=Contract.FAST, circumstances=circumstances)
+    answer = Planner(station.automaton, supervisor).answer(request)
+    assert (answer.verdict, answer.engine) == (Verdict.NONE_AT_ALL, "relaxation")
+    assert answer.proof is not None
+    check(station.automaton, supervisor, Task(silent, goals, circumstances), answer.proof, Budget.seconds(60))
 
 
 def test_the_robot_goes_down_to_placed_bolts_only_once_the_tool_was_told_to_turn() -> None:
