@@ -24,6 +24,7 @@ from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.pdr.invariants import asserted, is_met
 from sequence_planner.planning.plan import Goal, Proof
+from sequence_planner.planning.reasons.relaxed_reason import relaxed_proof
 
 # The supervisor of the specifications with these names, and of no others.
 SupervisorFor = Callable[[frozenset[str]], Supervisor]
@@ -133,7 +134,7 @@ class _Explanation:
         automaton = self._automaton
         situation = _Situation(task, frozenset(automaton.specifications), frozenset(automaton.variables))
         try:
-            proven = self._proven(situation)
+            proven = self._excluded(situation) or self._proven(situation)
         except SpentError:
             return None
         if proven is None:
@@ -153,14 +154,39 @@ class _Explanation:
         """Whether one pass is enough. A value that is awaited is none of those that a free variable may have."""
         return None not in task.state.values() and synchronise(self._automaton, task.state) == dict(task.state)
 
+    def _excluded(self, situation: _Situation) -> tuple[_Situation, Proof] | None:
+        """As much of the situation as it takes for the relaxation to exclude a plan; None if it does not.
+
+        Best without any specification: to find out which of them matter takes synthesis, again and again.
+        """
+        automaton = self._automaton
+        for names in (frozenset[str](), situation.specifications):
+            supervisor = self._supervisor_for(names) if names else None
+            here = replace(situation, specifications=names)
+            proof = relaxed_proof(automaton, here.task, here.fixed, supervisor)
+            if proof is None:
+                continue
+            for member in tuple(here.members(automaton)):
+                self._budget.require()
+                fewer = here.without(member)
+                if member.part is Part.SPECIFICATION or not fewer.task.goals or _is_awaited(member):
+                    continue
+                eased = relaxed_proof(automaton, fewer.task, fewer.fixed, supervisor)
+                if eased is not None:
+                    here, proof = fewer, eased
+            return here, self._engine(names).checked(here.task, self._budget, self._free(here), proof)
+        return None
+
+    def _engine(self, names: frozenset[str]) -> Reachability:
+        if names not in self._engines:
+            self._engines[names] = Reachability(self._automaton, self._supervisor_for(names))
+        return self._engines[names]
+
     def _proven(self, situation: _Situation) -> tuple[_Situation, Proof] | None:
         """As much of the situation as it takes for a proof that there is no plan; None if there is one."""
         if not situation.task.goals:
             return None
-        names = situation.specifications
-        if names not in self._engines:
-            self._engines[names] = Reachability(self._automaton, self._supervisor_for(names))
-        engine, task = self._engines[names], situation.task
+        engine, task = self._engine(situation.specifications), situation.task
         decision = engine.decide(task, self._budget, self._free(situation))
         if decision.proof is None:
             self._certain &= decision.certain
@@ -193,6 +219,11 @@ class _Explanation:
         if name in predicates:
             return read_variables(self._automaton, (predicates[name],))
         return frozenset({name} & self._automaton.variables.keys())
+
+
+def _is_awaited(member: Member) -> bool:
+    """Whether it is a variable that has no value yet."""
+    return member.part is Part.VALUE and member.value is None
 
 
 def _undemanding(goal: Goal) -> Goal:
