@@ -23,7 +23,10 @@ from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.certificate import check
 from sequence_planner.planning.plan import Circumstances, Contract, PlanAnswer, PlanRequest, Verdict, goal_of, goals_of
 from sequence_planner.planning.planner import Planner
+from sequence_planner.planning.reasons.diagnosis import diagnose
+from sequence_planner.planning.reasons.why import Part
 from sequence_planner.station import ReadyStation, prepare_station
+from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import synthesise
 
 MODEL = Path(__file__).parents[3] / "models" / "truck_engine_station"
@@ -156,6 +159,25 @@ def test_without_its_planning_scene_the_robot_is_known_at_once_to_go_nowhere(ope
     assert (answer.verdict, answer.engine) == (Verdict.NONE_AT_ALL, "relaxation")
     assert answer.proof is not None
     check(station.automaton, supervisor, Task(silent, goals, circumstances), answer.proof, Budget.seconds(60))
+
+
+def test_what_a_robot_that_is_offline_makes_impossible_is_explained_by_that_alone() -> None:
+    """Of the twenty specifications none is named, as none of them matters, and what would help has been planned."""
+    station, supervisor, _, _ = ready()
+    automaton, state = station.automaton, situation({})
+    goals = goals_of(automaton, ("mount_ladder_frame",))
+    task = Task(state, goals, Circumstances(offline=frozenset({"robot"})))
+    found = diagnose(automaton, supervisor, FewerSpecifications(automaton, supervisor), task, Budget.seconds(60))
+    assert found.reason is not None
+    assert found.reason.minimal
+    assert {(each.part, each.name) for each in found.reason.members} == {
+        (Part.VALUE, "ladder_frame"),
+        (Part.VALUE, "robot.pose"),
+        (Part.OFFLINE, "robot"),
+        (Part.GOAL, "mount_ladder_frame"),
+    }
+    changes = [[change.name for change in each.changes] for each in found.corrections]
+    assert changes[0] == ["robot"]
 
 
 def test_the_robot_goes_down_to_placed_bolts_only_once_the_tool_was_told_to_turn() -> None:

@@ -17,6 +17,7 @@ from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.pdr.invariants import asserted, satisfies
 from sequence_planner.planning.plan import Contract, Plan, Proof
+from sequence_planner.planning.reasons.ready_answers import ReadyAnswers
 from sequence_planner.planning.replaying.acceptance import Acceptance
 from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.replaying.tightening import tightened
@@ -72,6 +73,7 @@ class _Corrections:
         self._budget = budget
         self._most_changes = most_changes
         self._engine = Reachability(automaton, supervisor)
+        self._ready = ReadyAnswers(automaton, supervisor)
         self._acceptance = Acceptance(automaton, supervisor)
         self._refuted: list[tuple[Task, Proof]] = []
 
@@ -132,7 +134,9 @@ class _Corrections:
             return Plan((), minimal_ticks=True, minimal_starts=True)
         if any(_covers(refuted, proof, task) for refuted, proof in self._refuted):
             return None
-        finding = self._engine.solve(task, self._budget)
+        finding = self._ready.answer(task, self._budget)
+        if not finding.decided:
+            finding = self._engine.solve(task, self._budget)
         if finding.plan is None:
             if finding.proof is None:
                 raise SpentError

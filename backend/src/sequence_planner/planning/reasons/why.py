@@ -13,7 +13,7 @@ from enum import StrEnum
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import TRUE
@@ -21,10 +21,13 @@ from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Task
+from sequence_planner.planning.pdr.certificate import CertificateError
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.pdr.invariants import asserted, is_met
 from sequence_planner.planning.plan import Goal, Proof
+from sequence_planner.planning.reasons.ready_answers import ReadyAnswers
 from sequence_planner.planning.reasons.relaxed_reason import relaxed_proof
+from sequence_planner.planning.replaying.replay import missing
 
 # The supervisor of the specifications with these names, and of no others.
 SupervisorFor = Callable[[frozenset[str]], Supervisor]
@@ -128,6 +131,7 @@ class _Explanation:
         self._supervisor_for = supervisor_for
         self._budget = budget
         self._engines: dict[frozenset[str], Reachability] = {}
+        self._ready: dict[frozenset[str], ReadyAnswers] = {}
         self._certain = True  # that there is a plan wherever nothing has been proven, in the last pass
 
     def of(self, task: Task) -> Reason | None:
@@ -144,8 +148,11 @@ class _Explanation:
             while not minimal:
                 before, self._certain = proven[0], True
                 for member in tuple(before.members(automaton)):
-                    if member in tuple(proven[0].members(automaton)):  # else an earlier proof did without it
-                        proven = self._proven(proven[0].without(member)) or proven
+                    if member not in tuple(proven[0].members(automaton)):
+                        continue  # an earlier proof did without it
+                    fewer = proven[0].without(member)
+                    if not self._has_plan(fewer, member):
+                        proven = self._proven(fewer) or proven
                 minimal = self._monotone(task) or proven[0] == before
         situation, proof = proven
         return Reason(tuple(situation.members(automaton)), minimal and self._certain, proof)
@@ -174,8 +181,28 @@ class _Explanation:
                 eased = relaxed_proof(automaton, fewer.task, fewer.fixed, supervisor)
                 if eased is not None:
                     here, proof = fewer, eased
-            return here, self._engine(names).checked(here.task, self._budget, self._free(here), proof)
+            with suppress(CertificateError):  # flags that no value decides are not told apart where some is awaited
+                return here, self._engine(names).checked(here.task, self._budget, self._free(here), proof)
         return None
+
+    def _has_plan(self, situation: _Situation, without: Member) -> bool:
+        """Whether a plan is soon found without a member, with nothing else different: then it is needed."""
+        automaton, task = self._automaton, situation.task
+        if not task.goals or _is_awaited(without):
+            return False
+        names = situation.specifications
+        if names not in self._ready:
+            self._ready[names] = ReadyAnswers(automaton, self._supervisor_for(names))
+        states: list[State] = [task.state]
+        if without.part is Part.VALUE:
+            domain = automaton.variables[without.name].type.domain
+            others = (value for value in domain if value != without.value)
+            states = [synchronise(automaton, {**task.state, without.name: value}) for value in others]
+        return any(
+            self._ready[names].answer(replace(task, state=state), self._budget).plan is not None
+            for state in states
+            if missing(task.goals, state) == task.goals  # what holds already may not once the next tick looks
+        )
 
     def _engine(self, names: frozenset[str]) -> Reachability:
         if names not in self._engines:
