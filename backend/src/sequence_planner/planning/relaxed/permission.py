@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
-from sequence_planner.automaton.state_set import EVERYTHING, StateSet, Supervisor
+from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, StateSet, Supervisor
 from sequence_planner.automaton.structure import target
 from sequence_planner.automaton.transitions import Phase, Transition
 from sequence_planner.expressions.syntax import Constant
@@ -35,23 +35,27 @@ class Permission:
         self, possible: Mapping[str, set[Value | None]], written: Mapping[str, set[bool | int | str]]
     ) -> bool:
         """Whether a safe state may have `written` values, or else `possible` ones; of an unknown variable every one."""
-        known = {0: False, 1: True}
         axes = [(possible[name], written.get(name)) for name in self._safe.names]
-
-        def may(reference: int) -> bool:
-            if reference not in known:
-                axis, children = self._safe.nodes[reference - _FIRST_NODE]
-                values, instead = axes[axis]
-                if instead is None and values == {None}:
-                    known[reference] = all(may(child) for child in children)
-                else:
-                    positions = self._positions[axis]
-                    known[reference] = any(
-                        may(children[positions[value]]) for value in instead or values if value is not None
-                    )
-            return known[reference]
-
-        return may(self._safe.root)
+        children: dict[int, tuple[bool, list[int]]] = {}  # whether every one of them must be, and which
+        pending = [self._safe.root]
+        while pending:
+            reference = pending.pop()
+            if reference in children or reference < _FIRST_NODE:
+                continue
+            axis, branches = self._safe.nodes[reference - _FIRST_NODE]
+            values, instead = axes[axis]
+            if instead is None and values == {None}:
+                children[reference] = True, list(branches)
+            else:
+                positions = self._positions[axis]
+                known = (value for value in instead or values if value is not None)
+                children[reference] = False, [branches[positions[value]] for value in known]
+            pending.extend(children[reference][1])
+        may = {NOTHING: False, EVERYTHING: True}
+        for reference in sorted(children):  # a node comes after those it refers to
+            every, below = children[reference]
+            may[reference] = (all if every else any)(may[each] for each in below)
+        return may[self._safe.root]
 
     @cached_property
     def _positions(self) -> tuple[dict[Value, int], ...]:
