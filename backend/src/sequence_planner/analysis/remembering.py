@@ -15,16 +15,15 @@ import tempfile
 from pathlib import Path
 from typing import Final, TypeVar
 
-import structlog
-
 from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.analysis.never_together import NeverTogether
 from sequence_planner.analysis.store import folder, key
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.late_log import LateLog
 from sequence_planner.synthesis.supervision import synthesise
 
-LOG = structlog.get_logger(__name__)
+LOG = LateLog(__name__)
 NAMES: Final[dict[type, str]] = {
     Analysis: "analysis",
     NeverTogether: "never-together",

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-
-from sqlalchemy import URL, make_url
-from sqlalchemy.exc import ArgumentError
+from typing import TYPE_CHECKING
 
 from sequence_planner.storage.error import StorageError
+
+if TYPE_CHECKING:  # importing it takes longer than all else that many a command does, and few of them have a database
+    from sqlalchemy import URL
 
 _SQLITE = ("sqlite", "sqlite+pysqlite")
 _POSTGRESQL = ("postgresql", "postgres", "postgresql+psycopg")
@@ -40,6 +41,8 @@ class PostgresqlServer:
 
 def address(url: str) -> SqliteFile | PostgresqlServer:
     """What a URL names. Raises `StorageError`, which never quotes the URL, as it may hold a password."""
+    from sqlalchemy.exc import ArgumentError  # noqa: PLC0415
+
     try:
         read = read_url(url)
     except (ArgumentError, ValueError):
@@ -59,6 +62,8 @@ def read_url(url: str) -> URL:
 
     Raises `ArgumentError` and `ValueError`.
     """
+    from sqlalchemy import make_url  # noqa: PLC0415
+
     read = make_url(url)
     passwords = read.normalized_query.get("password")
     if not passwords:

@@ -16,9 +16,9 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
-import structlog
+from sequence_planner.late_log import LateLog
 
-LOG = structlog.get_logger(__name__)
+LOG = LateLog(__name__)
 
 STARTING = 10.0  # seconds within which a file must have been loaded
 MOST_LINES = 20  # of what is printed during one call, in the log

@@ -1,0 +1,23 @@
+"""A log for modules of commands that seldom have something to say: structlog takes longer to import than they do."""
+
+from __future__ import annotations
+
+
+class LateLog:
+    """As `structlog.get_logger`, but that nothing is imported before something is said."""
+
+    def __init__(self, name: str) -> None:
+        self._name = name
+
+    def info(self, event: str, **values: object) -> None:
+        """Say what goes on."""
+        self._say("info", event, values)
+
+    def warning(self, event: str, **values: object) -> None:
+        """Say what somebody should look at."""
+        self._say("warning", event, values)
+
+    def _say(self, level: str, event: str, values: dict[str, object]) -> None:
+        import structlog  # noqa: PLC0415
+
+        getattr(structlog.get_logger(self._name), level)(event, **values)
