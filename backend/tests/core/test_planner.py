@@ -56,7 +56,7 @@ def check(given_: Problem, planner: Planner | None = None) -> None:
     """
     station, supervisor, state = given_.automaton, given_.supervisor, given_.state
     planner = planner or Planner(station, supervisor)
-    relaxed = relaxation.reachable(station, state, given_.circumstances, supervisor)
+    relaxed = relaxation.reachable(station, state, given_.circumstances)
     possible = tuple(goal for goal in given_.goals if relaxed.may(goal.predicate))
     some = expected(given_, possible)
     all_ = expected(given_, tuple(goal for goal in possible if reachable(given_, goal)))

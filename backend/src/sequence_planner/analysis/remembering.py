@@ -8,6 +8,7 @@ decides what is safe.
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import os
 import pickle
 import stat
@@ -30,6 +31,7 @@ NAMES: Final[dict[type, str]] = {
     Supervisor: "supervisor",
 }  # how files begin
 MOST_KEPT: Final = 20  # files of each kind; the oldest are removed
+_DIGEST: Final = 32  # bytes of SHA-256, before what is kept
 
 Found = TypeVar("Found", Analysis, NeverTogether, Supervisor)
 
@@ -50,7 +52,8 @@ def remember(where: Path, automaton: Automaton, found: Analysis | NeverTogether 
         return
     try:
         with tempfile.NamedTemporaryFile(dir=where, delete=False) as file:
-            pickle.dump(found, file)
+            content = pickle.dumps(found)
+            file.write(hashlib.sha256(content).digest() + content)
         Path(file.name).replace(_file(where, automaton, type(found)))
         of_its_kind = sorted(where.glob(f"{NAMES[type(found)]}-*"), key=lambda each: each.stat().st_mtime, reverse=True)
         for each in of_its_kind[MOST_KEPT:]:
@@ -65,7 +68,10 @@ def remembered(where: Path, automaton: Automaton, kind: type[Found]) -> Found | 
         if not _is_own(where):
             return None
         with _file(where, automaton, kind).open("rb") as file:
-            found = pickle.load(file)
+            digest, content = file.read(_DIGEST), file.read()
+        if hashlib.sha256(content).digest() != digest:
+            raise ValueError("it is damaged")
+        found = pickle.loads(content)
     except FileNotFoundError:
         return None
     except Exception as error:  # whatever a damaged file makes of it
@@ -79,16 +85,27 @@ def supervisor_of(automaton: Automaton) -> Supervisor:
 
     Raises `SynthesisError` if there is none.
     """
-    where = cache()
-    known = None
-    if where is not None:
-        analysis = remembered(where, automaton, Analysis)
-        known = analysis.supervisor if analysis is not None else remembered(where, automaton, Supervisor)
+    known = known_supervisor(automaton)
     if known is None:
         known = synthesise(automaton)
-        if where is not None:
-            remember(where, automaton, known)
+        remember_supervisor(automaton, known)
     return known
+
+
+def known_supervisor(automaton: Automaton) -> Supervisor | None:
+    """The supervisor of `automaton` if it is remembered in the user's cache."""
+    where = cache()
+    if where is None:
+        return None
+    analysis = remembered(where, automaton, Analysis)
+    return analysis.supervisor if analysis is not None else remembered(where, automaton, Supervisor)
+
+
+def remember_supervisor(automaton: Automaton, found: Supervisor) -> None:
+    """Keep a supervisor in the user's cache, if there is one."""
+    where = cache()
+    if where is not None:
+        remember(where, automaton, found)
 
 
 def _file(where: Path, automaton: Automaton, kind: type) -> Path:

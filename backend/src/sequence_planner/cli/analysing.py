@@ -14,7 +14,6 @@ from typing import Annotated
 
 import typer
 
-from sequence_planner.analysis import remembering
 from sequence_planner.analysis.analysis import COUNTING, Analysis, analyses, everything, without_numbers
 from sequence_planner.analysis.document import (
     AnalysisDocument,
@@ -23,6 +22,7 @@ from sequence_planner.analysis.document import (
     supervisor_document,
 )
 from sequence_planner.analysis.process import SynthesisEndedError, telling
+from sequence_planner.analysis.remembering import known_supervisor, remember_supervisor
 from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
@@ -31,13 +31,14 @@ from sequence_planner.checking.connections import Connections
 from sequence_planner.checking.warning import ModelWarning
 from sequence_planner.cli.options import refuse
 from sequence_planner.memory_limit import USUAL
+from sequence_planner.synthesis.supervision import synthesise
 
 Deadline = Annotated[
     float,
     typer.Option("--deadline", min=0.1, max=86_400, help="Seconds that it may take to find out about the model."),
 ]
 USUAL_DEADLINE = 120.0
-_COUNTING = 1_000_000  # nodes for each second of the deadline, see `synthesis.effort`: a twelfth of it or so
+_COUNTING = 120_000_000  # nodes, see `synthesis.effort`: ten seconds or so, whatever the deadline is
 _QUIET = 1.0  # seconds before anything is said about what is being done
 
 
@@ -75,7 +76,7 @@ def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Foun
     known = _kept(automaton, counts)
     if known is not None:
         return known
-    work = (analyses, automaton, int(limits.deadline * _COUNTING)) if counts else (without_numbers, automaton)
+    work = (analyses, automaton, _COUNTING) if counts else (without_numbers, automaton)
     return _found(automaton, limits, _Hearing(work))
 
 
@@ -113,13 +114,17 @@ def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Sup
     known = kept(automaton)
     if known is not None and known.supervisor is not None:
         return read_supervisor(automaton, known.supervisor)
+    if (remembered := known_supervisor(automaton)) is not None:
+        return remembered
     try:
         with within(deadline):
-            return remembering.supervisor_of(automaton)
+            found = synthesise(automaton)
     except TimeoutError:
         refuse(f"the safe states could not be computed within {deadline:g} s: let fewer variables bear on them")
     except MemoryError:
         refuse("the safe states have outgrown the memory set aside for them: let fewer variables bear on them")
+    remember_supervisor(automaton, found)
+    return found
 
 
 @contextmanager

@@ -29,6 +29,7 @@ def document(answer: PlanAnswer, diagnosis: Diagnosis | None) -> dict[str, Any]:
         "goals": answer.goals,
         "left_out": answer.left_out,
         "undecided": answer.undecided,
+        "begin": None,
         "starts": [] if plan is None else [name for _, name in plan.starts],
         "ticks": len(ticks),
         "schedule": [{"effects": tick.effects, "starts": tick.starts} for tick in ticks],

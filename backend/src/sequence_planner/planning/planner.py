@@ -165,7 +165,7 @@ class Planner:
         """The goals that the delete relaxation does not exclude, and the proof for others, if there are any."""
         from sequence_planner.planning.relaxed.relaxation import reachable, unreached  # noqa: PLC0415
 
-        relaxed = reachable(self._automaton, request.state, request.circumstances, self._supervisor)
+        relaxed = reachable(self._automaton, request.state, request.circumstances)
         possible = tuple(goal for goal in goals if relaxed.may(goal.predicate))
         return possible, None if possible == goals else unreached(self._automaton, relaxed)
 

@@ -158,7 +158,7 @@ class Trimmer:
         while position.goals:
             happening = self._space.everything(position, helpful)
             later = self._space.wait(position, happening)
-            if later is None or len(ticks) >= most:
+            if later is None or len(ticks) >= most or self._budget.spent:
                 return None
             if position.begun and later.key == position.key:
                 if not left:

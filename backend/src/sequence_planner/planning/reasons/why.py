@@ -188,8 +188,8 @@ class _Explanation:
     def _has_plan(self, situation: _Situation, without: Member) -> bool:
         """Whether a plan is soon found without a member, with nothing else different: then it is needed."""
         automaton, task = self._automaton, situation.task
-        if not task.goals or _is_awaited(without):
-            return False
+        if not task.goals or _is_awaited(without) or any(task.state[name] is None for name in self._free(situation)):
+            return False  # one that is awaited, and free, is to have any value but to be awaited still
         names = situation.specifications
         if names not in self._ready:
             self._ready[names] = ReadyAnswers(automaton, self._supervisor_for(names))
