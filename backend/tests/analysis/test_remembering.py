@@ -12,6 +12,7 @@ from sequence_planner.analysis import remembering
 from sequence_planner.analysis.analysis import Analysis, analyses
 from sequence_planner.analysis.never_together import NeverTogether
 from sequence_planner.analysis.remembering import MOST_KEPT, cache, remember, remembered, supervisor_of
+from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.types import BOOLEAN
 
@@ -44,6 +45,18 @@ def test_nothing_is_known_at_first_or_of_a_damaged_file(folder: Path) -> None:
     [file] = folder.iterdir()
     file.write_bytes(b"\x80\x04nonsense")
     assert remembered(folder, lamp("lamp"), Analysis) is None
+
+
+def test_a_file_of_which_one_bit_is_wrong_is_not_believed(folder: Path) -> None:
+    """Another set of safe states would be one in which robots are let loose."""
+    remember(folder, lamp("lamp"), supervisor_of(lamp("lamp")))
+    [file] = folder.iterdir()
+    content = file.read_bytes()
+    for place in range(0, len(content), 7):
+        file.write_bytes(content[:place] + bytes([content[place] ^ 4]) + content[place + 1 :])
+        assert remembered(folder, lamp("lamp"), Supervisor) is None
+    file.write_bytes(content)
+    assert remembered(folder, lamp("lamp"), Supervisor) == supervisor_of(lamp("lamp"))
 
 
 def test_a_folder_that_others_can_use_is_neither_written_nor_read(folder: Path) -> None:

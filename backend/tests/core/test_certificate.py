@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import pytest
 from hypothesis import given
 
 from sequence_planner.planning.budget import Budget
@@ -12,6 +13,7 @@ from sequence_planner.planning.pdr.certificate import CertificateError, check
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.pdr.invariants import asserted, is_met
 from sequence_planner.planning.plan import Clause, Literal, Proof
+from sequence_planner.planning.relaxed import permission
 from sequence_planner.planning.relaxed.relaxation import reachable, unreached
 from sequence_planner.planning.replaying.replay import missing
 
@@ -55,6 +57,15 @@ def test_what_the_relaxation_excludes_is_a_proof(given_: Problem) -> None:
             task = Task(given_.state, impossible, given_.circumstances)
             assert accepted(given_, task, unreached(given_.automaton, relaxed))
     assert excluded[0] <= excluded[1]
+
+
+@examples(20)
+@given(made_by(some_problem))
+def test_where_a_supervisor_is_too_large_to_be_looked_at_nothing_is_excluded_for_its_sake(given_: Problem) -> None:
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(permission, "_MOST_NODES", -1)
+        relaxed = reachable(given_.automaton, given_.state, given_.circumstances, given_.supervisor)
+    assert relaxed.possible == reachable(given_.automaton, given_.state, given_.circumstances).possible
 
 
 def with_claim(choices: Choices) -> tuple[Problem, Clause]:

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection
 from dataclasses import replace
 from functools import cache
+from random import Random
 
+import pytest
 from hypothesis import given
 
 from sequence_planner.automaton.state_set import Supervisor
@@ -92,6 +94,13 @@ def test_reasons_suffice_and_each_member_is_needed(given_: Problem) -> None:
 @given(made_by(demanding))
 def test_so_they_do_with_formulas_and_circumstances(given_: Problem) -> None:
     explains(given_)
+
+
+@pytest.mark.parametrize("seed", [103448, 900574])
+def test_a_plan_for_a_value_that_is_still_awaited_makes_nothing_needed(seed: int) -> None:
+    """Whoever frees a variable that is awaited lets it have any value, and not be awaited for ever."""
+    choices = Choices(Random(seed).randrange)
+    assert explains(problem(choices, unknown=True, demanding=choices.chance(2)))
 
 
 def specified(choices: Choices) -> Problem:
