@@ -90,7 +90,8 @@ def test_the_last_of_many_stages_is_reached_by_way_of_all_of_them() -> None:
     assert finding.plan is not None
     assert Acceptance.of(station, EVERYTHING).accepts(task, finding.plan)
     assert len(finding.plan.ticks) > DEPTH
-    assert len(finding.plan.starts) == 32 * 4 + 1  # only the last one need be open in the end
+    # Only the last one need be open in the end; how many others are left open depends on the time there is.
+    assert 32 * 4 + 1 <= len(finding.plan.starts) <= 32 * 5
     assert (finding.proof, finding.searched) == (None, 0)
 
 
