@@ -15,7 +15,7 @@ from sequence_planner.immutable import Immutable
 
 # References to nodes: the two sets that test no variable, and then the nodes in their order.
 NOTHING, EVERYTHING = 0, 1
-_FIRST = 2
+FIRST_NODE = 2
 
 Node = tuple[int, tuple[int, ...]]  # the position of the variable in `names`; a reference for each value of its domain
 
@@ -43,7 +43,7 @@ class StateSet(Immutable):
             if reference == EVERYTHING or reference in seen:
                 continue
             seen.add(reference)
-            axis, children = self.nodes[reference - _FIRST]
+            axis, children = self.nodes[reference - FIRST_NODE]
             value = state[self.names[axis]]
             if value is None:
                 pending.extend(children)
@@ -68,7 +68,7 @@ class StateSet(Immutable):
             if NOTHING in references:
                 return NOTHING
             if references not in memo:
-                axis = min(self.nodes[reference - _FIRST][0] for reference in references)
+                axis = min(self.nodes[reference - FIRST_NODE][0] for reference in references)
                 branches = [
                     frozenset(self._branch(reference, axis, position) for reference in references)
                     for position in range(len(self.domains[axis]))
@@ -104,8 +104,8 @@ class StateSet(Immutable):
             best.append(priced.index(costs[-1]))
         changes: dict[str, Value] = {}
         reference = self.root
-        while reference >= _FIRST:
-            axis, children = self.nodes[reference - _FIRST]
+        while reference >= FIRST_NODE:
+            axis, children = self.nodes[reference - FIRST_NODE]
             other = self.domains[axis][best[reference]]
             if state[self.names[axis]] not in (None, other):
                 changes[self.names[axis]] = other
@@ -147,9 +147,9 @@ class StateSet(Immutable):
 
     def _branch(self, reference: int, axis: int, position: int) -> int:
         """The set of `reference` where the variable at `axis`, none later than the next tested, has that value."""
-        if reference < _FIRST or self.nodes[reference - _FIRST][0] != axis:
+        if reference < FIRST_NODE or self.nodes[reference - FIRST_NODE][0] != axis:
             return reference
-        return self.nodes[reference - _FIRST][1][position]
+        return self.nodes[reference - FIRST_NODE][1][position]
 
     @cached_property
     def _positions(self) -> tuple[dict[Value, int], ...]:
@@ -166,7 +166,7 @@ class Builder:
         """The reference to what tests the variable at `axis`, and goes on in `children`."""
         if len(set(children)) == 1:
             return children[0]
-        return self._references.setdefault((axis, children), len(self._references) + _FIRST)
+        return self._references.setdefault((axis, children), len(self._references) + FIRST_NODE)
 
     def built(self, names: tuple[str, ...], domains: tuple[tuple[Value, ...], ...], root: int) -> StateSet:
         """The set that begins at `root`, with the nodes that it needs and no others."""
@@ -179,11 +179,11 @@ class Builder:
             if reference in number:
                 pending.pop()
                 continue
-            axis, children = nodes[reference - _FIRST]
+            axis, children = nodes[reference - FIRST_NODE]
             if missing := [child for child in dict.fromkeys(children) if child not in number]:
                 pending.extend(reversed(missing))
                 continue
-            number[reference] = len(kept) + _FIRST
+            number[reference] = len(kept) + FIRST_NODE
             kept.append((axis, tuple(number[child] for child in children)))
             pending.pop()
         return StateSet(names, domains, tuple(kept), number[root])

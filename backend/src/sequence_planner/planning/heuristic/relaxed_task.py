@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, StateSet, Supervisor
+from sequence_planner.automaton.state_set import EVERYTHING, FIRST_NODE, NOTHING, StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton, reads, target
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import Assignment, Constant
@@ -71,7 +71,7 @@ class RelaxedTask(RelaxedPredicates):
             return Graph.TRUE if reference == EVERYTHING else Graph.FALSE
         key = (id(states), reference)
         if key not in self._sets:
-            axis, children = states.nodes[reference - 2]
+            axis, children = states.nodes[reference - FIRST_NODE]
             name = states.names[axis]
             branches = [
                 self.graph.all_of((self._fact(name, value), self._member(states, child)))

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 
-from sequence_planner.automaton.state_set import EVERYTHING, NOTHING, StateSet, Supervisor
+from sequence_planner.automaton.state_set import EVERYTHING, FIRST_NODE, NOTHING, StateSet, Supervisor
 from sequence_planner.automaton.structure import target
 from sequence_planner.automaton.transitions import Phase, Transition
 from sequence_planner.expressions.syntax import Constant
 from sequence_planner.expressions.types import Value
 
 _MOST_NODES = 80_000  # of safe states that are looked at in all: a fifth of a second
-_FIRST_NODE = 2  # the references before it are those of nothing and of everything
 
 
 class Permission:
@@ -45,9 +44,9 @@ class Permission:
         pending = [self._safe.root]
         while pending:
             reference = pending.pop()
-            if reference in children or reference < _FIRST_NODE:
+            if reference in children or reference < FIRST_NODE:
                 continue
-            axis, branches = self._safe.nodes[reference - _FIRST_NODE]
+            axis, branches = self._safe.nodes[reference - FIRST_NODE]
             values, instead = axes[axis]
             if instead is None and values == {None}:
                 children[reference] = True, list(branches)
