@@ -79,8 +79,10 @@ def test_what_texts_show_the_solver_finds_too(given_: Problem) -> None:
             assert not told.order_matters(one, other)
 
 
-def ends(station: Automaton, given_: Problem, settled: State, order: Sequence[str] | None) -> set[tuple[object, ...]]:
-    """All states at the end of the tick: with starts in any order, or as parts of `order`."""
+def ends(
+    station: Automaton, given_: Problem, settled: State, order: Sequence[str] | None, restart: bool
+) -> set[tuple[object, ...]]:
+    """All states at the end of the tick: with starts in any order, or as parts of `order`; `restart` allows more."""
     found = {(tuple(settled.values()), frozenset[str](), 0)}
     pending = [(settled, frozenset[str](), 0)]
     while pending:
@@ -90,7 +92,7 @@ def ends(station: Automaton, given_: Problem, settled: State, order: Sequence[st
         )
         for following, name in choices:
             ability = station.abilities[name]
-            if name in taken or ability.restart:
+            if name in taken or (ability.restart and not restart):
                 continue
             after = supervised_start(station, given_.supervisor, given_.state, state, ability)
             if after is None:
@@ -107,9 +109,12 @@ def ends(station: Automaton, given_: Problem, settled: State, order: Sequence[st
 def test_a_tick_without_needless_starts_ends_wherever_one_can(given_: Problem) -> None:
     station = given_.automaton
     sweep = Sweep(station, given_.supervisor, known=True)
-    order = [ability.name for ability in sweep.complete(Budget.seconds(60))]
-    if given_.supervisor.safe.includes(given_.state):
-        assert ends(station, given_, given_.state, order) == ends(station, given_, given_.state, None)
+    for restart in (False, True):
+        order = [ability.name for ability in sweep.complete(Budget.seconds(60), restart=restart)]
+        assert restart or not any(station.abilities[name].restart for name in order)
+        if given_.supervisor.safe.includes(given_.state):
+            anyhow = ends(station, given_, given_.state, None, restart)
+            assert ends(station, given_, given_.state, order, restart) == anyhow
 
 
 def test_what_is_done_and_undone_at_will_is_not_repeated() -> None:

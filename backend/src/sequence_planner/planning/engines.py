@@ -83,7 +83,7 @@ LANES = (
     Lane(
         "search",
         {
-            Contract.MINIMAL: ("breadth-first", "search", "operation by operation"),
+            Contract.MINIMAL: ("projection", "breadth-first", "search", "operation by operation"),
             Contract.FAST: ("operation by operation", "search"),
         },
     ),
@@ -98,6 +98,7 @@ ALONE = Lane(
             "first sight",
             "partial sight",
             "bmc",
+            "projection",
             "relaxation",
             "pdr",
             "breadth-first",

@@ -27,22 +27,24 @@ class Orders:
         self._given = given
         self._sweep = Sweep(automaton, supervisor)
         self._automaton = automaton
-        self._whole: dict[frozenset[str], Order] = {}
+        self._whole: dict[tuple[bool, frozenset[str]], Order] = {}
 
     def whole(self, task: Task, budget: Budget) -> Order:
         """For the automaton. Raises `SpentError`."""
         if self._given is not None:
             return self._given
         told_apart = _told_apart(self._sweep, self._automaton, task)
-        if told_apart not in self._whole:
-            self._whole[told_apart] = self._sweep.complete(budget, told_apart)
-        return self._whole[told_apart]
+        restart = task.circumstances.restart
+        if (restart, told_apart) not in self._whole:
+            self._whole[restart, told_apart] = self._sweep.complete(budget, told_apart, restart)
+        return self._whole[restart, told_apart]
 
     def part(self, seen: Localised, task: Task, budget: Budget) -> Order:
         """For what is seen of it; what is not seen can make starts exclude each other. Raises `SpentError`."""
         if self._given is None and len(self._automaton.abilities) > _FEW:
             sweep = Sweep(seen.automaton, seen.supervisor)
-            own = seen.order(sweep.complete(budget, _told_apart(sweep, seen.automaton, task)))
+            told_apart = _told_apart(sweep, seen.automaton, task)
+            own = seen.order(sweep.complete(budget, told_apart, task.circumstances.restart))
             if len(own) <= max(_MANY, len(seen.automaton.abilities)):
                 return own
         return seen.order(self.whole(task, budget))

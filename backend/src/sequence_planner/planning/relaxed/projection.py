@@ -17,7 +17,7 @@ from sequence_planner.expressions.syntax import Expression
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.plan import Contract, Plan
+from sequence_planner.planning.plan import Plan
 from sequence_planner.planning.relaxed.likely_order import likely_order
 from sequence_planner.planning.relaxed.part import part_of
 from sequence_planner.planning.relaxed.relaxed_plan import RelaxedPlan
@@ -53,7 +53,7 @@ class _Work:
 
 
 class Projection:
-    """Fast plans for one automaton under one supervisor; asked again, it goes on where the budget was spent."""
+    """Fast plans for one automaton under one supervisor, by any contract; asked again, it goes on where it stopped."""
 
     name = "projection"
 
@@ -70,9 +70,7 @@ class Projection:
 
     @collection_put_off()
     def solve(self, task: Task, budget: Budget) -> Finding:
-        """A plan, if freezing what does not seem to matter leaves one that replays; nothing by another contract."""
-        if task.contract is not Contract.FAST:
-            return Finding()
+        """A plan, if freezing what does not seem to matter leaves one that replays; nothing is proven of it."""
         if self._work is None or self._work.task is not task:
             outline = self.outline(task)
             if outline is None:

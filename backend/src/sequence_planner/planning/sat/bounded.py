@@ -36,7 +36,7 @@ class BoundedModelChecking:
         self._thorough = thorough
         self._sweep = Sweep(automaton, supervisor)
         self._sweep_of_known = Sweep(automaton, supervisor, known=True)  # states
-        self._searches: OrderedDict[tuple[bool, frozenset[str]] | None, Searches] = OrderedDict()
+        self._searches: OrderedDict[tuple[bool, tuple[bool, frozenset[str]] | None], Searches] = OrderedDict()
 
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A plan of the fewest ticks, or up to how many there is none.
@@ -72,11 +72,11 @@ class BoundedModelChecking:
         quickly = task.contract is Contract.FAST and not self._thorough
         if len(seen) > _MOST_SEEN:
             seen = frozenset()
-        known = None not in task.state.values()
-        key = None if quickly else (known, seen)
+        known, restart = None not in task.state.values(), task.circumstances.restart
+        key = restart, None if quickly else (known, seen)
         if key not in self._searches:
             sweep = self._sweep_of_known if known else self._sweep
-            order = sweep.quick() if quickly else sweep.complete(budget, seen)
+            order = sweep.quick(restart) if quickly else sweep.complete(budget, seen, restart)
             self._searches[key] = Searches(self._automaton, self._supervisor, order)
             if len(self._searches) > _KEPT:
                 self._searches.popitem(last=False)[1].close()

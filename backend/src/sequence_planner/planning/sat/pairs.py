@@ -30,16 +30,17 @@ class Pairs:
         self._published = self._encoding.initial(frozenset(), determined=automaton.flag_predicates.keys())
         self._circuit.require(self._encoding.safe(self._state))
         self._first: dict[str, tuple[int, SymbolicState]] = {}
+        self._second: dict[tuple[str, str], tuple[int, SymbolicState]] = {}
 
     def order_matters(self, one: str, other: str) -> bool:
         """Whether in some safe state `one` then `other` can start, and the other way round not, or differently."""
-        first_now, between = self._started(one)
-        second_then, end = self._start(other, between)
+        first_now, _ = self._started(one)
+        second_then, end = self._both(one, other)
         if Circuit.FALSE in (first_now, second_then):
             return False
-        second_now, between_other = self._started(other)
-        first_then, end_other = self._start(one, between_other)
-        names = sorted({target(action) for name in (one, other) for action in self._abilities[name].start_actions})
+        second_now, _ = self._started(other)
+        first_then, end_other = self._both(other, one)
+        names = self._written(one, other)
         exchangeable = self._circuit.conjunction((second_now, first_then, *self._same(names, end, end_other)))
         undone = self._circuit.conjunction(self._same(names, end, self._state)) if self._known else Circuit.FALSE
         if Circuit.TRUE in (exchangeable, undone) or -first_now in (second_then, exchangeable):
@@ -54,6 +55,16 @@ class Pairs:
         if name not in self._first:
             self._first[name] = self._start(name, self._state)
         return self._first[name]
+
+    def _both(self, one: str, other: str) -> tuple[int, SymbolicState]:
+        """Whether `other` can start after `one`, and what they have written then; either order of a pair needs both."""
+        if (one, other) not in self._second:
+            then, end = self._start(other, self._started(one)[1])
+            self._second[one, other] = then, {name: end[name] for name in self._written(one, other)}
+        return self._second[one, other]
+
+    def _written(self, one: str, other: str) -> list[str]:
+        return sorted({target(action) for name in (one, other) for action in self._abilities[name].start_actions})
 
     def _start(self, name: str, state: SymbolicState) -> tuple[int, SymbolicState]:
         return self._encoding.start(self._abilities[name], state, self._published, Circuit.TRUE)

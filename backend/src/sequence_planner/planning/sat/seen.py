@@ -37,7 +37,8 @@ class _Part:
     def __init__(self, automaton: Automaton, supervisor: Supervisor, kept: frozenset[str]) -> None:
         self._seen = localised(automaton, supervisor, kept)
         self._sweep = Sweep(self._seen.automaton, self._seen.supervisor, known=True)
-        self._search: Search | None = None
+        self._searches: dict[bool, Search] = {}  # by whether restart abilities may start
+        self._latest: Search | None = None
 
     @property
     def finishing(self) -> frozenset[str]:
@@ -46,25 +47,28 @@ class _Part:
 
     def plan(self, task: Task, promising: Callable[[Plan], bool], budget: Budget) -> Plan | None:
         """As `Search.plan`. Raises `SpentError` too."""
-        seen = self._seen
-        if self._search is None:
-            order = seen.order(self._sweep.complete(budget))
+        seen, restart = self._seen, task.circumstances.restart
+        if restart not in self._searches:
+            order = seen.order(self._sweep.complete(budget, restart=restart))
             oracles = frozenset(seen.oracles)
-            self._search = Search(seen.automaton, seen.supervisor, order, frozenset(), inside=True, oracles=oracles)
-        return self._search.plan(
+            self._searches[restart] = Search(
+                seen.automaton, seen.supervisor, order, frozenset(), inside=True, oracles=oracles
+            )
+        self._latest = self._searches[restart]
+        return self._latest.plan(
             seen.state(task.state), task.goals, task.circumstances, task.bound, budget, promising=promising
         )
 
     def made_of(self, plan: Plan) -> frozenset[str]:
         """The effects and abilities of `plan`, which has just been found, what finishes without a start included."""
-        assert self._search is not None
+        assert self._latest is not None
         taken = (name for tick in plan.ticks for name in (*tick.effects, *tick.starts))
-        return self._search.finishing(plan).union(taken)
+        return self._latest.finishing(plan).union(taken)
 
     def close(self) -> None:
-        """Give the memory of its solver back."""
-        if self._search is not None:
-            self._search.close()
+        """Give the memory of its solvers back."""
+        for search in self._searches.values():
+            search.close()
 
 
 _MOST_KEPT = 1000  # questions of which it is remembered what matters

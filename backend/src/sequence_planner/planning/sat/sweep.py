@@ -42,15 +42,16 @@ class Sweep:
         self._written = {a.name: frozenset(map(target, a.start_actions)) for a in automaton.abilities.values()}
         self._matters: dict[tuple[str, str], bool] = {}  # of pairs in circles
 
-    def complete(self, budget: Budget, seen: Set[str] = frozenset()) -> Order:
+    def complete(self, budget: Budget, seen: Set[str] = frozenset(), restart: bool = True) -> Order:
         """An order, with repetitions if need be, of which every possible order of starts is a part.
 
-        Of the abilities `seen` every state between two starts matters, so that none of them commute. Raises
-        `SpentError` when the budget is spent before it is known; what is known by then is not asked again.
+        Without `restart` it is of starts among which there are none of restart abilities. Of the abilities `seen` every
+        state between two starts matters, so that none of them commute. Raises `SpentError` when the budget is spent
+        before it is known; what is known by then is not asked again.
         """
-        before: dict[str, dict[str, None]] = {name: {} for name in self._automaton.abilities}
+        before: dict[str, dict[str, None]] = {name: {} for name in self._offered(restart)}
         for one, other in self._candidates:
-            if self._matters.get((one, other), True):
+            if one in before and other in before and self._matters.get((one, other), True):
                 before[other][one] = None
         together = [name for name in before if name in seen]
         for name in together:
@@ -76,8 +77,8 @@ class Sweep:
         """The abilities whose starts write one of the variables."""
         return frozenset(name for name, written in self._written.items() if not written.isdisjoint(names))
 
-    def quick(self) -> Order:
-        """Each ability once, as far as possible after those that write what it reads."""
+    def quick(self, restart: bool = True) -> Order:
+        """Each ability once, as far as possible after those that write what it reads; `restart` as in `complete`."""
         writers: dict[str, list[str]] = defaultdict(list)
         for name, written in self._written.items():
             for variable in written:
@@ -99,7 +100,12 @@ class Sweep:
 
         for name in self._automaton.abilities:
             visit(name)
-        return tuple(self._automaton.abilities[name] for name in ordered)
+        offered = self._offered(restart)
+        return tuple(offered[name] for name in ordered if name in offered)
+
+    def _offered(self, restart: bool) -> Mapping[str, Ability]:
+        abilities = self._automaton.abilities
+        return abilities if restart else {name: each for name, each in abilities.items() if not each.restart}
 
     @cached_property
     def _candidates(self) -> list[tuple[str, str]]:

@@ -11,7 +11,7 @@ from collections.abc import Collection, Iterable, Mapping
 from itertools import product
 from typing import NamedTuple
 
-from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.automaton.state_set import FIRST_NODE, StateSet
 from sequence_planner.automaton.structure import Flag
 from sequence_planner.expressions.evaluation import RELATIONS
 from sequence_planner.expressions.syntax import (
@@ -62,6 +62,7 @@ class Reading:
 
     def __init__(self, circuit: Circuit) -> None:
         self._circuit = circuit
+        self._members: dict[int, _Member] = {}  # by the identity of a set, which each keeps alive
 
     def truth(self, expression: Expression, state: SymbolicState) -> Truth:
         """A resolved predicate over `state`."""
@@ -123,16 +124,10 @@ class Reading:
 
     def member(self, states: StateSet, state: SymbolicState) -> int:
         """The literal that is true when `state` is in `states`, none of whose variables is unknown."""
-        literals = [Circuit.FALSE, Circuit.TRUE]
-        for axis, children in states.nodes:
-            symbol = state[states.names[axis]]
-            pairs = zip(states.domains[axis], children, strict=True)
-            literals.append(
-                self._circuit.disjunction(
-                    self._circuit.both(symbol.literal(value), literals[child]) for value, child in pairs
-                )
-            )
-        return literals[states.root]
+        member = self._members.get(id(states))
+        if member is None:
+            member = self._members[id(states)] = _Member(states, self._circuit)
+        return member.literal(state)
 
     def _all(self, truths: list[Truth]) -> Truth:
         yes = self._circuit.conjunction(truth.yes for truth in truths)
@@ -155,12 +150,14 @@ class Reading:
         if relation == "!=":
             equal = self._comparison("==", left, right)
             return Truth(equal.no, equal.yes)
-        holds = RELATIONS[relation]
-        yes = self._circuit.disjunction(
-            self._circuit.both(a, b)
-            for (value, a), (other, b) in product(left.literals.items(), right.literals.items())
-            if holds(value, other)
-        )
+        if relation == "==":
+            shared = [value for value in left.literals if value in right.literals]
+            pairs = [(left.literals[value], right.literals[value]) for value in shared]
+        else:
+            holds = RELATIONS[relation]
+            both = product(left.literals.items(), right.literals.items())
+            pairs = [(a, b) for (value, a), (other, b) in both if holds(value, other)]
+        yes = self._circuit.disjunction(self._circuit.both(a, b) for a, b in pairs)
         return Truth(yes, self._circuit.conjunction((left.known, right.known, -yes)))
 
     def _arithmetic(self, sign: str, left: Symbol, right: Symbol) -> Symbol:
@@ -170,6 +167,41 @@ class Reading:
             sums.setdefault(total, []).append(self._circuit.both(a, b))
         known = self._circuit.conjunction((left.known, right.known))
         return Symbol({total: self._circuit.disjunction(parts) for total, parts in sums.items()}, known)
+
+
+class _Member:
+    """Whether states are in one set; of a state that differs little from the last one little is read anew."""
+
+    def __init__(self, states: StateSet, circuit: Circuit) -> None:
+        self._states = states
+        self._circuit = circuit
+        self._last: list[Symbol | None] = [None] * len(states.names)
+        self._literals = [Circuit.FALSE, Circuit.TRUE, *(Circuit.FALSE for _ in states.nodes)]
+        tested = [0, 0]  # by node the variables that it and those it refers to test, as bits
+        for axis, children in states.nodes:
+            below = 1 << axis
+            for child in children:
+                below |= tested[child]
+            tested.append(below)
+        self._tested = tested[FIRST_NODE:]
+
+    def literal(self, state: SymbolicState) -> int:
+        """The literal that is true when `state` is in the set."""
+        states, literals, both = self._states, self._literals, self._circuit.both
+        changed = 0
+        for axis, name in enumerate(states.names):
+            symbol = state[name]
+            if symbol is not self._last[axis]:
+                self._last[axis] = symbol
+                changed |= 1 << axis
+        for number, (axis, children) in enumerate(states.nodes if changed else ()):
+            if self._tested[number] & changed:
+                read = self._last[axis]
+                assert read is not None
+                cases = zip(states.domains[axis], children, strict=True)
+                each = [both(read.literal(value), literals[child]) for value, child in cases]
+                literals[number + FIRST_NODE] = self._circuit.disjunction(each)
+        return literals[states.root]
 
 
 class FollowingState(dict[str, Symbol]):
