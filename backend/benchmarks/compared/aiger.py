@@ -12,11 +12,12 @@ from dataclasses import dataclass
 
 from compared.declaring import Problem
 
+from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.goals.tracking import Progress, Tracker
 from sequence_planner.planning.plan import Circumstances
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.encoding import Encoding
-from sequence_planner.planning.sat.sweep import sweep_order
+from sequence_planner.planning.sat.sweep import Sweep
 
 
 class _Gates(Circuit):
@@ -53,7 +54,8 @@ def aiger(problem: Problem, question: str) -> bytes:
     flags = frozenset(flag.name for flag in problem.automaton.flags)
     state = encoding.initial(frozenset(), determined=flags)
     circuit.demanded.clear()  # that a variable has one value is so in the state to begin with, and stays so
-    tick = encoding.tick(state, sweep_order(problem.automaton, problem.supervisor))
+    sweep = Sweep(problem.automaton, problem.supervisor, known=True)
+    tick = encoding.tick(state, sweep.complete(Budget.seconds(600), restart=Circumstances().restart))
     tracker = Tracker(circuit)
     latches: dict[int, _Latch] = {}
     for name, symbol in state.items():

@@ -57,21 +57,38 @@ class Sweep:
         for name in together:
             before[name] |= {other: None for other in together if other != name}
         for circle in circles(before):
-            self._open(before, circle, seen, budget)
+            if len(circle) > _FEW:
+                self._open(before, circle, seen, budget)
         return tuple(self._automaton.abilities[name] for name in linear(before))
 
     def _open(self, before: Before, circle: tuple[str, ...], seen: Set[str], budget: Budget) -> None:
-        """Take out of `before` the pairs in a circle whose order does not matter."""
+        """Take out of `before` the pairs in a circle whose order does not matter, as many as it takes to open it.
+
+        What agrees with an order in which all stand the right way round that are known to matter need not be asked.
+        """
         members = frozenset(circle)
-        for other in circle if len(circle) > _FEW else ():
-            for one in [name for name in before[other] if name in members]:
-                if one in seen and other in seen:
-                    continue
+        pairs = {(one, other): None for other in circle for one in before[other] if one in members}
+        while True:
+            known: Before = {name: {} for name in circle}
+            for one, other in pairs:
+                if self._matters.get((one, other)) or (one in seen and other in seen):
+                    known[other][one] = None
+            order = circles(known)
+            closed = len(order) < len(circle)  # by what matters indeed: then all that does not is taken out
+            place = {name: number for number, (name, *_) in enumerate(order)}
+            against = [
+                (one, other)
+                for one, other in pairs
+                if one not in known[other] and (closed or place[one] > place[other])
+            ]
+            if not against:
+                return
+            for one, other in against:
                 if (one, other) not in self._matters:
                     budget.require()
                     self._matters[one, other] = self._pairs.order_matters(one, other)
                 if not self._matters[one, other]:
-                    del before[other][one]
+                    del before[other][one], pairs[one, other]
 
     def writers(self, names: Set[str]) -> frozenset[str]:
         """The abilities whose starts write one of the variables."""
