@@ -35,15 +35,22 @@ def ordered(names: Sequence[str], groups: Iterable[Collection[str]]) -> tuple[st
 
 
 def hubs_first(order: Sequence[str], groups: Iterable[Collection[str]]) -> tuple[str, ...]:
-    """`order` with the variables first that occur in far more groups than most do.
+    """`order` with the variables that occur in far more groups than most do before all others that they occur with.
 
     They say which of many others something is about: a pose, of the bolts there. Below all of these, they would have to
     be told apart by every combination of their values.
     """
-    occurs = Counter(name for group in set(map(frozenset, groups)) for name in group)
+    distinct = set(map(frozenset, groups))
+    occurs = Counter(name for group in distinct for name in group)
     usual = sorted(occurs[name] for name in order)[len(order) // 2] if order else 0
     hubs = [name for name in order if occurs[name] > _FAR_MORE * usual]
-    return (*hubs, *(name for name in order if name not in hubs))
+    place = {name: (position, 1, 0) for position, name in enumerate(order) if name not in hubs}
+    first = {
+        hub: min((place[name][0] for group in distinct if hub in group for name in group if name in place), default=0)
+        for hub in hubs
+    }
+    place |= {hub: (first[hub], 0, number) for number, hub in enumerate(hubs)}
+    return tuple(sorted(order, key=place.__getitem__))
 
 
 def _span(order: Sequence[int], groups: Groups) -> int:

@@ -38,7 +38,10 @@ class Reaction:
     """Steps 1 to 3 of a tick: any set of compatible effects, then all finishes, on the state with the sensed values.
 
     Effects write measured variables, finishes the others. What is measured afterwards is chosen by relations, one for
-    each group of effects that write common variables; all else is a function of the state before and of what is sensed.
+    each group of effects that write common variables; all else is a function of the state before and of what is sensed,
+    and so a relation, too. They are taken one after the other, so that sets stay small in between: each does away with
+    what no other one asks for, values now or values afterwards (Burch et al. 1991, *Symbolic Model Checking with
+    Partitioned Transition Relations*).
     """
 
     def __init__(
@@ -52,29 +55,28 @@ class Reaction:
         self.finishes = self._finishing(abilities)
         finished = self._finished()
         self.changed = (*self.measured, *finished)
-        self._to_before = diagrams.substitution((*self._sensed_bits(self.measured), *self._finished_bits(finished)))
-        self._valid_before = diagrams.valid_of(finished)
-        self._to_now = diagrams.substitution(
-            (after, diagrams.bit(now))
-            for name in self.changed
-            for now, after in zip(diagrams.bits[name], diagrams.bits_after[name], strict=True)
-        )
-        self._schedule = self._scheduled(finished)
-        relations = [relation for relation, _ in self._schedule]
-        self.top = diagrams.top(relations, [bit for name in self.changed for bit in diagrams.bits[name]])
+        pairs = [
+            pair for name in self.changed for pair in zip(diagrams.bits[name], diagrams.bits_after[name], strict=True)
+        ]
+        self._to_after = diagrams.substitution((now, diagrams.bit(after)) for now, after in pairs)
+        self._to_now = diagrams.substitution((after, diagrams.bit(now)) for now, after in pairs)
+        ordered = self._ordered([*self._parts, *self._computed(finished)])
+        self._backwards = [(part.relation, self._bits_after(part.decides)) for part in ordered]
+        self._forwards = self._doing_away(ordered[::-1], [now for now, _ in pairs])
+        self.top = diagrams.top([part.relation for part in ordered], [now for now, _ in pairs])
 
     def after(self, states: Function) -> Function:
         """Where it can lead from `states`."""
-        for relation, done_with in self._schedule:
+        for relation, done_with in self._forwards:
             states = states.apply_exists(_AND, relation, done_with)
         return states.substitute(self._to_now)
 
     def before(self, states: Function) -> Function:
         """From where it can lead to `states`."""
-        states = states.substitute(self._to_before)
-        for part in self._parts:
-            states = states.apply_exists(_AND, part.relation, self._bits_after(part.decides))
-        return states & self._valid_before
+        states = states.substitute(self._to_after)
+        for relation, done_with in self._backwards:
+            states = states.apply_exists(_AND, relation, done_with)
+        return states
 
     def sensed(self, states: Function) -> Function:
         """`states`, each with every value that may be measured after it; for conditions of the finishes."""
@@ -146,34 +148,39 @@ class Reaction:
                 after[name] = {value: taken.ite(values.get(value, diagrams.false), before[value]) for value in before}
         return after
 
-    def _sensed_bits(self, names: Iterable[str]) -> Iterator[tuple[int, Function]]:
-        for name in names:
-            for now, after in zip(self._diagrams.bits[name], self._diagrams.bits_after[name], strict=True):
-                yield now, self._diagrams.bit(after)
-
-    def _finished_bits(self, finished: Mapping[str, Values]) -> Iterator[tuple[int, Function]]:
-        diagrams = self._diagrams
+    def _computed(self, finished: Mapping[str, Values]) -> Iterator[Part]:
+        """What finishes write, as relations."""
         for name, values in finished.items():
-            bits = diagrams.bits[name]
-            for bit in bits:
-                yield (
-                    bit,
-                    diagrams.disjunction(
-                        where for position, where in enumerate(values.values()) if diagrams.digit(bits, bit, position)
-                    ),
-                )
+            becomes = same(self._diagrams, values, self._diagrams.values_after(name))
+            yield Part(becomes & self._diagrams.valid_of((name,)), (name,))
 
-    def _scheduled(self, finished: Mapping[str, Values]) -> list[tuple[Function, Function]]:
-        """All relations, each with the bits that none of those behind it reads."""
+    def _ordered(self, parts: Sequence[Part]) -> list[Part]:
+        """`parts` as they do away with values afterwards: before none that still asks for these; the lowest first."""
         diagrams = self._diagrams
-        relations = [part.relation for part in self._parts]
-        relations += [same(diagrams, values, diagrams.values_after(name)) for name, values in finished.items()]
-        last = dict.fromkeys((bit for name in self.changed for bit in diagrams.bits[name]), 0)
-        for index, relation in enumerate(relations):
-            last |= {bit: index for bit in diagrams.support_bits(relation) if bit in last}
+        decided = {bit: part.decides for part in parts for name in part.decides for bit in diagrams.bits_after[name]}
+        asks = {
+            part.decides: {decided[bit] for bit in diagrams.support_bits(part.relation) if bit in decided}
+            for part in parts
+        }
+        left = sorted(parts, key=lambda part: max(diagrams.bits[name][-1] for name in part.decides), reverse=True)
+        ordered: list[Part] = []
+        while left:
+            part = next(
+                part for part in left if not any(part.decides in asks[other.decides] for other in left if other != part)
+            )
+            ordered.append(part)
+            left.remove(part)
+        return ordered
+
+    def _doing_away(self, parts: Sequence[Part], bits: Iterable[int]) -> list[tuple[Function, Function]]:
+        """The relations in this order, each with those of `bits` that none of the others behind it asks for."""
+        diagrams = self._diagrams
+        last = dict.fromkeys(bits, 0)
+        for index, part in enumerate(parts):
+            last |= {bit: index for bit in diagrams.support_bits(part.relation) if bit in last}
         return [
-            (relation, diagrams.cube(bit for bit, at in last.items() if at == index))
-            for index, relation in enumerate(relations)
+            (part.relation, diagrams.cube(bit for bit, at in last.items() if at == index))
+            for index, part in enumerate(parts)
         ]
 
 
