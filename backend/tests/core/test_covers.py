@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import combinations, product
 
 from hypothesis import given
@@ -13,8 +14,9 @@ from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange, Type, Value
-from sequence_planner.synthesis.covers import cover
+from sequence_planner.synthesis.covers import cover, single
 from sequence_planner.synthesis.diagrams import Diagrams, Function
+from sequence_planner.synthesis.effort import Effort
 from sequence_planner.synthesis.hitting import least_hitting
 from sequence_planner.synthesis.primes import Cube
 from sequence_planner.synthesis.wording import count_literals, worded
@@ -30,6 +32,7 @@ TYPES: tuple[Type, ...] = (
     IntegerRange(0, 6),
 )
 MANY = 1_000
+ENOUGH = 10**9  # nodes
 State = tuple[Value, ...]
 
 
@@ -49,7 +52,8 @@ class Problem:
         return Diagrams({name: type_.domain for name, type_ in self.types.items()}, cache=1 << 10)
 
     def solved(self, diagrams: Diagrams) -> tuple[Cube, ...]:
-        cubes = cover(diagrams, self.function(diagrams, self.on), self.function(diagrams, self.off), MANY)
+        on, off = self.function(diagrams, self.on), self.function(diagrams, self.off)
+        cubes = cover(diagrams, on, off, Effort(ENOUGH), MANY)
         assert cubes is not None
         return cubes
 
@@ -66,6 +70,12 @@ class Problem:
             for position in range(len(domain)):
                 if not cube[axis] >> position & 1:
                     yield (*cube[:axis], cube[axis] | 1 << position, *cube[axis + 1 :])
+
+    def without_a_literal(self, cube: Cube) -> Iterator[Cube]:
+        """The cubes that leave one more variable open."""
+        for axis, domain in enumerate(self.domains):
+            if cube[axis] != (whole := (1 << len(domain)) - 1):
+                yield (*cube[:axis], whole, *cube[axis + 1 :])
 
     def literals(self, cubes: Iterable[Cube]) -> int:
         return sum(m != (1 << len(d)) - 1 for cube in cubes for m, d in zip(cube, self.domains, strict=True))
@@ -97,6 +107,38 @@ def test_a_cover_holds_all_that_it_must_and_nothing_that_it_must_not(problem: Pr
     held = [problem.held(cube) for cube in problem.solved(problem.diagrams())]
     assert problem.on <= set[State]().union(*held)
     assert problem.off.isdisjoint(set[State]().union(*held))
+
+
+@examples(150)
+@given(made_by(lambda choices: (problem(48)(choices), choices.number(0, 4_000), choices.number(1, 20))))
+def test_a_cover_found_with_little_effort_is_as_right(given_: tuple[Problem, int, int]) -> None:
+    problem, effort, literals = given_
+    diagrams = problem.diagrams()
+    on, off = problem.function(diagrams, problem.on), problem.function(diagrams, problem.off)
+    for find in (cover, single, partial(single, widest=False)):
+        cubes = find(diagrams, on, off, Effort(effort), literals)
+        if cubes is not None:
+            held = [problem.held(cube) for cube in cubes]
+            assert problem.on <= set[State]().union(*held)
+            assert problem.off.isdisjoint(set[State]().union(*held))
+            for cube, own in zip(cubes, held, strict=True):
+                assert all(problem.held(wider) & problem.off for wider in problem.without_a_literal(cube))
+                others = (other for other in held if other != own)
+                assert not problem.on <= set[State]().union(*others)
+
+
+@examples(100)
+@given(made_by(problem(48)))
+def test_a_single_cube_is_found_wherever_there_is_one(problem: Problem) -> None:
+    diagrams = problem.diagrams()
+    on, off = problem.function(diagrams, problem.on), problem.function(diagrams, problem.off)
+    around = tuple(
+        sum(1 << position for position, value in enumerate(domain) if any(state[axis] == value for state in problem.on))
+        for axis, domain in enumerate(problem.domains)
+    )
+    there_is = problem.held(around).isdisjoint(problem.off)
+    assert (single(diagrams, on, off, Effort(ENOUGH), MANY) is not None) == there_is
+    assert not there_is or len(problem.solved(diagrams)) == 1
 
 
 @examples(100)
@@ -174,8 +216,8 @@ def test_a_cover_that_takes_far_too_many_words_is_none() -> None:
     )
     diagrams = odd.diagrams()
     on, off = odd.function(diagrams, odd.on), odd.function(diagrams, odd.off)
-    assert cover(diagrams, on, off, 60) is None
-    assert odd.literals(cover(diagrams, on, off, MANY) or ()) == 32 * 6
+    assert cover(diagrams, on, off, Effort(ENOUGH), 60) is None
+    assert odd.literals(cover(diagrams, on, off, Effort(ENOUGH), MANY) or ()) == 32 * 6
 
 
 def family(choices: Choices) -> tuple[list[list[int]], list[set[int]]]:

@@ -101,6 +101,11 @@ def test_no_philosopher_may_be_the_last_to_take_the_same_side() -> None:
     assert all(guard.rest and not guard.specifications for guard in guards.values())
 
 
+def test_guards_over_many_variables_are_found_as_well() -> None:
+    guards = shown(read(philosophers(16)))
+    assert [guard.literals for guard in guards.values()] == [15] * 32
+
+
 def crane(**parts: object) -> dict[str, Any]:
     """A crane between 0 and 4, which a gust of wind can push from 2 to 3; a wall stands there."""
     move = {"event": "forward", "controllable": True, "guard": "true", "set": {"x": "x + 1"}}
@@ -211,6 +216,21 @@ def test_the_guards_of_a_station_say_what_the_definition_says(station: Automaton
             said = name not in guards or holds(expressions[name], explicit.states[key])
             assert said == (after in explicit.safe)
     assert refused == guards.keys()
+
+
+@examples(80)
+@given(made_by(lambda choices: (any_station(choices), choices.number(0, 5_000))))
+def test_guards_found_with_little_effort_say_the_same_or_nothing(given_: tuple[Automaton, int]) -> None:
+    station, effort = given_
+    supervision = supervised(station)
+    if not supervision.possible:
+        return
+    explicit, guards = Explicit(station), shown_guards(supervision, effort)
+    assert guards.keys() == shown_guards(supervision).keys()
+    said = {name: printed(station, guard) for name, guard in guards.items() if guard.expression is not None}
+    for key in explicit.reachable(supervised=True):
+        for name, after in explicit.starts[key].items():
+            assert name not in said or holds(said[name], explicit.states[key]) == (after in explicit.safe)
 
 
 @examples(80)

@@ -17,7 +17,7 @@ class TooMuchError(Exception):
 
 
 class Effort:
-    """What may still be spent on steps: the nodes of all sets from which one is taken, as samples say."""
+    """What may still be spent: the nodes of all sets from which steps are taken or that are compared, by samples."""
 
     def __init__(self, most: int) -> None:
         self._left = most
@@ -28,10 +28,14 @@ class Effort:
         return [_Limited(step, self) for step in steps]
 
     def spend(self, states: Function) -> None:
-        """Count a step that is taken from `states`."""
+        """Count something that is done with `states`."""
         if self._taken % _SAMPLED == 0:
-            self._left -= states.node_count() * _SAMPLED
+            self.use(states.node_count() * _SAMPLED)
         self._taken += 1
+
+    def use(self, nodes: int) -> None:
+        """Count what takes about as long as something is done with so many nodes."""
+        self._left -= nodes
         if self._left < 0:
             raise TooMuchError
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, partial
 
 from sequence_planner.automaton.plain.meaning import NUMBER_SIGN, event_of
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.syntax import FALSE, And, Expression, Or
-from sequence_planner.synthesis.covers import cover
+from sequence_planner.synthesis.covers import cover, single
 from sequence_planner.synthesis.diagrams import Diagrams, Function
 from sequence_planner.synthesis.effort import Effort, TooMuchError
 from sequence_planner.synthesis.plant import Plant
@@ -24,6 +24,7 @@ from sequence_planner.synthesis.supervision import Supervision
 from sequence_planner.synthesis.wording import count_literals, worded
 
 MOST_EFFORT = 20_000_000  # nodes, see `effort`, to find out which states are reached
+MOST_EFFORT_PER_GUARD = 3_000_000  # nodes, for the variables it is over, and for either form that it can have
 MOST_LITERALS = 60  # of a guard that people can still read
 _MOST_SYNTHESES = 8  # to see for which specifications' sake rest is lost
 _CACHE = 1 << 16  # for sets over the few variables that tell them apart
@@ -47,11 +48,12 @@ class Guard:
     rest: bool
 
 
-def shown_guards(supervision: Supervision) -> Mapping[str, Guard]:
+def shown_guards(supervision: Supervision, most: int = MOST_EFFORT_PER_GUARD) -> Mapping[str, Guard]:
     """The guard of each start that the supervisor restricts, by ability, and in a plain automaton by event.
 
     Where an event has transitions of which one is allowed and another is not in one state, they have guards of their
-    own, under the names `event#1`, `event#2` and so on. Raises `ValueError` if there is no supervisor.
+    own, under the names `event#1`, `event#2` and so on. Each takes `most` nodes at most, see `Effort`. Raises
+    `ValueError` if there is no supervisor.
     """
     if not supervision.possible:
         raise ValueError("there is no supervisor, and every guard would say nothing")
@@ -67,7 +69,7 @@ def shown_guards(supervision: Supervision) -> Mapping[str, Guard]:
     for name, starts in _merged(supervision.plant.automaton, on, off).items():
         allowed, disallowed = either(on[start] for start in starts), either(off[start] for start in starts)
         if disallowed.satisfiable():
-            expression = _expression(supervision, allowed, disallowed)
+            expression = _expression(supervision, allowed, disallowed, most)
             count = None if expression is None else count_literals(expression)
             specifications, rest = reasons.of({start: off[start] for start in starts})
             guards[name] = Guard(starts, expression, count, specifications, rest)
@@ -104,24 +106,36 @@ def _merged(
     return merged
 
 
-def _expression(supervision: Supervision, on: Function, off: Function) -> Expression | None:
-    """Where `on` holds and `off` does not; None if it is too long."""
+def _expression(supervision: Supervision, on: Function, off: Function, most: int) -> Expression | None:
+    """Where `on` holds and `off` does not; None if it is too long, or not found."""
     if not on.satisfiable():
         return FALSE
     automaton = supervision.plant.automaton
-    separation = Separation(supervision.plant, on, off)
+    separation = Separation(supervision.plant, on, off, Effort(most))
     names = separation.names
+    if len(names) > MOST_LITERALS:  # each of them has to be read
+        return None
     diagrams = Diagrams({name: automaton.types[name].domain for name in names}, cache=_CACHE)
     few_on, few_off = separation.over(diagrams, on), separation.over(diagrams, off)
-    terms = cover(diagrams, few_on, few_off, MOST_LITERALS)
-    clauses = cover(diagrams, few_off, few_on, MOST_LITERALS)
-    texts = [
-        worded(automaton.types, diagrams, cubes, allowed)
-        for cubes, allowed in ((terms, True), (clauses, False))
-        if cubes is not None
-    ]
-    short = [text for text in texts if count_literals(text) <= MOST_LITERALS]
-    return min(short, key=_length, default=None)
+    # What one cube says is soon found, and often all that has to be said. As wide as it can be where it is allowed, and
+    # as narrow where it is not, it says the same as the two forms of a cover would.
+    ways = (
+        (single, True),
+        (partial(single, widest=False), False),
+        (cover, True),
+        (cover, False),
+    )
+    shortest: Expression | None = None
+    for find, allowed in ways:
+        longest = MOST_LITERALS if shortest is None else count_literals(shortest)
+        one, other = (few_on, few_off) if allowed else (few_off, few_on)
+        cubes = find(diagrams, one, other, Effort(most), longest)
+        text = None if cubes is None else worded(automaton.types, diagrams, cubes, allowed)
+        if text is not None and count_literals(text) <= longest:
+            shortest = text if shortest is None else min(shortest, text, key=_length)
+            if _length(shortest) <= (len(names), False):
+                break
+    return shortest
 
 
 def _length(expression: Expression) -> tuple[int, bool]:

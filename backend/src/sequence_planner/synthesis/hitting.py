@@ -5,7 +5,7 @@ A solver proposes members; `missed` answers with a set of the family that they d
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from itertools import count
 
 from pysat.card import ITotalizer
@@ -20,14 +20,20 @@ MOST_CONFLICTS = 20_000
 
 
 def least_hitting(
-    known: frozenset[int], criteria: Sequence[Sequence[int]], missed: Missed, earliest: bool = False
+    known: frozenset[int],
+    criteria: Sequence[Sequence[int]],
+    missed: Missed,
+    family: Iterable[Collection[int]] = (),
+    earliest: bool = False,
 ) -> frozenset[int]:
     """A set that meets all, of least weight by the first of `criteria`, then by the next ones.
 
     The members are numbered from 0; each criterion gives each of them a weight. With `earliest`, it is the set with the
     earliest members of those that are least. `known` meets all; where the effort is too great, the best set found.
+    `family` are sets that are known to have to be met.
     """
-    with Solver("glucose4") as solver:
+    clauses = [[member + 1 for member in each] for each in family]
+    with Solver("glucose4", bootstrap_with=clauses) as solver:
         return _Search(solver, len(criteria[0]), missed).least(known, criteria, earliest)
 
 
@@ -38,6 +44,7 @@ class _Search:
         self._missed = missed
         self._top = size
         self._proposals = count(1)
+        self._tired = False  # it has thought too hard once, and would again
         solver.set_phases([-member for member in range(1, size + 1)])
 
     def least(self, known: frozenset[int], criteria: Sequence[Sequence[int]], earliest: bool) -> frozenset[int]:
@@ -74,9 +81,10 @@ class _Search:
 
     def _found(self, assumptions: Sequence[int]) -> frozenset[int] | None:
         """A set that meets all; None if there is none, or none was found."""
-        while next(self._proposals) <= MOST_PROPOSALS:
+        while not self._tired and next(self._proposals) <= MOST_PROPOSALS:
             self._solver.conf_budget(MOST_CONFLICTS)
-            if not self._solver.solve_limited(assumptions):
+            if not (answer := self._solver.solve_limited(assumptions)):
+                self._tired = answer is None
                 return None
             model = self._solver.get_model()
             assert model is not None

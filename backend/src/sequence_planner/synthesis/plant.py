@@ -88,6 +88,11 @@ class Plant:
         return read_variables(self.automaton, predicates) <= self.diagrams.bits.keys()
 
     @cached_property
+    def flags(self) -> tuple[str, ...]:
+        """The flags that depend on variables of the plant only, in order of declaration."""
+        return tuple(flag.name for flag in self.automaton.flags if self.says((flag.predicate,)))
+
+    @cached_property
     def uncontrollable(self) -> list[Step]:
         """What can happen without us, faults included."""
         return self._uncontrollable(self.automaton.effects)

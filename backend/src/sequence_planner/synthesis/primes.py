@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 
 from sequence_planner.synthesis.diagrams import Diagrams, Function
+from sequence_planner.synthesis.effort import Effort
 
 # For each variable of the diagrams, the positions in its domain of the values it may have, as bits of a number.
 Cube = tuple[int, ...]
@@ -17,11 +18,12 @@ _MOST_PIECES = 4_000  # of cubes while something is cut off from them
 
 
 class Primes:
-    """The largest cubes that hold nothing of `off`."""
+    """The largest cubes that hold nothing of `off`. Raises `TooMuchError` when they take more than `effort`."""
 
-    def __init__(self, diagrams: Diagrams, off: Function) -> None:
+    def __init__(self, diagrams: Diagrams, off: Function, effort: Effort) -> None:
         self._diagrams = diagrams
         self._off = off
+        self.effort = effort
         self._literals: dict[tuple[int, int], Function] = {}
         self.whole = tuple((1 << len(domain)) - 1 for domain in diagrams.domains.values())
         self.axes = range(len(self.whole))
@@ -34,13 +36,17 @@ class Primes:
         """The variables that have a literal in it."""
         return [axis for axis in self.axes if cube[axis] != self.whole[axis]]
 
-    def holding(self, states: Function, most: int) -> dict[Cube, Function] | None:
-        """Cubes that together hold `states`; None if that takes more than `most`."""
+    def holding(self, states: Function, most: int, literals: int | None = None) -> dict[Cube, Function] | None:
+        """Cubes that together hold `states`; None if there would be more than `most`, or more than so many literals."""
         found: dict[Cube, Function] = {}
         while states.satisfiable():
             if len(found) == most:
                 return None
             cube = self.expanded(self.around(states, one=True), self.axes, states)
+            if literals is not None:
+                literals -= len(self.restricted(cube))
+                if literals < 0:
+                    return None
             found[cube] = self.function(cube)
             states &= ~found[cube]
         return found
@@ -60,8 +66,8 @@ class Primes:
             for name in self._diagrams.names
         )
 
-    def expanded(self, cube: Cube, order: Iterable[int], wanted: Function | None = None) -> Cube:
-        """A largest cube that holds `cube`: literals are left out in `order`, then the others widened.
+    def expanded(self, cube: Cube, order: Iterable[int], wanted: Function | None = None, widest: bool = True) -> Cube:
+        """A largest cube that holds `cube`: literals are left out in `order`, then the others widened, if `widest`.
 
         With `wanted`, the literal without which it holds most of that goes first.
         """
@@ -75,20 +81,43 @@ class Primes:
                 left = [each for each in left if gains[each] >= 0]  # a literal that is needed stays so in larger cubes
                 axis = max(left, key=gains.__getitem__, default=axis)
             freed = _with(cube, axis, self.whole[axis])
-            if self._fits(freed):
+            if self.fits(freed):
                 cube = freed
             left = [each for each in left if each != axis]
+        return self._widened(cube, axes) if widest else cube
+
+    def _widened(self, cube: Cube, axes: Iterable[int]) -> Cube:
         for axis in axes:
             for position in range(self.whole[axis].bit_length()):
                 wider = _with(cube, axis, cube[axis] | 1 << position)
-                if wider != cube and self._fits(wider):
+                if wider != cube and self.fits(wider):
                     cube = wider
         return cube
 
     def every(self, most: int) -> list[Cube] | None:
         """All of them; None if they are too many."""
-        excluded = Primes(self._diagrams, self._diagrams.valid & ~self._off).holding(self._off, most)
-        return None if excluded is None else _missing(self.whole, excluded, most)
+        excluded = Primes(self._diagrams, self._diagrams.valid & ~self._off, self.effort).holding(self._off, most)
+        return None if excluded is None else self._missing(excluded, most)
+
+    def _missing(self, excluded: Iterable[Cube], most: int) -> list[Cube] | None:
+        """The largest cubes that have nothing in common with any of `excluded`; None if they are too many.
+
+        Each excluded cube is cut off by taking its values from one variable.
+        """
+        widths = [mask.bit_length() for mask in self.whole]
+        found = [self.whole]
+        for cut in excluded:
+            met = {cube for cube in found if all(a & b for a, b in zip(cube, cut, strict=True))}
+            pieces = {
+                _with(cube, axis, left) for cube in met for axis, mask in enumerate(cut) if (left := cube[axis] & ~mask)
+            }
+            if len(pieces) > _MOST_PIECES:
+                return None
+            self.effort.use(len(pieces) * (len(found) + len(pieces)))
+            found = _largest([cube for cube in found if cube not in met], pieces, widths)
+            if len(found) > most:
+                return None
+        return found
 
     def _freed(self, cube: Cube) -> list[Function]:
         """What the cube holds without its literal of each variable."""
@@ -105,9 +134,12 @@ class Primes:
 
     def _gain(self, freed: Function, wanted: Function) -> int:
         """How much of `wanted` is in what is left of a cube; less than nothing if that is too large."""
+        self.effort.spend(freed)
         return -1 if (freed & self._off).satisfiable() else self._diagrams.count(freed & wanted)
 
-    def _fits(self, cube: Cube) -> bool:
+    def fits(self, cube: Cube) -> bool:
+        """Whether the cube holds nothing of `off`."""
+        self.effort.spend(self._off)
         return not (self.function(cube) & self._off).satisfiable()
 
     def _literal(self, axis: int, mask: int) -> Function:
@@ -120,26 +152,6 @@ class Primes:
 
 def _with(cube: Cube, axis: int, mask: int) -> Cube:
     return (*cube[:axis], mask, *cube[axis + 1 :])
-
-
-def _missing(whole: Cube, excluded: Iterable[Cube], most: int) -> list[Cube] | None:
-    """The largest cubes within `whole` that have nothing in common with any of `excluded`; None if they are too many.
-
-    Each excluded cube is cut off by taking its values from one variable.
-    """
-    widths = [mask.bit_length() for mask in whole]
-    found = [whole]
-    for cut in excluded:
-        met = {cube for cube in found if all(a & b for a, b in zip(cube, cut, strict=True))}
-        pieces = {
-            _with(cube, axis, left) for cube in met for axis, mask in enumerate(cut) if (left := cube[axis] & ~mask)
-        }
-        if len(pieces) > _MOST_PIECES:
-            return None
-        found = _largest([cube for cube in found if cube not in met], pieces, widths)
-        if len(found) > most:
-            return None
-    return found
 
 
 def _largest(apart: Sequence[Cube], pieces: Iterable[Cube], widths: Sequence[int]) -> list[Cube]:

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Sequence
 from functools import cached_property
 
 from sequence_planner.synthesis.diagrams import Diagrams, Function
+from sequence_planner.synthesis.effort import Effort, TooMuchError
 from sequence_planner.synthesis.hitting import least_hitting
 from sequence_planner.synthesis.plant import Plant
 
@@ -14,29 +15,47 @@ _MOST_VARIABLES = 12
 
 
 class Separation:
-    """Two sets of states of a plant, apart from one another and neither of them empty."""
+    """Two sets of states of a plant, apart from one another and neither of them empty.
 
-    def __init__(self, plant: Plant, on: Function, off: Function) -> None:
+    No more than `effort` is spent on the search for fewer variables than those that are found at once.
+    """
+
+    def __init__(self, plant: Plant, on: Function, off: Function, effort: Effort) -> None:
         self._plant = plant
         self._diagrams = plant.diagrams
         self._on = on
         self._off = off
+        self._effort = effort
 
     @cached_property
     def names(self) -> tuple[str, ...]:
-        """The fewest variables and flags that tell the sets apart: few flags, and the earliest declared."""
-        variables = [name for name in self._candidates if name in self._diagrams.bits]
-        known = self._without_needless(variables)
-        candidates = variables if len(known) > _MOST_VARIABLES else self._candidates
+        """The fewest variables and flags that tell the sets apart: few flags, and the earliest declared.
+
+        Where it takes too much to find out, there may be more of them, but none that could be left out.
+        """
+        known = self._without_needless()
+        try:
+            return self._fewest(known)
+        except TooMuchError:
+            return tuple(known)
+
+    def _fewest(self, known: Sequence[str]) -> tuple[str, ...]:
+        bits = self._diagrams.bits
+        candidates = self._variables if len(known) > _MOST_VARIABLES else (*self._variables, *self._flags)
         number = {name: position for position, name in enumerate(candidates)}
-        flags = [int(name not in self._diagrams.bits) for name in candidates]
 
         def missed(chosen: frozenset[int]) -> list[int] | None:
             differing = self._differing([candidates[each] for each in sorted(chosen)], candidates)
             return None if differing is None else [number[name] for name in differing]
 
         start = frozenset(number[name] for name in known)
-        chosen = least_hitting(start, ([1] * len(candidates), flags), missed, earliest=True)
+        met = {each: frozenset(missed(start - {each}) or ()) for each in start}
+        # Each of them has to be met, and where no two have something in common, one member does not meet two.
+        apart = len(frozenset().union(*met.values())) == sum(map(len, met.values()))
+        if apart and all(each == min(others) for each, others in met.items()):
+            return tuple(known)
+        flags = [int(name not in bits) for name in candidates]
+        chosen = least_hitting(start, ([1] * len(candidates), flags), missed, met.values(), earliest=True)
         return tuple(candidates[each] for each in sorted(chosen))
 
     def over(self, diagrams: Diagrams, states: Function) -> Function:
@@ -52,27 +71,32 @@ class Separation:
         return found
 
     @cached_property
-    def _candidates(self) -> tuple[str, ...]:
-        """What can tell states apart, in order of declaration: variables, then flags."""
-        automaton, diagrams = self._plant.automaton, self._diagrams
-        support = diagrams.support(self._on) | diagrams.support(self._off)
-        either = self._on | self._off
-        flags = (
-            flag.name
-            for flag in automaton.flags
-            if self._plant.says((flag.predicate,))
-            and (either & self._plant.reader.lookup(flag.name)[True]).satisfiable()
-            and (either & self._plant.reader.lookup(flag.name)[False]).satisfiable()
-        )
-        return (*(name for name in automaton.variables if name in support), *flags)
+    def _variables(self) -> tuple[str, ...]:
+        """The variables that can tell states apart, in order of declaration."""
+        support = self._diagrams.support(self._on) | self._diagrams.support(self._off)
+        return tuple(name for name in self._plant.automaton.variables if name in support)
 
-    def _without_needless(self, names: Sequence[str]) -> list[str]:
-        """`names` but what is not needed, left out greedily from the last."""
-        kept = list(names)
-        for name in reversed(names):
-            fewer = [each for each in kept if each != name]
-            if self._confused(fewer) is None:
-                kept = fewer
+    @cached_property
+    def _flags(self) -> tuple[str, ...]:
+        """The flags that are not the same in all states, in order of declaration."""
+        either = self._on | self._off
+
+        def differs(name: str) -> bool:
+            self._effort.spend(either)
+            values = self._plant.reader.lookup(name)
+            return all((either & values[value]).satisfiable() for value in (False, True))
+
+        return tuple(filter(differs, self._plant.flags))
+
+    def _without_needless(self) -> list[str]:
+        """The variables but what is not needed, left out greedily from the last."""
+        kept = list(self._variables)
+        on, off = self._on, self._off
+        for name in reversed(self._variables):
+            some_on, some_off = (self._diagrams.exists(states, (name,)) for states in (on, off))
+            if not (some_on & some_off).satisfiable():
+                on, off = some_on, some_off
+                kept.remove(name)
         return kept
 
     def _confused(self, names: Sequence[str]) -> Function | None:
@@ -89,6 +113,7 @@ class Separation:
 
     def _differing(self, names: Sequence[str], candidates: Sequence[str]) -> list[str] | None:
         """The candidates in which two states, one of each set, differ that agree in `names`; None if no two do."""
+        self._effort.spend(self._on)
         confused = self._confused(names)
         if confused is None:
             return None
@@ -98,8 +123,10 @@ class Separation:
         others = self._off
         differing: list[str] = []
         for name in (*names, *(each for each in reversed(candidates) if each not in names)):
-            where = next(where for where in self._plant.reader.lookup(name).values() if (where & one).satisfiable())
-            agreeing = others & where
+            self._effort.spend(others)
+            values = self._plant.reader.lookup(name)
+            value = state[name] if name in state else (values[True] & one).satisfiable()
+            agreeing = others & values[value]
             if agreeing.satisfiable():
                 others = agreeing
             else:
