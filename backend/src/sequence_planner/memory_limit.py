@@ -17,7 +17,7 @@ VARIABLE: Final = "SEQUENCE_PLANNER_MEMORY"  # of the environment: the limit in 
 USUAL: Final = 2.0  # GB
 LEAST, MOST = 0.25, 1024.0  # GB
 _GB = 1 << 30
-_LOOK = 0.1  # seconds between two looks
+LOOK: Final = 0.1  # seconds between two looks
 
 
 class Killable(Protocol):
@@ -58,12 +58,18 @@ class MemoryLimit:
 
     async def _watch(self, process: Killable) -> None:
         number = await asyncio.to_thread(lambda: process.pid)
-        while number is not None and (resident := _resident(number)) is not None:
-            if resident > self.gigabytes * _GB:
-                self.reached = True
-                process.kill()
+        while number is not None and _resident(number) is not None:
+            self.look(process, number)
+            if self.reached:
                 return
-            await asyncio.sleep(_LOOK)
+            await asyncio.sleep(LOOK)
+
+    def look(self, process: Killable, number: int) -> None:
+        """Kill the process, which has this number, if it is beyond the limit."""
+        resident = _resident(number)
+        if resident is not None and resident > self.gigabytes * _GB:
+            self.reached = True
+            process.kill()
 
 
 def memory_limit(environ: Mapping[str, str] = os.environ) -> float:

@@ -9,6 +9,7 @@ import asyncio
 import gc
 import os
 import signal
+import time
 from collections.abc import AsyncIterator, Callable, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import dataclass
@@ -17,8 +18,9 @@ from typing import Generic, TypeVar
 
 from sequence_planner.analysis.analysis import Analysis, analyses
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.forking.copying import Copy, can_be_copied
 from sequence_planner.forking.starting import hang_up, start
-from sequence_planner.memory_limit import MemoryLimit, memory_limit
+from sequence_planner.memory_limit import LOOK, MemoryLimit, memory_limit
 
 _NICENESS = 5  # ticks come first
 
@@ -39,6 +41,11 @@ class _Last:
 
     why: str | None = None
     too_large: bool = False
+
+    def end(self) -> None:
+        """Raise `SynthesisEndedError` if that was not all."""
+        if self.why is not None:
+            raise TooLargeError(self.why) if self.too_large else SynthesisEndedError(self.why)
 
 
 def analysing(automaton: Automaton) -> AbstractAsyncContextManager[AsyncIterator[Analysis]]:
@@ -69,6 +76,48 @@ async def telling(
             await words.end()
 
 
+def told(gigabytes: float, seconds: float, work: Callable[..., Iterator[Word]], *arguments: object) -> Iterator[Word]:
+    """The same to a command, which waits for it.
+
+    Raises `SynthesisEndedError`, and `TimeoutError` after so many seconds. The process ends with the iteration.
+    """
+    ours, theirs = Pipe()
+    limit = MemoryLimit(gigabytes)
+    end = time.monotonic() + seconds
+    with ours:
+        begin = Copy if can_be_copied() else start
+        process = begin(_work, work, arguments, name="synthesis", connection=theirs)
+        try:
+            number, looked = process.pid, time.monotonic()
+            while True:
+                left = end - time.monotonic()
+                if left <= 0:
+                    raise TimeoutError
+                if ours.poll(min(LOOK, left)):
+                    word = _next(ours, limit)
+                    if isinstance(word, _Last):
+                        word.end()
+                        return
+                    yield word
+                if number is not None and time.monotonic() - looked >= LOOK:
+                    limit.look(process, number)
+                    looked = time.monotonic()
+        finally:
+            process.kill()
+            process.join()
+
+
+def _next(connection: Connection, limit: MemoryLimit) -> Word | _Last:
+    """What the process at the other end says next."""
+    try:
+        word: Word | _Last = connection.recv()
+    except (EOFError, OSError):
+        if limit.reached:
+            return _Last(str(limit), too_large=True)
+        return _Last("the process that computes the safe states has ended without an answer; is memory short?")
+    return word
+
+
 class _Words(Generic[Word]):
     """What the process says, heard by a thread so that nobody else waits."""
 
@@ -79,22 +128,12 @@ class _Words(Generic[Word]):
 
     async def heard(self) -> AsyncIterator[Word]:
         while True:
-            self._hearing = asyncio.get_running_loop().run_in_executor(None, self._next)
+            self._hearing = asyncio.get_running_loop().run_in_executor(None, _next, self._connection, self._limit)
             word = await asyncio.shield(self._hearing)
             if isinstance(word, _Last):
-                if word.why is not None:
-                    raise TooLargeError(word.why) if word.too_large else SynthesisEndedError(word.why)
+                word.end()
                 return
             yield word
-
-    def _next(self) -> Word | _Last:
-        try:
-            word: Word | _Last = self._connection.recv()
-        except (EOFError, OSError):
-            if self._limit.reached:
-                return _Last(str(self._limit), too_large=True)
-            return _Last("the process that computes the safe states has ended without an answer; is memory short?")
-        return word
 
     async def end(self) -> None:
         if self._hearing is not None:

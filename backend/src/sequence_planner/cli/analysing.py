@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import signal
 import sys
 import time
@@ -21,7 +20,7 @@ from sequence_planner.analysis.document import (
     read_supervisor,
     supervisor_document,
 )
-from sequence_planner.analysis.process import SynthesisEndedError, telling
+from sequence_planner.analysis.process import SynthesisEndedError, told
 from sequence_planner.analysis.remembering import known_supervisor, remember_supervisor
 from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.state_set import Supervisor
@@ -97,7 +96,7 @@ def _kept(automaton: Automaton, counts: bool) -> Found | None:
 
 
 def _found(automaton: Automaton, limits: Limits, hearing: _Hearing) -> Found:
-    unfinished = asyncio.run(hearing.hear(limits))
+    unfinished = hearing.hear(limits)
     analysis = hearing.analysis
     document = document_of(automaton, analysis)
     if analysis.pending in (None, COUNTING):
@@ -156,13 +155,12 @@ class _Hearing:
     suspicious: set[ModelWarning] = field(default_factory=set)
     _pending: str | None = None
 
-    async def hear(self, limits: Limits) -> str | None:
+    def hear(self, limits: Limits) -> str | None:
         """Hear it until it is all, or `limits` are reached; returns what was not found then, and why."""
         try:
-            async with asyncio.timeout(limits.left), telling(limits.memory, *self.work) as words:
-                async for word in words:
-                    self._take(word)
-                    self._tell(time.monotonic() - limits.began)
+            for word in told(limits.memory, limits.left, *self.work):
+                self._take(word)
+                self._tell(time.monotonic() - limits.began)
         except TimeoutError:
             return f"{self._left()} could not be computed within {limits.deadline:g} s: allow more with --deadline"
         except SynthesisEndedError as ended:
