@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.checking.connections import Connections
 from sequence_planner.cli.options import refuse
 from sequence_planner.model.plain_documents import load_plain
 from sequence_planner.model.source import ModelError
-from sequence_planner.station import ReadyStation, prepare_station
+
+if TYPE_CHECKING:
+    from sequence_planner.checking.connections import Connections
+    from sequence_planner.station import ReadyStation
 
 PLAIN_SUFFIX = ".efa.json"
 
@@ -33,6 +36,8 @@ def load_model(path: Path) -> Model:
     """Read a model. Raises `ModelError` with the findings."""
     if path.name.endswith(PLAIN_SUFFIX):
         return Model(plain_automaton(load_plain(path)), None)
+    from sequence_planner.station import prepare_station  # noqa: PLC0415 (a plain automaton needs no pipelines)
+
     station = prepare_station(path)
     return Model(station.automaton, station)
 
