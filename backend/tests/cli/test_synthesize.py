@@ -41,6 +41,46 @@ def test_the_worked_example() -> None:
     ]
 
 
+def parity(folder: Path) -> Path:
+    """An even number of seven buttons has to be pressed when it is done."""
+    buttons = [f"b{number}" for number in range(7)]
+    odd = buttons[0]
+    for button in buttons[1:]:
+        odd = f"({odd}) != {button}"
+    press = [
+        {"event": f"press_{each}", "controllable": True, "guard": "not done", "set": {each: f"not {each}"}}
+        for each in buttons
+    ]
+    document = {
+        "name": "even",
+        "variables": dict.fromkeys([*buttons, "done"], "bool"),
+        "initial": " and ".join(f"not {each}" for each in [*buttons, "done"]),
+        "transitions": [*press, {"event": "end", "controllable": True, "guard": "not done", "set": {"done": True}}],
+        "forbidden": [f"done and ({odd})"],
+    }
+    file = folder / "even.efa.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    return file
+
+
+def test_where_no_short_condition_says_when_it_is_said_where_not(tmp_path: Path) -> None:
+    model = parity(tmp_path)
+    code, out, _ = command("synthesize", model)
+    first, guard, no, *cases, why = out.splitlines()
+    assert (code, guard, why) == (0, "  end", "    because of forbidden_1")
+    assert first == "even: 256 states can be reached, 192 of them with the supervisor"
+    assert no == "    no short condition says when; not, among others, where"
+    assert len(cases) == 3
+    assert all(each.startswith("      ") and each.count("not ") == 6 for each in cases)
+    _, document = as_json("synthesize", model)
+    assert document["guards"]["end"] is None
+    assert document["origins"]["end"]["blocked"] == [each.strip() for each in cases]
+    _, out, _ = command("show", model, "end")
+    shown = [line.strip() for line in out.splitlines()]
+    at = shown.index(f"supervisor  {no.strip()}")
+    assert shown[at + 1 : at + 4] == [each.strip() for each in cases]
+
+
 def test_for_programs() -> None:
     """Every ability has a guard; what is kept from the first time says the same."""
     first = as_json("synthesize", EXAMPLE)
@@ -62,6 +102,7 @@ def test_for_programs() -> None:
         "starts": ["robot.move(bolt_pair)"],
         "specifications": ["no_standing_tool_on_placed_bolts"],
         "rest": False,
+        "blocked": [],
     }
     assert (document["findings"], document["unfinished"]) == ([], None)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from dataclasses import replace
 
 import pytest
 
@@ -145,6 +146,9 @@ def test_what_the_supervisor_adds_is_told_with_its_specification() -> None:
     (added,) = of_ability(execution, ability, {}, guard)
     assert (added.kind, added.text) == (HindranceKind.SUPERVISOR, "not first, for the sake of: both")
     assert added.expression == predicate_of(both, "not first")
+    (long,) = of_ability(execution, ability, {}, replace(guard, expression=None))
+    assert long.text == "not first (the nearest state in which it may start), for the sake of: both"
+    assert long.expression == predicate_of(both, "not first")
     (unworded,) = of_ability(execution, ability, {}, None)
     assert unworded.text == "a safe start: both (both)"
 

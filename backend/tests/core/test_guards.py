@@ -20,6 +20,7 @@ from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import And, Expression, variables
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.model.plain_documents import read_plain
+from sequence_planner.synthesis import saying
 from sequence_planner.synthesis.guards import Guard, shown_guards
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, relevant
@@ -182,6 +183,9 @@ def test_a_guard_too_long_to_read_is_not_said() -> None:
     )["finish"]
     assert (guard.expression, guard.literals) == (None, None)
     assert guard.specifications == ("forbidden_1",)
+    first = ["button_6", *(f"not button_{number}" for number in range(6))]
+    assert len(guard.blocked) == 3
+    assert sorted(print_expression(guard.blocked[0]).split(" and ")) == sorted(first)
 
 
 def test_there_are_no_guards_without_a_supervisor() -> None:
@@ -219,18 +223,27 @@ def test_the_guards_of_a_station_say_what_the_definition_says(station: Automaton
 
 
 @examples(80)
-@given(made_by(lambda choices: (any_station(choices), choices.number(0, 5_000))))
-def test_guards_found_with_little_effort_say_the_same_or_nothing(given_: tuple[Automaton, int]) -> None:
-    station, effort = given_
+@given(made_by(lambda choices: (any_station(choices), choices.pick((0, 300, 3_000, 10**6)), choices.number(0, 3))))
+def test_guards_found_with_little_effort_say_the_same_or_what_is_blocked(given_: tuple[Automaton, int, int]) -> None:
+    station, effort, literals = given_
     supervision = supervised(station)
     if not supervision.possible:
         return
-    explicit, guards = Explicit(station), shown_guards(supervision, effort)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(saying, "MOST_LITERALS", literals)
+        explicit, guards = Explicit(station), shown_guards(supervision, effort)
     assert guards.keys() == shown_guards(supervision).keys()
     said = {name: printed(station, guard) for name, guard in guards.items() if guard.expression is not None}
     for key in explicit.reachable(supervised=True):
         for name, after in explicit.starts[key].items():
             assert name not in said or holds(said[name], explicit.states[key]) == (after in explicit.safe)
+            if name in guards and after in explicit.safe:
+                assert not any(holds(each, explicit.states[key]) for each in guards[name].blocked)
+    for name, guard in guards.items():
+        assert guard.expression is None or not guard.blocked
+        assert guard.expression is not None or guard.blocked or effort < 10**6
+        held = [[key for key in explicit.states if holds(each, explicit.states[key])] for each in guard.blocked]
+        assert all(any(explicit.starts[key].get(name) not in (None, *explicit.safe) for key in keys) for keys in held)
 
 
 @examples(80)

@@ -162,7 +162,9 @@ DEFINITION = AbilityDefinitionView(
     enabled=HOME,
     start=HOME,
     start_actions=[AbilityActionView(text="robot.target := above", variable="robot.target", done=False)],
-    supervised=SupervisedView(guard=HOME, specifications=[SpecificationView(name="apart", title="Apart")], rest=False),
+    supervised=SupervisedView(
+        guard=HOME, specifications=[SpecificationView(name="apart", title="Apart")], rest=False, blocked=[]
+    ),
     allowed=True,
     executing=HOME,
     finished=HOME,

@@ -4677,10 +4677,13 @@ export interface components {
          * GuardDocument
          * @description What the supervisor adds to the guards of `starts`; `guard` is null when only the states themselves say it.
          *
-         *     `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could be
-         *     reached any more.
+         *     Then `blocked` are some conditions wherever one of which holds they must wait, the one nearest to the initial state
+         *     first. `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could
+         *     be reached any more.
          */
         GuardDocument: {
+            /** Blocked */
+            blocked: string[];
             /** Guard */
             guard: string | null;
             /** Literals */
@@ -7555,10 +7558,12 @@ export interface components {
          * SupervisedView
          * @description What the supervisor adds to the start: `guard` is null where no short one was found.
          *
-         *     `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could be
-         *     reached any more.
+         *     Then `blocked` are some conditions wherever one of which holds it must wait. `specifications` are those it comes
+         *     from; with `rest`, some starts must wait because no state of rest could be reached any more.
          */
         SupervisedView: {
+            /** Blocked */
+            blocked: components["schemas"]["PredicateView"][];
             guard: components["schemas"]["PredicateView"] | null;
             /** Rest */
             rest: boolean;

@@ -27,8 +27,9 @@ class Document(BaseModel):
 class GuardDocument(Document):
     """What the supervisor adds to the guards of `starts`; `guard` is null when only the states themselves say it.
 
-    `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could be
-    reached any more.
+    Then `blocked` are some conditions wherever one of which holds they must wait, the one nearest to the initial state
+    first. `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could
+    be reached any more.
     """
 
     guard: str | None
@@ -36,6 +37,7 @@ class GuardDocument(Document):
     starts: list[str]
     specifications: list[str]
     rest: bool
+    blocked: list[str]
 
 
 class StepDocument(Document):
@@ -150,6 +152,7 @@ def _guard(guard: Guard) -> GuardDocument:
         starts=list(guard.starts),
         specifications=list(guard.specifications),
         rest=guard.rest,
+        blocked=list(map(print_expression, guard.blocked)),
     )
 
 

@@ -70,6 +70,15 @@ def described_automaton(
     }
 
 
+def guard_lines(guard: GuardDocument) -> list[str]:
+    """When the supervisor allows a start, for people."""
+    if guard.guard is not None:
+        return [guard.guard]
+    if not guard.blocked:
+        return ["see the states: no short condition says when"]
+    return ["no short condition says when; not, among others, where", *(f"  {each}" for each in guard.blocked)]
+
+
 def _ability(ability: Ability, guard: GuardDocument | None) -> Json:
     human = ability.human
     return {
@@ -79,7 +88,7 @@ def _ability(ability: Ability, guard: GuardDocument | None) -> Json:
         "start": {"when": print_expression(ability.start_guard), "do": _actions(ability.start_actions)},
         "supervisor": None
         if guard is None
-        else {"when": guard.guard, "specifications": guard.specifications, "rest": guard.rest},
+        else guard.model_dump(include={"specifications", "rest", "blocked"}) | {"when": guard.guard},
         "executing": print_expression(ability.executing),
         "finished": print_expression(ability.finished),
         "finish": None

@@ -11,7 +11,7 @@ import typer
 from sequence_planner.analysis.document import GuardDocument
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, Operation, VariableDeclaration
 from sequence_planner.cli.analysing import Deadline, Limits, analysed
-from sequence_planner.cli.describing import described_automaton
+from sequence_planner.cli.describing import described_automaton, guard_lines
 from sequence_planner.cli.loading import Model, usable_model
 from sequence_planner.cli.options import USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.cli.pipelines import chosen, pipeline_lines
@@ -236,8 +236,9 @@ def _added(guard: GuardDocument | None, rest: str = "rest") -> Lines:
     """What the supervisor adds, and the specifications that this comes from."""
     if guard is not None:
         reasons = [*guard.specifications, *([rest] if guard.rest else [])]
-        yield f"    {'supervisor':10}  {guard.guard or 'see the states'}"
-        yield f"    {'':10}  (because of {', '.join(reasons)})"
+        lines = [*guard_lines(guard), f"(because of {', '.join(reasons)})"]
+        for name, line in zip(("supervisor", *([""] * (len(lines) - 1))), lines, strict=True):
+            yield f"    {name:10}  {line}"
 
 
 def _actions(name: str, actions: Iterable[Assignment], margin: str = "  ") -> Lines:

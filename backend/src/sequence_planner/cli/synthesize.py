@@ -11,6 +11,7 @@ from sequence_planner.analysis.document import AnalysisDocument, GuardDocument
 from sequence_planner.automaton.plain.meaning import NUMBER_SIGN, event_of
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, Limits, analysed
+from sequence_planner.cli.describing import guard_lines
 from sequence_planner.cli.findings import finding_lines
 from sequence_planner.cli.loading import usable_model
 from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json
@@ -96,6 +97,6 @@ def _guards(document: AnalysisDocument, rest: str) -> Iterator[str]:
     for name, guard in (document.guards or {}).items():
         reasons = [*guard.specifications, *([rest] if guard.rest else [])]
         yield f"  {name}"
-        yield f"    {guard.guard or 'see the states: no short condition says when'}"
+        yield from (f"    {line}" for line in guard_lines(guard))
         if reasons:
             yield f"    because of {', '.join(reasons)}"

@@ -49,13 +49,14 @@ class AbilityActionView(View):
 class SupervisedView(View):
     """What the supervisor adds to the start: `guard` is null where no short one was found.
 
-    `specifications` are those it comes from; with `rest`, some starts must wait because no state of rest could be
-    reached any more.
+    Then `blocked` are some conditions wherever one of which holds it must wait. `specifications` are those it comes
+    from; with `rest`, some starts must wait because no state of rest could be reached any more.
     """
 
     guard: PredicateView | None
     specifications: list[SpecificationView]
     rest: bool
+    blocked: list[PredicateView]
 
 
 class ReactionView(View):

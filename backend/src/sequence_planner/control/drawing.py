@@ -123,6 +123,7 @@ class Drawing:
                 SpecificationView(name=each, title=specifications[each].title) for each in guard.specifications
             ],
             rest=guard.rest,
+            blocked=[self._predicate(each, None) for each in guard.blocked],
         )
 
     def _allowed(self, ability: Ability) -> bool | None:

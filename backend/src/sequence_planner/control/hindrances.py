@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from sequence_planner.automaton.structure import Ability, State
-from sequence_planner.automaton.tick import reverts, start
+from sequence_planner.automaton.tick import reverts, start, supervised_start, synchronise
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.view import Mode, Production
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.printing import print_expression
-from sequence_planner.expressions.syntax import Expression, conjunction, conjuncts, variables
+from sequence_planner.expressions.syntax import TRUE, Expression, conjunction, conjuncts, variables
+from sequence_planner.planning.advice.conjoining import all_equal
 from sequence_planner.synthesis.guards import Guard
 
 WAITS = {
@@ -121,23 +122,41 @@ def _unwritten(execution: Execution, ability: Ability, guard: Guard | None) -> I
         if not unsupervised:
             yield Hindrance(HindranceKind.SUPERVISOR, "the station to be back in a safe state")
     elif not execution.supervisor.safe.includes(after):
-        yield _unsafe(execution, after, guard)
+        yield _unsafe(execution, ability, after, guard)
 
 
-def _unsafe(execution: Execution, after: State, guard: Guard | None) -> Hindrance:
+def _unsafe(execution: Execution, ability: Ability, after: State, guard: Guard | None) -> Hindrance:
     """What the supervisor's guard lacks, and which specification the start would break, at once or later."""
     kind = HindranceKind.SUPERVISOR
-    if guard is not None and guard.expression is not None:
-        lacking = [part for part in conjuncts(guard.expression) if evaluate(part, execution.state) is not True]
+    if guard is not None:
+        causes = [execution.automaton.specifications[name].title for name in guard.specifications]
+        causes += ["coming to rest again"] if guard.rest else []
+        sake = f"for the sake of: {', '.join(causes)}"
+        said = TRUE if guard.expression is None else guard.expression
+        lacking = [part for part in conjuncts(said) if evaluate(part, execution.state) is not True]
         if lacking:
-            causes = [execution.automaton.specifications[name].title for name in guard.specifications]
-            causes += ["coming to rest again"] if guard.rest else []
             condition = conjunction(*lacking)
-            return Hindrance(kind, f"{print_expression(condition)}, for the sake of: {', '.join(causes)}", condition)
+            return Hindrance(kind, f"{print_expression(condition)}, {sake}", condition)
+        if guard.expression is None and (nearest := _nearest(execution, ability)) is not None:
+            where = f"{print_expression(nearest)} (the nearest state in which it may start)"
+            return Hindrance(kind, f"{where}, {sake}", nearest)
     for specification in execution.automaton.specifications.values():
         if holds(specification.forbidden, after):
             return Hindrance(kind, f"a safe start: {specification.title} ({specification.name})")
     return Hindrance(kind, "a safe start: started now, a specification could be broken later")
+
+
+def _nearest(execution: Execution, ability: Ability) -> Expression | None:
+    """What else has to be so for the start to be allowed, in as few variables as can be; None if that is not known."""
+    automaton, supervisor = execution.automaton, execution.supervisor
+    allowed = supervisor.guards.get(ability.name)
+    changes = None if allowed is None else allowed.nearest(execution.state)
+    if not changes:
+        return None
+    there = synchronise(automaton, {**execution.state, **changes})
+    if supervised_start(automaton, supervisor, there, there, ability) is None:
+        return None
+    return all_equal(automaton, changes.items())
 
 
 def _read(execution: Execution, expression: Expression) -> Iterator[str]:

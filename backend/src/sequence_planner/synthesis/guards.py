@@ -1,7 +1,6 @@
 """What the supervisor adds to the guards of starts, for people to read.
 
-What matters of a guard are the states that can be reached under the supervisor and in which the written guard holds. It
-is said over the fewest variables, in whichever is shorter of a disjunction and a conjunction of simple terms.
+What matters of a guard are the states that can be reached under the supervisor and in which the written guard holds.
 """
 
 from __future__ import annotations
@@ -9,25 +8,22 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 
 from sequence_planner.automaton.plain.meaning import NUMBER_SIGN, event_of
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.expressions.syntax import FALSE, And, Expression, Or
-from sequence_planner.synthesis.covers import cover, single
-from sequence_planner.synthesis.diagrams import Diagrams, Function
+from sequence_planner.expressions.syntax import Expression
+from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.effort import Effort, TooMuchError
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.saturation import reaching
-from sequence_planner.synthesis.separation import Separation
+from sequence_planner.synthesis.saying import Saying
 from sequence_planner.synthesis.supervision import Supervision
-from sequence_planner.synthesis.wording import count_literals, worded
+from sequence_planner.synthesis.wording import count_literals
 
 MOST_EFFORT = 20_000_000  # nodes, see `effort`, to find out which states are reached
 MOST_EFFORT_PER_GUARD = 3_000_000  # nodes, for the variables it is over, and for either form that it can have
-MOST_LITERALS = 60  # of a guard that people can still read
 _MOST_SYNTHESES = 8  # to see for which specifications' sake rest is lost
-_CACHE = 1 << 16  # for sets over the few variables that tell them apart
 
 
 @dataclass(frozen=True)
@@ -35,10 +31,11 @@ class Guard:
     """Where the supervisor allows some starts, as far as the station can get under it and the written guard holds.
 
     `starts` are the abilities it is added to: several where they are transitions of one event. `expression` is None
-    where no short one was found: then only the states themselves say it. `specifications` are those that could be the
-    first to be broken, and nothing prevent it, after some start that must wait. With `rest`, some must wait because no
-    state of rest could be reached any more; where that is all, `specifications` are those each of which would have to
-    go for it to be allowed.
+    where no short one was found: then only the states themselves say it, and `blocked` are some conditions wherever one
+    of which holds they must wait, the one nearest to the initial state first. `specifications` are those that could be
+    the first to be broken, and nothing prevent it, after some start that must wait. With `rest`, some must wait because
+    no state of rest could be reached any more; where that is all, `specifications` are those each of which would have
+    to go for it to be allowed.
     """
 
     starts: tuple[str, ...]
@@ -46,6 +43,7 @@ class Guard:
     literals: int | None
     specifications: tuple[str, ...]
     rest: bool
+    blocked: tuple[Expression, ...] = ()
 
 
 def shown_guards(supervision: Supervision, most: int = MOST_EFFORT_PER_GUARD) -> Mapping[str, Guard]:
@@ -69,10 +67,12 @@ def shown_guards(supervision: Supervision, most: int = MOST_EFFORT_PER_GUARD) ->
     for name, starts in _merged(supervision.plant.automaton, on, off).items():
         allowed, disallowed = either(on[start] for start in starts), either(off[start] for start in starts)
         if disallowed.satisfiable():
-            expression = _expression(supervision, allowed, disallowed, most)
+            said = Saying(supervision.plant, allowed, disallowed, most)
+            expression = said.shortest()
             count = None if expression is None else count_literals(expression)
             specifications, rest = reasons.of({start: off[start] for start in starts})
-            guards[name] = Guard(starts, expression, count, specifications, rest)
+            blocked = said.blocked() if expression is None else ()
+            guards[name] = Guard(starts, expression, count, specifications, rest, blocked)
     return guards
 
 
@@ -104,44 +104,6 @@ def _merged(
         else:
             merged[event] = tuple(starts)
     return merged
-
-
-def _expression(supervision: Supervision, on: Function, off: Function, most: int) -> Expression | None:
-    """Where `on` holds and `off` does not; None if it is too long, or not found."""
-    if not on.satisfiable():
-        return FALSE
-    automaton = supervision.plant.automaton
-    separation = Separation(supervision.plant, on, off, Effort(most))
-    names = separation.names
-    if len(names) > MOST_LITERALS:  # each of them has to be read
-        return None
-    diagrams = Diagrams({name: automaton.types[name].domain for name in names}, cache=_CACHE)
-    few_on, few_off = separation.over(diagrams, on), separation.over(diagrams, off)
-    # What one cube says is soon found, and often all that has to be said. As wide as it can be where it is allowed, and
-    # as narrow where it is not, it says the same as the two forms of a cover would.
-    ways = (
-        (single, True),
-        (partial(single, widest=False), False),
-        (cover, True),
-        (cover, False),
-    )
-    shortest: Expression | None = None
-    for find, allowed in ways:
-        longest = MOST_LITERALS if shortest is None else count_literals(shortest)
-        one, other = (few_on, few_off) if allowed else (few_off, few_on)
-        cubes = find(diagrams, one, other, Effort(most), longest)
-        text = None if cubes is None else worded(automaton.types, diagrams, cubes, allowed)
-        if text is not None and count_literals(text) <= longest:
-            shortest = text if shortest is None else min(shortest, text, key=_length)
-            if _length(shortest) <= (len(names), False):
-                break
-    return shortest
-
-
-def _length(expression: Expression) -> tuple[int, bool]:
-    """How long it is to read; of two that are alike, a conjunction says one reason after the other."""
-    mixed = isinstance(expression, Or) and any(isinstance(part, And) for part in expression.operands)
-    return count_literals(expression), mixed
 
 
 class _Reasons:

@@ -167,6 +167,8 @@ def _ability(ability: Ability, guard: Guard | None) -> Iterator[tuple[str, str]]
         yield "cancel", _done(ability.cancel_actions)
     if guard is not None and guard.expression is not None:
         yield "added by the supervisor", _said(guard.expression)
+    elif guard is not None and guard.blocked:
+        yield "held back by the supervisor, among others", "; ".join(map(_said, guard.blocked))
     if ability.restart:
         yield "restart", "yes"
     if ability.human is not None:

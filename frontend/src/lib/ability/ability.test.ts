@@ -127,7 +127,7 @@ test('the table has all parts in the order of a run', () => {
 		enabled: predicate(['a', true], ['b', null]),
 		start: predicate(),
 		start_actions: [{ text: 't := home', variable: 't', done: false }],
-		supervised: { guard: predicate(['s', false]), specifications: [], rest: false },
+		supervised: { guard: predicate(['s', false]), specifications: [], rest: false, blocked: [] },
 		allowed: false,
 		executing: predicate(['e', false]),
 		finished: predicate(),

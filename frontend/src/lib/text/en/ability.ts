@@ -57,6 +57,7 @@ export const ability = {
 		none: 'The supervisor adds nothing to this start.',
 		pending: 'What the supervisor adds is still being computed.',
 		noShort: 'There is no short expression for it: the states themselves say when.',
+		blocked: 'Not, among others, where:',
 		because: 'Because of:',
 		rest: 'coming to rest again',
 		allows: 'It would allow a start now.',

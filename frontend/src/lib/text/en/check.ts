@@ -125,5 +125,6 @@ export const check = {
 	onlyWhen: 'May start only when',
 	because: 'Because of',
 	noShort: 'the states themselves say it; no short condition does',
+	blocked: 'Not, among others, where:',
 	rest: 'coming to rest again'
 };

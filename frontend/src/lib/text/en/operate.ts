@@ -184,6 +184,7 @@ export const operate = {
 		guards: (n: number): string => (n === 1 ? '1 guard added by it' : `${n} guards added by it`),
 		onlyWhen: 'only when',
 		noShort: 'no short condition says it',
+		blocked: 'Not, among others, where:',
 		because: 'because of',
 		rest: 'coming to rest again',
 		none: 'There is no supervisor, so nothing is started.',

@@ -56,6 +56,7 @@ export const ability: Text['ability'] = {
 		none: 'Övervakaren lägger inte till något för denna start.',
 		pending: 'Vad övervakaren lägger till beräknas fortfarande.',
 		noShort: 'Det finns inget kort uttryck för det: tillstånden själva säger när.',
+		blocked: 'Inte, bland annat, där:',
 		because: 'På grund av:',
 		rest: 'att kunna komma till vila igen',
 		allows: 'Den skulle tillåta en start nu.',

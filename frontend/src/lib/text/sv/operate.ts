@@ -183,6 +183,7 @@ export const operate: Text['operate'] = {
 		guards: (n) => (n === 1 ? '1 tillagt villkor' : `${n} tillagda villkor`),
 		onlyWhen: 'bara när',
 		noShort: 'inget kort villkor säger det',
+		blocked: 'Inte, bland annat, där:',
 		because: 'på grund av',
 		rest: 'att åter komma till vila',
 		none: 'Det finns ingen övervakare, så inget startas.',
