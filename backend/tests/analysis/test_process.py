@@ -36,7 +36,7 @@ def test_it_is_that_of_the_synthesis_and_grows() -> None:
     assert found[-1].pending is None
     for before, after in pairwise(found):
         assert before.pending is not None
-        for name in ("supervisor", "guards", "warnings", "reachable_states", "supervised_states"):
+        for name in ("supervisor", "guarded", "guards", "warnings", "reachable_states", "supervised_states"):
             assert getattr(before, name) in (None, getattr(after, name))
 
 

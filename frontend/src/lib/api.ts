@@ -3034,12 +3034,14 @@ export interface components {
          * AnalysisDocument
          * @description An `Analysis`: what is null has not been computed, or there is none.
          *
-         *     `supervised` says whether there is a supervisor; `guards` are of what it restricts: abilities, and in a plain
-         *     automaton events.
+         *     `supervised` says whether there is a supervisor; `guarded` are the abilities that it restricts, and `guards` what it
+         *     adds to them, by ability, and in a plain automaton by event.
          */
         AnalysisDocument: {
             /** Findings */
             findings: components["schemas"]["FindingDocument"][] | null;
+            /** Guarded */
+            guarded: string[] | null;
             /** Guards */
             guards: {
                 [key: string]: components["schemas"]["GuardDocument"];

@@ -14,11 +14,12 @@ from sequence_planner.checking.supervised import check_supervision
 from sequence_planner.checking.unmeetable import unmeetable
 from sequence_planner.checking.warning import ModelWarning, place
 from sequence_planner.synthesis.effort import Effort, TooMuchError
-from sequence_planner.synthesis.guards import Guard, shown_guards
+from sequence_planner.synthesis.guards import Guard, Restrictions
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor
 from sequence_planner.synthesis.unmeetable import why_unmeetable
 
+GUARDS = "the guards"
 COUNTING = "the number of states"  # the last that is computed, where it is not soon done
 MOST_COUNTING = 50_000_000  # nodes, see `Effort`: a station that runs has other things to do
 _SOON = 2_000_000  # nodes, see `Effort`: whoever waits for guards does not notice
@@ -30,11 +31,12 @@ class Analysis:
 
     `pending` is what is being computed, and None when that is all. Without a supervisor in the end, `warnings` say why
     there is none. Counts are of the states of all variables that can be reached, without and with the supervisor;
-    `guards` are those for people to read, by ability or event.
+    `guarded` are the starts that it restricts, `guards` what it adds to them for people to read, by ability or event.
     """
 
     pending: str | None
     supervisor: Supervisor | None = None
+    guarded: tuple[str, ...] | None = None
     guards: Mapping[str, Guard] | None = None
     reachable_states: int | None = None
     supervised_states: int | None = None
@@ -59,30 +61,35 @@ def analyses(automaton: Automaton, counting: int = MOST_COUNTING) -> Iterator[An
         yield found
         found = _counted(found, supervision, min(counting, _SOON))
         yield found
-        found = replace(found, warnings=tuple(check_supervision(automaton, supervision)), pending="the guards")
+        found = replace(found, warnings=tuple(check_supervision(automaton, supervision)))
         yield found
-        found = replace(found, guards=shown_guards(supervision))
+        restrictions = Restrictions(supervision)
+        guarded = tuple(start for starts in restrictions.starts.values() for start in starts)
+        found = replace(found, guarded=guarded, pending=GUARDS)
+        yield found
+        found = replace(found, guards={name: restrictions.guard(name) for name in restrictions.starts})
     found = replace(found, pending=COUNTING)
     yield found
     yield replace(_counted(found, supervision, counting), pending=None)
 
 
-def without_numbers(automaton: Automaton) -> Iterator[Analysis]:
-    """What is found of `automaton` but for numbers of states, which few wait for."""
+def without_numbers(automaton: Automaton, guards: bool = True) -> Iterator[Analysis]:
+    """What is found of `automaton` but for numbers of states, which few wait for; `guards` only where wanted."""
+    last = (COUNTING,) if guards else (GUARDS, COUNTING)
     for found in analyses(automaton, counting=0):
         yield found
-        if found.pending == COUNTING:
+        if found.pending in last:
             return
 
 
 def everything(automaton: Automaton, connections: Connections | None, synthesis: bool) -> Iterator[Looked | Analysis]:
-    """What the checks find, and what synthesis finds where it is asked for, without numbers of states.
+    """What the checks find, and what synthesis finds where it is asked for, without numbers of states and guards.
 
     What may take longest comes last.
     """
     yield from looked(automaton, connections)
     if synthesis:
-        yield from without_numbers(automaton)
+        yield from without_numbers(automaton, guards=False)
     yield from conflicting(automaton)
 
 

@@ -91,14 +91,15 @@ class SupervisorDocument(Document):
 class AnalysisDocument(Document):
     """An `Analysis`: what is null has not been computed, or there is none.
 
-    `supervised` says whether there is a supervisor; `guards` are of what it restricts: abilities, and in a plain
-    automaton events.
+    `supervised` says whether there is a supervisor; `guarded` are the abilities that it restricts, and `guards` what it
+    adds to them, by ability, and in a plain automaton by event.
     """
 
     pending: str | None
     supervised: bool | None
     reachable_states: int | None
     supervised_states: int | None
+    guarded: list[str] | None
     guards: dict[str, GuardDocument] | None
     findings: list[FindingDocument] | None
 
@@ -111,6 +112,7 @@ def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
         supervised=True if analysis.supervisor is not None else None if analysis.warnings is None else False,
         reachable_states=analysis.reachable_states,
         supervised_states=analysis.supervised_states,
+        guarded=None if analysis.guarded is None else list(analysis.guarded),
         guards=None if analysis.guards is None else {name: _guard(guard) for name, guard in analysis.guards.items()},
         findings=None if warnings is None else findings_of(automaton, warnings),
     )

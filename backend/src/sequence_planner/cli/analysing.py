@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from types import FrameType
@@ -13,7 +13,7 @@ from typing import Annotated
 
 import typer
 
-from sequence_planner.analysis.analysis import COUNTING, Analysis, analyses, everything, without_numbers
+from sequence_planner.analysis.analysis import COUNTING, GUARDS, Analysis, analyses, everything, without_numbers
 from sequence_planner.analysis.document import (
     AnalysisDocument,
     document_of,
@@ -72,24 +72,27 @@ def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Foun
 
     A terminal's standard error is told what goes on.
     """
-    known = _kept(automaton, counts)
+    unwanted = frozenset[str]() if counts else frozenset({COUNTING})
+    known = _kept(automaton, unwanted)
     if known is not None:
         return known
     work = (analyses, automaton, _COUNTING) if counts else (without_numbers, automaton)
-    return _found(automaton, limits, _Hearing(work))
+    return _found(automaton, limits, _Hearing(work, unwanted))
 
 
 def checked(automaton: Automaton, connections: Connections | None, limits: Limits) -> Found:
     """What synthesis and all checks find within `limits`; `connections` are those of a station to its topics."""
-    known = _kept(automaton, counts=False)
-    hearing = _Hearing((everything, automaton, connections, known is None), after=CONFLICTS)
+    unwanted = frozenset({GUARDS, COUNTING})
+    known = _kept(automaton, unwanted)
+    hearing = _Hearing((everything, automaton, connections, known is None), unwanted, after=CONFLICTS)
     found = _found(automaton, limits, hearing)
     return found if known is None else replace(known, unfinished=found.unfinished, suspicious=found.suspicious)
 
 
-def _kept(automaton: Automaton, counts: bool) -> Found | None:
+def _kept(automaton: Automaton, unwanted: Collection[str]) -> Found | None:
+    """What is kept of an earlier command, if nothing is missing but what is `unwanted`."""
     known = kept(automaton)
-    if known is None or (counts and known.analysis.pending):
+    if known is None or known.analysis.pending not in (None, *unwanted):
         return None
     supervisor = None if known.supervisor is None else read_supervisor(automaton, known.supervisor)
     return Found(known.analysis, supervisor, None)
@@ -99,7 +102,7 @@ def _found(automaton: Automaton, limits: Limits, hearing: _Hearing) -> Found:
     unfinished = hearing.hear(limits)
     analysis = hearing.analysis
     document = document_of(automaton, analysis)
-    if analysis.pending in (None, COUNTING):
+    if analysis.pending in (None, GUARDS, COUNTING):
         supervisor_kept = None if analysis.supervisor is None else supervisor_document(analysis.supervisor)
         keep(automaton, Kept(analysis=document, supervisor=supervisor_kept))
     return Found(document, analysis.supervisor, unfinished, tuple(sorted(hearing.suspicious)))
@@ -147,9 +150,12 @@ Work = tuple[Callable[..., Iterator[Looked | Analysis]], *tuple[object, ...]]
 
 @dataclass
 class _Hearing:
-    """What a process that does `work` has told by now; `after` is what it looks for at last."""
+    """What a process that does `work` has told by now; `after` is what it looks for at last, and nobody waits for what
+    is `unwanted`.
+    """
 
     work: Work
+    unwanted: Collection[str]
     after: str | None = None
     analysis: Analysis = field(default_factory=lambda: Analysis("the safe states"))
     suspicious: set[ModelWarning] = field(default_factory=set)
@@ -177,7 +183,7 @@ class _Hearing:
     def _left(self) -> str:
         """What has not been found."""
         left = [self._pending or self.analysis.pending, self.analysis.pending, self.after]
-        return " and ".join(dict.fromkeys(each for each in left if each not in (None, COUNTING)))
+        return " and ".join(dict.fromkeys(each for each in left if each is not None and each not in self.unwanted))
 
     def _tell(self, seconds: float) -> None:
         if sys.stderr.isatty() and seconds > _QUIET and self._pending is not None:

@@ -114,8 +114,8 @@ def _summary(checked: Checked) -> dict[str, object]:
 
 def _guarded(checked: Checked) -> set[str] | None:
     """The starts that the supervisor restricts; None if that is not known, or there is none."""
-    guards = checked.found.document.guards
-    return None if guards is None else {start for guard in guards.values() for start in guard.starts}
+    guarded = checked.found.document.guarded
+    return None if guarded is None else set(guarded)
 
 
 def _summary_line(checked: Checked) -> str:
@@ -132,5 +132,5 @@ def _summary_line(checked: Checked) -> str:
         return f"{parts}; no supervisor"
     guarded = _guarded(checked)
     if guarded is None:
-        return f"{parts}; the guards of the supervisor were not computed"
+        return f"{parts}; what the supervisor guards was not computed"
     return f"{parts}; the supervisor guards {counted(len(guarded), *what)}"

@@ -51,7 +51,13 @@ class Unusable:
 
 
 _UNSUPERVISED = AnalysisDocument(
-    pending=None, supervised=False, reachable_states=None, supervised_states=None, guards=None, findings=[]
+    pending=None,
+    supervised=False,
+    reachable_states=None,
+    supervised_states=None,
+    guarded=None,
+    guards=None,
+    findings=[],
 )
 
 

@@ -46,34 +46,48 @@ class Guard:
     blocked: tuple[Expression, ...] = ()
 
 
-def shown_guards(supervision: Supervision, most: int = MOST_EFFORT_PER_GUARD) -> Mapping[str, Guard]:
-    """The guard of each start that the supervisor restricts, by ability, and in a plain automaton by event.
+class Restrictions:
+    """The starts that the supervisor restricts, by the name of the guard that it adds to them: the ability, and in a
+    plain automaton the event.
 
     Where an event has transitions of which one is allowed and another is not in one state, they have guards of their
-    own, under the names `event#1`, `event#2` and so on. Each takes `most` nodes at most, see `Effort`. Raises
-    `ValueError` if there is no supervisor.
+    own, under the names `event#1`, `event#2` and so on. Raises `ValueError` if there is no supervisor.
     """
-    if not supervision.possible:
-        raise ValueError("there is no supervisor, and every guard would say nothing")
-    reached = _reached(supervision)
-    on: dict[str, Function] = {}
-    off: dict[str, Function] = {}
-    for name in _startable(supervision.plant.automaton):
-        allowed, disallowed = supervision.guard(name)
-        on[name], off[name] = allowed & reached, disallowed & reached
-    reasons = _Reasons(supervision)
-    either = supervision.plant.diagrams.disjunction
-    guards: dict[str, Guard] = {}
-    for name, starts in _merged(supervision.plant.automaton, on, off).items():
-        allowed, disallowed = either(on[start] for start in starts), either(off[start] for start in starts)
-        if disallowed.satisfiable():
-            said = Saying(supervision.plant, allowed, disallowed, most)
-            expression = said.shortest()
-            count = None if expression is None else count_literals(expression)
-            specifications, rest = reasons.of({start: off[start] for start in starts})
-            blocked = said.blocked() if expression is None else ()
-            guards[name] = Guard(starts, expression, count, specifications, rest, blocked)
-    return guards
+
+    def __init__(self, supervision: Supervision) -> None:
+        if not supervision.possible:
+            raise ValueError("there is no supervisor, and every guard would say nothing")
+        self._supervision = supervision
+        automaton, reached = supervision.plant.automaton, _reached(supervision)
+        self._on: dict[str, Function] = {}
+        self._off: dict[str, Function] = {}
+        for name in _startable(automaton):
+            allowed, disallowed = supervision.guard(name)
+            self._on[name], self._off[name] = allowed & reached, disallowed & reached
+        merged = _merged(automaton, self._on, self._off)
+        self.starts: Mapping[str, tuple[str, ...]] = {
+            name: starts for name, starts in merged.items() if any(self._off[start].satisfiable() for start in starts)
+        }
+
+    def guard(self, name: str, most: int = MOST_EFFORT_PER_GUARD) -> Guard:
+        """The guard of this name; `most` nodes is what either way to say it may take, see `Effort`."""
+        starts, either = self.starts[name], self._supervision.plant.diagrams.disjunction
+        allowed, disallowed = (either(side[start] for start in starts) for side in (self._on, self._off))
+        said = Saying(self._supervision.plant, allowed, disallowed, most)
+        expression = said.shortest()
+        count = None if expression is None else count_literals(expression)
+        specifications, rest = self._reasons.of({start: self._off[start] for start in starts})
+        return Guard(starts, expression, count, specifications, rest, said.blocked() if expression is None else ())
+
+    @cached_property
+    def _reasons(self) -> _Reasons:
+        return _Reasons(self._supervision)
+
+
+def shown_guards(supervision: Supervision, most: int = MOST_EFFORT_PER_GUARD) -> Mapping[str, Guard]:
+    """The guard of each start that the supervisor restricts, by name, see `Restrictions`."""
+    restrictions = Restrictions(supervision)
+    return {name: restrictions.guard(name, most) for name in restrictions.starts}
 
 
 def _reached(supervision: Supervision) -> Function:

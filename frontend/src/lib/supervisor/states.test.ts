@@ -7,6 +7,7 @@ const NOTHING: Analysis = {
 	supervised: null,
 	reachable_states: null,
 	supervised_states: null,
+	guarded: null,
 	guards: null,
 	findings: null
 };
