@@ -15,7 +15,7 @@ from sequence_planner.synthesis.primes import Cube, Primes
 
 MOST_CUBES = 400  # to choose from; as long as there are no more in all, the cover has the fewest literals
 _MOST_ROUNDS = 8  # of looking for better cubes, where there are more
-_NEEDLESS = 4  # times as many literals as wanted are too many to go on, some of which will be left out
+_NEEDLESS = 2  # times as many literals as wanted are too many to go on, of which few will be left out
 _ORDERS = 12  # in which a cube is expanded
 
 
@@ -47,14 +47,12 @@ def cover(
     """
     primes = Primes(diagrams, off, effort)
     try:
-        begin = primes.holding(on, 2 * most_literals, _NEEDLESS * most_literals)
+        begin = primes.holding(on, MOST_CUBES, _NEEDLESS * most_literals)
     except TooMuchError:
         return None
     if begin is None:
         return None
     chosen = _Cover(diagrams, primes, on, begin)
-    if chosen.literals(chosen.best) > 2 * most_literals:
-        return None
     with contextlib.suppress(TooMuchError):
         chosen.improve(_needed(diagrams, on, off))
     return tuple(sorted(chosen.best, key=lambda cube: (len(primes.restricted(cube)), primes.restricted(cube))))

@@ -19,8 +19,10 @@ class TooMuchError(Exception):
 class Effort:
     """What may still be spent: the nodes of all sets from which steps are taken or that are compared, by samples."""
 
-    def __init__(self, most: int) -> None:
+    def __init__(self, most: int, least: int = 0) -> None:
+        """`most` nodes are left. Whatever is done counts as `least` nodes at least."""
         self._left = most
+        self._least = least
         self._taken = 0
 
     def limited(self, steps: Iterable[Step]) -> list[Step]:
@@ -30,7 +32,7 @@ class Effort:
     def spend(self, states: Function) -> None:
         """Count something that is done with `states`."""
         if self._taken % _SAMPLED == 0:
-            self.use(states.node_count() * _SAMPLED)
+            self.use(max(states.node_count(), self._least) * _SAMPLED)
         self._taken += 1
 
     def use(self, nodes: int) -> None:

@@ -72,19 +72,25 @@ class Primes:
         With `wanted`, the literal without which it holds most of that goes first.
         """
         axes = list(order)
-        left = list(axes)
-        while left:
-            axis = left[0]
-            if wanted is not None:
-                freed_of = self._freed(cube)
-                gains = {each: self._gain(freed_of[each], wanted) for each in left}
-                left = [each for each in left if gains[each] >= 0]  # a literal that is needed stays so in larger cubes
-                axis = max(left, key=gains.__getitem__, default=axis)
-            freed = _with(cube, axis, self.whole[axis])
-            if self.fits(freed):
-                cube = freed
-            left = [each for each in left if each != axis]
+        if wanted is None:
+            for axis in axes:
+                if self.fits(freed := _with(cube, axis, self.whole[axis])):
+                    cube = freed
+        else:
+            cube = self._freed_for(wanted, cube, axes)
         return self._widened(cube, axes) if widest else cube
+
+    def _freed_for(self, wanted: Function, cube: Cube, axes: Iterable[int]) -> Cube:
+        left = list(axes)
+        while True:
+            freed = self._freed(cube)
+            gains = {axis: self._gain(freed[axis], wanted) for axis in left}
+            left = [axis for axis in left if gains[axis] >= 0]  # a literal that is needed stays so in larger cubes
+            if not left:
+                return cube
+            best = max(left, key=gains.__getitem__)
+            cube = _with(cube, best, self.whole[best])
+            left.remove(best)
 
     def _widened(self, cube: Cube, axes: Iterable[int]) -> Cube:
         for axis in axes:

@@ -44,8 +44,10 @@ class _Closure:
         if key in self._memo:
             return self._memo[key]
         top, fires = self._levels[index]
-        level, bound = states.node_level(), within.node_level()
-        first = min(each for each in (level, bound, top) if each is not None)
+        first = top
+        for level in (states.node_level(), within.node_level()):
+            if level is not None and level < first:
+                first = level
         if first < top:
             high, low = _branches(states, first)
             high_within, low_within = _branches(within, first)

@@ -20,6 +20,7 @@ from sequence_planner.synthesis.wording import count_literals, worded
 MOST_LITERALS = 60  # of a guard that people can still read
 MOST_CASES = 3  # of those in which a start must wait, where there is no short guard
 MOST_LITERALS_OF_CASE = 12
+_LEAST = 50  # nodes, as which what is done with fewer counts: it takes as long
 _CACHE = 1 << 16  # for sets over the few variables that tell them apart
 
 
@@ -53,7 +54,7 @@ class Saying:
         for find, allowed in ways:
             longest = MOST_LITERALS if shortest is None else count_literals(shortest)
             one, other = self._few if allowed else reversed(self._few)
-            cubes = find(self._diagrams, one, other, Effort(self._effort), longest)
+            cubes = find(self._diagrams, one, other, self._new_effort(), longest)
             text = None if cubes is None else self._worded(cubes, allowed)
             if text is not None and count_literals(text) <= longest:
                 shortest = text if shortest is None else min(shortest, text, key=_length)
@@ -68,7 +69,7 @@ class Saying:
         """
         diagrams, initial = self._diagrams, self._initially
         on, off = self._few
-        primes = Primes(diagrams, on, Effort(self._effort))
+        primes = Primes(diagrams, on, self._new_effort())
         found: list[Expression] = []
         try:
             for _ in range(MOST_CASES):
@@ -85,9 +86,12 @@ class Saying:
             pass
         return tuple(found)
 
+    def _new_effort(self) -> Effort:
+        return Effort(self._effort, _LEAST)
+
     @cached_property
     def _separation(self) -> Separation:
-        return Separation(self._plant, self._on, self._off, Effort(self._effort))
+        return Separation(self._plant, self._on, self._off, self._new_effort())
 
     @cached_property
     def _diagrams(self) -> Diagrams:

@@ -44,6 +44,7 @@ class Supervision:
             for specification in plant.automaton.specifications.values()
             if plant.says((specification.forbidden,))
         }
+        self._reached: dict[bool, Function] = {}
         self.safe = self._greatest_safe() if safe is None else plant.diagrams.imported(safe) & plant.diagrams.valid
 
     @property
@@ -54,8 +55,13 @@ class Supervision:
     def reachable(self, supervised: bool, effort: Effort | None = None) -> Function:
         """The states that the initial ones lead to, with or without the supervisor.
 
-        Raises `TooMuchError` when that takes more than `effort`.
+        Raises `TooMuchError` when that takes more than `effort`. They are kept.
         """
+        if supervised not in self._reached:
+            self._reached[supervised] = self._all_reachable(supervised, effort)
+        return self._reached[supervised]
+
+    def _all_reachable(self, supervised: bool, effort: Effort | None) -> Function:
         plant = self.plant
         starts = [step for steps in plant.starts.values() for step in steps]
         uncontrollable = plant.uncontrollable
