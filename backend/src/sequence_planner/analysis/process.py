@@ -10,7 +10,7 @@ import gc
 import os
 import signal
 import time
-from collections.abc import AsyncIterator, Callable, Iterator
+from collections.abc import AsyncIterator, Callable, Generator, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, Pipe
@@ -76,7 +76,9 @@ async def telling(
             await words.end()
 
 
-def told(gigabytes: float, seconds: float, work: Callable[..., Iterator[Word]], *arguments: object) -> Iterator[Word]:
+def told(
+    gigabytes: float, seconds: float, work: Callable[..., Iterator[Word]], *arguments: object
+) -> Generator[Word, None, None]:
     """The same to a command, which waits for it.
 
     Raises `SynthesisEndedError`, and `TimeoutError` after so many seconds. The process ends with the iteration.
