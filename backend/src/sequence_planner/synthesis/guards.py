@@ -22,7 +22,7 @@ from sequence_planner.synthesis.supervision import Supervision
 from sequence_planner.synthesis.wording import count_literals
 
 MOST_EFFORT = 20_000_000  # nodes, see `effort`, to find out which states are reached
-MOST_EFFORT_PER_GUARD = 3_000_000  # nodes, for the variables it is over, and for either form that it can have
+MOST_EFFORT_PER_GUARD = 2_000_000  # nodes, for the variables it is over, and for either form that it can have
 _MOST_SYNTHESES = 8  # to see for which specifications' sake rest is lost
 
 
