@@ -101,7 +101,7 @@ def killed() -> Iterator[int]:
 def test_what_was_told_before_the_deadline_is_had() -> None:
     heard = []
     with pytest.raises(TimeoutError):
-        for each in told(1.0, 1.5, counting, 3):
+        for each in told(1.0, 4.0, counting, 3):
             heard.append(each)
     assert heard == [0, 1, 2]
 
