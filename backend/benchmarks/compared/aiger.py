@@ -10,14 +10,19 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from compared.declaring import Problem
+from compared.declaring import UNSUPERVISED, Problem
 
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.goals.tracking import Progress, Tracker
 from sequence_planner.planning.plan import Circumstances
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.encoding import Encoding
 from sequence_planner.planning.sat.sweep import Sweep
+from sequence_planner.planning.sat.symbolic import Symbol, SymbolicState
+from sequence_planner.planning.single.derived import for_planning
 
 
 class _Gates(Circuit):
@@ -70,6 +75,44 @@ def aiger(problem: Problem, question: str) -> bytes:
         reached.append(after)
     for literal in encoding.assumptions(Circumstances()):
         circuit.require(literal)
+    return _allowed(circuit, latches, reached)
+
+
+def aiger_of_plain(automaton: Automaton, state: State, goals: Goals) -> bytes:
+    """The question whether a plain automaton, unsupervised, reaches `goals`: a step of the circuit is a transition."""
+    circuit = _Gates()
+    bare = replace(for_planning(automaton), flags=())
+    encoding = Encoding(bare, UNSUPERVISED, circuit, frozenset(), inside=True, lazily=True)
+    before = encoding.initial(frozenset())
+    circuit.demanded.clear()
+    true = Symbol({False: Circuit.FALSE, True: Circuit.TRUE})
+    readable: SymbolicState = {**before, **{each.flag("enabled"): true for each in bare.abilities.values()}}
+    after, choices = dict(before), []
+    for ability in bare.abilities.values():
+        choice = circuit.fresh()
+        choices.append(choice)
+        allowed, alone = encoding.start(ability, readable, readable, choice)
+        circuit.require(-choice, allowed)
+        for name in before:
+            if alone[name] is not readable[name]:
+                after[name] = encoding.reading.chosen(choice, alone[name], after[name])
+    circuit.at_most_one(choices)
+    latches: dict[int, _Latch] = {}
+    for name, symbol in before.items():
+        for value, literal in symbol.literals.items():
+            if literal > 0 and literal not in latches:
+                latches[literal] = _Latch(literal, after[name].literal(value), state[name] == value)
+    reached: list[int] = []
+    for goal in goals:
+        literal = circuit.fresh()
+        now = circuit.disjunction((literal, encoding.reading.truth(goal.predicate, after).yes))
+        latches[literal] = _Latch(literal, now, initial=False)
+        reached.append(now)
+    return _allowed(circuit, latches, reached)
+
+
+def _allowed(circuit: _Gates, latches: dict[int, _Latch], reached: list[int]) -> bytes:
+    """With a latch that says no choice so far was against the rules."""
     before = circuit.fresh()
     allowed = circuit.conjunction((before, *map(circuit.disjunction, circuit.demanded)))
     latches[before] = _Latch(before, allowed, initial=True)

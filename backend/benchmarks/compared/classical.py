@@ -14,8 +14,8 @@ from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.planning.plain import for_planning
 from sequence_planner.planning.plan import goals_of
+from sequence_planner.planning.single.derived import for_planning
 
 Document = dict[str, Any]
 

@@ -20,9 +20,9 @@ from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.model.plain_documents import read_plain
 from sequence_planner.model.source import ModelError
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plain import for_planning
 from sequence_planner.planning.plan import Circumstances, Goal, goals_of
 from sequence_planner.planning.replaying.replay import Replay
+from sequence_planner.planning.single.derived import for_planning
 
 from .breadth_first import shortest
 from .budget import examples

@@ -24,10 +24,11 @@ from sequence_planner.planning.heuristic.breadth_first import ShortestSearch
 from sequence_planner.planning.heuristic.elimination import Elimination
 from sequence_planner.planning.heuristic.estimate import Estimator
 from sequence_planner.planning.heuristic.relaxed_task import RelaxedTask
-from sequence_planner.planning.plain import for_planning, plan_transitions
+from sequence_planner.planning.plain import plan_transitions
 from sequence_planner.planning.plan import Contract, Goal, Plan, PlanTick, goals_of
 from sequence_planner.planning.replaying.acceptance import Acceptance
 from sequence_planner.planning.replaying.replay import missing
+from sequence_planner.planning.single.derived import for_planning
 
 from . import building
 from .breadth_first import Shortest, shortest

@@ -25,8 +25,8 @@ from sequence_planner.exporting.ticks import sequential
 from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.expressions.syntax import ExpressionError
-from sequence_planner.planning.plain import for_planning
 from sequence_planner.planning.plan import Goal, goals_of
+from sequence_planner.planning.single.derived import for_planning
 from sequence_planner.synthesis.supervision import SynthesisError
 
 

@@ -31,7 +31,7 @@ from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import Engines, Lane
 from sequence_planner.planning.goals.monitor import monitor_of
-from sequence_planner.planning.plain import as_station, plan_transitions
+from sequence_planner.planning.plain import plan_transitions
 from sequence_planner.planning.plain_answer import PlainAnswer
 from sequence_planner.planning.plan import (
     Circumstances,
@@ -45,6 +45,7 @@ from sequence_planner.planning.plan import (
 from sequence_planner.planning.planner import InTurn, Planner, PlannerError
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest, diagnose
 from sequence_planner.planning.reasons.why import SupervisorFor
+from sequence_planner.planning.single.derived import as_station
 from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import SynthesisError
 

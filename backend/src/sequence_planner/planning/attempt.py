@@ -29,6 +29,7 @@ class Attempt:
         self.share = share
         self.engine = ""  # that has found the plan or the proof
         self.proof: Proof | None = None
+        self.exhausted = False  # all that can be reached has been looked at, and there is no plan
         self.troubles: list[str] = []
         self.heard = False  # of an engine that has not failed
         self._accepts = accepts
@@ -55,14 +56,19 @@ class Attempt:
         """Whether what the contract asks for has been found."""
         plan = self.plan
         if plan is None:
-            return self.proof is not None
+            return self.impossible
         return self.task.contract is Contract.FAST or (plan.minimal_ticks and plan.minimal_starts)
+
+    @property
+    def impossible(self) -> bool:
+        """Whether there is no plan at all."""
+        return self.proof is not None or self.exhausted
 
     @property
     def patience(self) -> float:
         """The seconds for which it is still worth while to wait for another report."""
         plan = self.plan
-        if self.proof is not None or (plan is not None and plan.minimal_ticks and plan.minimal_starts):
+        if self.impossible or (plan is not None and plan.minimal_ticks and plan.minimal_starts):
             return 0.0
         grace = max(self._grace_ends - time.monotonic(), 0.0)
         return grace if plan is not None else min(grace, self.share.remaining)
@@ -87,14 +93,14 @@ class Attempt:
         else:
             self.heard = True
             self._searched = max(self._searched, finding.searched)
-            if finding.proof is not None and self._plan is None and self.proof is None:
-                self.proof, self.engine = finding.proof, report.engine
+            if finding.decided and self._plan is None and not self.impossible:
+                self.proof, self.exhausted, self.engine = finding.proof, finding.exhausted, report.engine
         self._wait()
 
     def _take_plan(self, engine: str, plan: Plan) -> None:
-        if self.proof is not None:
+        if self.impossible:
             troubles.log("%s has a plan for %s, which %s has proven to have none", engine, self.task, self.engine)
-            self.proof = None
+            self.proof, self.exhausted = None, False
         if self._plan is None or _rank(plan) < _rank(self._plan):
             self._plan, self.engine = plan, engine
 

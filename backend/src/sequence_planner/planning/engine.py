@@ -33,17 +33,19 @@ class Task(Immutable):
 class Finding(Immutable):
     """A plan, or a proof that there is none, or neither.
 
-    No plan has at most `searched` ticks, or, when there is a plan, none has fewer than `searched`.
+    No plan has at most `searched` ticks, or, when there is a plan, none has fewer than `searched`. When it is
+    `exhausted`, all that can be reached has been looked at, and there is none.
     """
 
     plan: Plan | None = None
     proof: Proof | None = None
     searched: int = 0
+    exhausted: bool = False
 
     @property
     def decided(self) -> bool:
         """Whether there is nothing more to find for a fast plan."""
-        return self.plan is not None or self.proof is not None
+        return self.plan is not None or self.proof is not None or self.exhausted
 
 
 class Engine(Protocol):

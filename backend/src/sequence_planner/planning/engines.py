@@ -43,6 +43,7 @@ class Lane(Immutable):
     name: str
     engines: Mapping[Contract, tuple[str, ...]]
     niceness: int = 5  # ticks are not held up by planning
+    first_turns: Mapping[str, float] = LONG_FIRST_TURNS  # of those whose first turn is not `FIRST_TURN`
 
     @property
     def all_engines(self) -> tuple[str, ...]:
@@ -149,7 +150,7 @@ class Engines:
         while waiting and not budget.spent:
             going_on: list[str] = []
             for name in waiting:
-                turn = longer * LONG_FIRST_TURNS.get(name, FIRST_TURN) if len(waiting) > 1 else inf
+                turn = longer * self._lane.first_turns.get(name, FIRST_TURN) if len(waiting) > 1 else inf
                 own = _at_most(budget, min(turn, patience()))
                 report = self._turn(name, task, own)
                 yield report

@@ -10,11 +10,12 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
+from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.heuristic.estimate import Estimator
 from sequence_planner.planning.heuristic.graph import Kind
 from sequence_planner.planning.heuristic.relaxed_task import RelaxedTask
 from sequence_planner.planning.heuristic.space import Position, Space
+from sequence_planner.planning.plan import Plan, PlanTick
 
 _MOST_VALUES = 2_000_000  # kept in memory, over all positions: beyond, the search gives up
 
@@ -53,6 +54,14 @@ class FewestStarts:
         self._compiled = CompiledTick(automaton, hot=False)
         self._supervisor = supervisor
         self._relaxed = RelaxedTask(automaton, supervisor)
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        """A plan with the fewest starts, or up to how many there is none; or that there is none at all."""
+        found = self.find(task, task.longest - 1, budget)
+        if found.order is None:
+            return Finding(searched=min(found.least, task.longest), exhausted=found.exhausted)
+        ticks = (*(PlanTick((), (name,)) for name in found.order), PlanTick((), ()))
+        return Finding(Plan(ticks, minimal_ticks=True, minimal_starts=True), searched=len(ticks))
 
     def find(self, task: Task, most: int, budget: Budget) -> Fewest:
         """Up to orders of `most` starts. When the budget is spent or there is too much, what is known by then."""

@@ -24,7 +24,8 @@ from sequence_planner.planning.sat.writing import Write, Writes, Writing, sharin
 class SymbolicTick(NamedTuple):
     """One tick: the choices, the finishes applied, the state after step 3 and after each place in the order of starts.
 
-    A position counts where its start is chosen; the last is the end of the tick, whatever is chosen.
+    A position counts where its start is chosen; the last is the end of the tick, whatever is chosen. Where one start at
+    a time is taken there is one position, and `earlier` says at each place that the start there or one before it is.
     """
 
     effects: Mapping[str, int]
@@ -32,6 +33,7 @@ class SymbolicTick(NamedTuple):
     starts: Sequence[tuple[str, int]]
     synchronised: SymbolicState
     positions: Sequence[tuple[int, SymbolicState]]
+    earlier: Sequence[int] = ()
 
     @property
     def end(self) -> SymbolicState:
@@ -122,6 +124,8 @@ class Encoding:
 
         `pause` is called before each place, and may raise.
         """
+        if self.automaton.one_at_a_time:
+            return self._step(state, order, pause)
         effects, sensed = self._sense(state)
         finishes, finished = self._finish(sensed)
         synchronised = self._synchronise(finished, self.automaton.flags)
@@ -145,6 +149,37 @@ class Encoding:
             self._circuit.at_most_one(choices)
         return SymbolicTick(effects, finishes, starts, synchronised, positions)
 
+    def _step(self, state: SymbolicState, order: Iterable[Ability], pause: Callable[[], object]) -> SymbolicTick:
+        """At most one start from a safe state in which nothing is unknown, of an automaton with nothing but starts."""
+        circuit = self._circuit
+        taken: list[tuple[int, Writes]] = []
+        starts: list[tuple[str, int]] = []
+        earlier: list[int] = []
+        before = circuit.FALSE
+        for ability in order:
+            pause()
+            choice = circuit.fresh()
+            writes, determined = self._writing.writes(ability.start_actions, state)
+            for condition in (
+                determined,
+                self.reading.truth(ability.enabled, state).yes,
+                self.reading.truth(ability.start_guard, state).yes,
+                self._permitted(ability, state),
+                -before,
+            ):
+                circuit.require(-choice, condition)
+            before = circuit.disjunction((before, choice))
+            taken.append((choice, writes))
+            starts.append((ability.name, choice))
+            earlier.append(before)
+        end = self._writing.together(state, taken)
+        return SymbolicTick({}, {}, starts, state, [(before, end)], earlier)
+
+    def _permitted(self, ability: Ability, state: SymbolicState) -> int:
+        """Whether the supervisor allows a start in a safe state in which nothing is unknown."""
+        guard = self._guards.get(ability.name)
+        return Circuit.TRUE if guard is None else self.reading.member(guard, state)
+
     def safe(self, state: SymbolicState) -> int:
         """The literal that says the state is safe."""
         return self.reading.member(self._safe, state)
@@ -167,8 +202,8 @@ class Encoding:
             conditions.append(state[ability.flag("enabled")].literal(True))
         if not self._by_guards or ability.restart:
             conditions.append(self.safe(after))
-        elif ability.name in self._guards:
-            conditions.append(self.reading.member(self._guards[ability.name], state))
+        else:
+            conditions.append(self._permitted(ability, state))
         return self._circuit.conjunction(conditions), self._synchronise(after, self._following.flags(writes))
 
     def _free(self, domain: Sequence[Value]) -> Symbol:

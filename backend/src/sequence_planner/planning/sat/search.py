@@ -15,6 +15,7 @@ from sequence_planner.counting import counted
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.plan import Circumstances, Contract, Goal, Plan
 from sequence_planner.planning.sat.fewest import Fewest
+from sequence_planner.planning.sat.succession import Succession
 from sequence_planner.planning.sat.unrolling import Unrolling
 
 # A solver for each set of unknown variables; topics come and go in few combinations.
@@ -46,8 +47,11 @@ class Search:
         frozen: State = MappingProxyType({}),
         once: bool = False,
         oracles: frozenset[str] = frozenset(),
+        succession: Succession = (),
     ) -> None:
         self._made_of = (automaton, supervisor, order, unknown, inside, frozen, oracles)
+        self._succession = succession
+        self._one_at_a_time = automaton.one_at_a_time
         self._once = once
         self._unrolling: Unrolling | None = None
 
@@ -66,9 +70,11 @@ class Search:
         budget: Budget,
         contract: Contract = Contract.MINIMAL,
         promising: Callable[[Plan], bool] = lambda _: True,
+        least: int = 1,
     ) -> Plan | None:
         """A plan with the fewest ticks, then the fewest starts, or nearly so by a fast contract; None if there is none
-        of at most `longest` ticks. If one of so many ticks is not `promising`, none with fewer starts is looked for.
+        of at most `longest` ticks. It is known that none has fewer than `least`. If one of so many ticks is not
+        `promising`, none with fewer starts is looked for.
 
         Raises `SearchTimeoutError` when the budget is spent before any plan is found; a plan found in time whose starts
         could not be proven fewest says so.
@@ -77,7 +83,7 @@ class Search:
         def reached(unrolling: Unrolling, length: int) -> list[int]:
             return [unrolling.reached(goal, length) for goal in goals]
 
-        return self._shortest(state, circumstances, reached, longest, budget, contract, promising, last_starts=False)
+        return self._shortest(state, circumstances, reached, longest, budget, contract, promising, False, least)
 
     def finishing(self, plan: Plan) -> frozenset[str]:
         """The abilities that finish in `plan`, which has just been found."""
@@ -109,12 +115,13 @@ class Search:
         contract: Contract,
         promising: Callable[[Plan], bool],
         last_starts: bool,
+        least: int = 1,
     ) -> Plan | None:
         """`wanted` has the literals that say so many ticks are enough; without `last_starts` the last has none."""
-        length = 1
+        length = least
         try:
             if self._unrolling is None:
-                self._unrolling = Unrolling(*self._made_of, budget)
+                self._unrolling = Unrolling(*self._made_of, budget, self._succession)
             unrolling = self._unrolling
             given = unrolling.given(state, circumstances)
             if self._once:
@@ -123,12 +130,16 @@ class Search:
             for length in range(1, longest + 1):
                 unrolling.extend(length, budget)
                 given += unrolling.keeps(circumstances, length)
+                if length < least:
+                    continue
                 assumptions = [*given, *wanted(unrolling, length)]
                 answer = unrolling.solver.solve(assumptions, budget)
                 if answer is None:
                     raise SearchTimeoutError(length - 1)
                 if answer:
                     starting = length if last_starts else length - 1
+                    if self._one_at_a_time:  # with fewer starts a plan would have fewer ticks
+                        return Plan(unrolling.read(length, starting, unrolling.solver.model()), True, True)
                     fewest = Fewest(unrolling, assumptions, length, starting)
                     return fewest.plan(contract, promising, budget)
         except SpentError:

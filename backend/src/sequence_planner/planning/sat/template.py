@@ -116,16 +116,18 @@ class Template:
             [(name, renaming[choice]) for name, choice in tick.starts],
             renamed(tick.synchronised),
             [(renaming[choice], renamed(state)) for choice, state in tick.positions],
+            [renaming[one] for one in tick.earlier],
         )
 
     def _asked(self) -> Iterator[int]:
-        """The literals that anybody may ask to be true or false: those of the states, of finishes and of the end."""
+        """The literals that anybody may ask to be true or false: those of states, finishes, starts and the end."""
         states = (self._tick.synchronised, *(state for _, state in self._tick.positions))
         symbols = {id(symbol): symbol for state in states for symbol in state.values()}
         for symbol in symbols.values():
             yield from symbol.literals.values()
             yield symbol.known
         yield from self._tick.finishes.values()
+        yield from self._tick.earlier
         yield from self._carried
 
     def _carry(self, anew: Iterable[Symbol]) -> list[int]:

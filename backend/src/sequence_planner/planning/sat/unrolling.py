@@ -16,6 +16,7 @@ from sequence_planner.planning.plan import Circumstances, Goal, PlanTick
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.encoding import SymbolicTick
 from sequence_planner.planning.sat.solver import Solver
+from sequence_planner.planning.sat.succession import Succession, in_order
 from sequence_planner.planning.sat.symbolic import Reading
 from sequence_planner.planning.sat.template import Template
 
@@ -33,9 +34,11 @@ class Unrolling:
         frozen: State,
         oracles: frozenset[str],
         budget: Budget,
+        succession: Succession = (),
     ) -> None:
         """Of runs in which the variables `frozen` have these values throughout, which no transition writes to others,
-        and the `oracles`, which none writes, any value anew in each tick.
+        and the `oracles`, which none writes, any value anew in each tick. Of runs of single starts only those in which
+        one follows another as `succession` says, if it says anything.
 
         Raises `SpentError` when the budget is spent before the first tick is encoded."""
         self.solver = Solver()
@@ -48,6 +51,7 @@ class Unrolling:
         self._reading = Reading(self.circuit)
         self._tracker = Tracker(self.circuit)
         self._progress: dict[Goal, list[Progress]] = {}
+        self._succession = succession
         self._avoided: dict[Expression, list[int]] = {}
         self._counted: dict[tuple[str, int], tuple[int, int]] = {}  # by ability and number: in how many ticks, and how
 
@@ -60,6 +64,8 @@ class Unrolling:
                 self.circuit.reserve(max(self._renaming))
             self.solver.add_clauses(self._template.renamed(self._renaming))
             tick = self._template.tick(self._renaming, self._reading)
+            if self.ticks and tick.earlier:
+                self.solver.add_clauses(in_order(self._succession, self.ticks[-1], tick))
             self.ticks.append(tick)
             # A needless choice is one that the solver makes without being asked.
             self.solver.prefer([-choice for choice in (*tick.effects.values(), *(c for _, c in tick.starts))])

@@ -1,0 +1,7 @@
+"""Plans of automata whose starts are taken one at a time: plain automata, as the planner sees them.
+
+- `planner`: what is asked, and who answers
+- `ways`: plans given before, and what they ask of a state
+- `detours`: ways back to those
+- `engines`: who looks for plans and proofs, and in which order
+"""

@@ -1,0 +1,97 @@
+"""Who looks for plans of starts that are taken one at a time, and who proves that there are none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from importlib import import_module
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.immutable import replace
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Engine, Finding, Task
+from sequence_planner.planning.engines import FACTORIES, Factory, Lane, Maker
+from sequence_planner.planning.plan import Contract, Plan, PlanTick, starts_of
+from sequence_planner.planning.single.derived import with_flags
+
+LANE = Lane(
+    "single",
+    {
+        Contract.MINIMAL: ("bmc", "relaxation", "first sight", "pdr", "a-star", "search"),
+        Contract.FAST: ("search", "relaxation", "bmc", "first sight", "pdr", "a-star"),
+    },
+    first_turns={"relaxation": 1.0, "first sight": 1.0, "pdr": 0.3},
+)
+
+
+class Separately:
+    """An engine for such automata, made of one for those that take several starts in a tick."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+
+    @property
+    def name(self) -> str:
+        """That of the engine."""
+        return self._engine.name
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        """What the engine finds, the starts of each tick one after the other; each could have had its own."""
+        finding = self._engine.solve(task, budget)
+        plan = None if finding.plan is None else single(tuple(name for _, name in starts_of(finding.plan.ticks)))
+        if plan is not None and len(plan.ticks) > task.longest:
+            plan = None
+        return Finding(plan, finding.proof)
+
+
+class _Several:
+    """Makes an engine for automata that take several starts in a tick."""
+
+    def __init__(self, make: Factory) -> None:
+        self._make = make
+
+    def __call__(self, automaton: Automaton, supervisor: Supervisor) -> Engine:
+        """A new engine."""
+        return Separately(self._make(replace(automaton, one_at_a_time=False), supervisor))
+
+
+class _Proving:
+    """Makes an engine that proves, where any order of starts will do: each could be in a tick of its own."""
+
+    def __init__(self, module: str, kind: str) -> None:
+        self._module, self._kind = module, kind
+
+    def __call__(self, automaton: Automaton, supervisor: Supervisor) -> Engine:
+        """A new engine."""
+        kind = getattr(import_module(f"sequence_planner.planning.{self._module}"), self._kind)
+        flagged = with_flags(automaton)
+        engine = kind(flagged, supervisor, tuple(flagged.abilities.values()))
+        return _WithFlags(engine, flagged.flag_predicates)
+
+
+class _WithFlags(Separately):
+    """The same for an engine that asks for flags, which are all true."""
+
+    def __init__(self, engine: Engine, flags: Iterable[str]) -> None:
+        super().__init__(engine)
+        self._flags = dict.fromkeys(flags, True)
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        """What the engine finds in the state with its flags."""
+        return super().solve(replace(task, state={**task.state, **self._flags}), budget)
+
+
+FACTORIES_OF_SINGLE: Mapping[str, Factory] = {
+    "bmc": Maker("sat.single_starts", "SingleStarts"),
+    "a-star": Maker("heuristic.fewest", "FewestStarts"),
+    "search": _Several(FACTORIES["search"]),
+    "relaxation": FACTORIES["relaxation"],
+    "first sight": _Proving("pdr.first_sight", "FirstSight"),
+    "pdr": _Proving("pdr.engine", "Reachability"),
+}
+
+
+def single(order: tuple[str, ...], minimal: bool = False) -> Plan:
+    """A plan that takes the starts of `order`, each in a tick of its own."""
+    ticks = (*(PlanTick((), (name,)) for name in order), PlanTick((), ()))
+    return Plan(ticks, minimal_ticks=minimal, minimal_starts=minimal)

@@ -1,0 +1,134 @@
+"""Plans given before, and what they ask of a state: the rest of one leads to the goals from more states than its own.
+
+What the rest of a plan reads before it writes it decides all that it does. From every state that has the same values
+there it leads to the goals as well (regression, as in Fritz and McIlraith 2007).
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+from typing import NamedTuple
+
+from sequence_planner.automaton.cone import read_variables
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Ability, Automaton, State, target
+from sequence_planner.expressions.syntax import conjunction, variables
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.goals.pursuit import Goals
+
+_MOST = 8  # plans that are kept
+
+Values = tuple[Value | None, ...]
+
+
+class Rest(NamedTuple):
+    """What is left of a plan; `minimal` if no plan from there has fewer starts."""
+
+    order: tuple[str, ...]
+    minimal: bool
+
+
+class _Touched(NamedTuple):
+    """What a start reads, and what it writes in any case."""
+
+    reads: frozenset[str]
+    written: frozenset[str]
+
+
+class Way:
+    """A plan, the states that it leads through, and the goals missing in each; `minimal` if none has fewer starts."""
+
+    def __init__(
+        self,
+        order: Sequence[str],
+        states: Sequence[State],
+        missing: Sequence[Goals],
+        minimal: bool,
+        touched: Mapping[str, _Touched],
+    ) -> None:
+        self.order = tuple(order)
+        self.states = states
+        self.missing = missing
+        self.minimal = minimal
+        self._touched = touched
+
+    def rests(self, state: State, goals: Goals) -> Iterator[int]:
+        """From where on the plan leads to `goals` from `state` too, the latest first."""
+        wanted = set(goals)
+        for number in range(len(self.order) - 1, -1, -1):
+            if all(state[name] == value for name, value in self._asked[number]) and wanted.issubset(
+                self.missing[number]
+            ):
+                yield number
+
+    @cached_property
+    def _asked(self) -> list[list[tuple[str, Value | None]]]:
+        """For each state on the way, the values there on which depends what comes then."""
+        goals = self.missing[0]
+        seen = frozenset[str]().union(*(variables(goal.predicate) for goal in goals))
+        names: frozenset[str] = seen
+        found: list[frozenset[str]] = []
+        for name in reversed(self.order):
+            touched = self._touched[name]
+            names = (names - touched.written) | touched.reads
+            if len(goals) > 1:  # each can hold at a moment of its own
+                names |= seen
+            found.append(names)
+        return [
+            [(name, state[name]) for name in each]
+            for state, each in zip(self.states[:-1], reversed(found), strict=True)
+        ]
+
+
+class Ways:
+    """The last plans of one automaton under one supervisor."""
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        self._automaton = automaton
+        self._supervisor = supervisor
+        self._names = tuple(automaton.variables)
+        self._ways: deque[Way] = deque(maxlen=_MOST)  # the last one first
+
+    def __iter__(self) -> Iterator[Way]:
+        return iter(self._ways)
+
+    def keep(self, order: Sequence[str], states: Sequence[State], missing: Sequence[Goals], minimal: bool) -> None:
+        """Note a plan that has been taken step by step; the shorter of two from one state replaces the other."""
+        way = Way(order, states, missing, minimal, self._touched)
+        for known in tuple(self._ways):
+            if known.missing[0] == way.missing[0] and known.states[0] == way.states[0]:
+                self._ways.remove(known)
+        self._ways.appendleft(way)
+
+    def known(self, state: State, goals: Goals) -> Rest | None:
+        """The rest of a plan from a state on its way, proven to be minimal if possible."""
+        best: Rest | None = None
+        for way in self._ways:
+            for number, (there, missing) in enumerate(zip(way.states, way.missing, strict=True)):
+                if missing == goals and there == state:
+                    rest = Rest(way.order[number:], way.minimal)
+                    if best is None or (rest.minimal, -len(rest.order)) > (best.minimal, -len(best.order)):
+                        best = rest
+        return best
+
+    def leading(self, state: State, goals: Goals) -> tuple[str, ...] | None:
+        """The shortest rest of a plan that leads from `state` to `goals`."""
+        found = [
+            way.order[number:] for way in self._ways if (number := next(way.rests(state, goals), None)) is not None
+        ]
+        return min(found, key=len, default=None)
+
+    @cached_property
+    def _touched(self) -> dict[str, _Touched]:
+        return {name: self._touching(ability) for name, ability in self._automaton.abilities.items()}
+
+    def _touching(self, ability: Ability) -> _Touched:
+        actions = ability.start_actions
+        conditions = [action.condition for action in actions if action.condition is not None]
+        guard = conjunction(ability.enabled, ability.start_guard)
+        reads = read_variables(self._automaton, (guard, *conditions, *(action.value for action in actions)))
+        kept = self._supervisor.guards.get(ability.name)
+        written = frozenset(target(action) for action in actions if action.condition is None)
+        return _Touched(reads | frozenset(() if kept is None else kept.names), written)
