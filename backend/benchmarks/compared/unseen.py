@@ -113,13 +113,13 @@ def rooms(chance: random.Random, scale: int) -> _Shape:
     for robot in robots:
         shape.variable(robot, cells, chance.choice(cells))
         shape.variable(f"{robot}_full", "bool", False)
-    doors = {(f"r{x}_{y}", other) for x in range(width) for y in range(height)
-             for other in (f"r{x + 1}_{y}", f"r{x}_{y + 1}") if other in cells}  # fmt: skip
-    locked = sorted(door for door in doors if chance.random() < 0.25)
+    doors = [(f"r{x}_{y}", other) for x in range(width) for y in range(height)
+             for other in (f"r{x + 1}_{y}", f"r{x}_{y + 1}") if other in cells]  # fmt: skip
+    locked = [door for door in doors if chance.random() < 0.25]
     things = [f"thing{n}" for n in range(4 * scale)]
     for thing in things:
         shape.variable(thing, [*cells, *(f"on_{robot}" for robot in robots)], chance.choice(cells))
-    for one, other in sorted(doors):
+    for one, other in doors:
         door = f"open_{one}_{other}"
         if (one, other) in locked:
             shape.variable(door, "bool", False)

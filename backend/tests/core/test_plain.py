@@ -20,7 +20,7 @@ from sequence_planner.model.source import ModelError
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.plain import plan_transitions
+from sequence_planner.planning.plain import PlainPlanner, plan_transitions
 from sequence_planner.planning.plan import Contract, Goal, Verdict, goals_of
 from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.sat.single_starts import SingleStarts
@@ -219,6 +219,32 @@ def test_the_unrolled_run_finds_as_few_transitions_as_exhaustive_search(written:
         assert finding.plan is not None
         assert len(finding.plan.starts) == finding.searched - 1 == least
         assert reaches(automaton, supervisor, begin, [name for _, name in finding.plan.starts], goals)
+
+
+@examples(60)
+@given(made_by(document_with_goals), made_by(lambda choices: [choices.number(0, 9) for _ in range(5)]))
+def test_a_planner_that_was_asked_before_answers_as_one_that_was_not(written: dict[str, Any], drawn: list[int]) -> None:
+    """From states on the ways of its plans, beside them, and anywhere else, by both contracts."""
+    explicit, automaton = meant(written)
+    if automaton is None or not explicit.initial <= explicit.safe:
+        return
+    supervisor, goals = synthesise(automaton), goals_of(automaton, automaton.operations)
+    planner = PlainPlanner(automaton, supervisor)
+    known = sorted((key for key in explicit.distances(explicit.initial, True)), key=str)
+    for number in drawn:
+        key = known[number % len(known)]
+        begin, asked = explicit.valuation(key), goals[: 1 + number % len(goals)]
+        least = distance(explicit, key, asked)
+        contract = Contract.FAST if number % 3 == 0 else Contract.MINIMAL
+        answer = planner.answer(asked, begin, contract, budget=Budget.seconds(60))
+        if least is None:
+            assert answer.verdict is Verdict.NONE_AT_ALL
+            continue
+        assert answer.verdict is Verdict.FOUND
+        assert answer.searched <= least <= len(answer.transitions)
+        assert not answer.minimal or len(answer.transitions) == least
+        assert answer.minimal or contract is Contract.FAST
+        assert reaches(automaton, supervisor, begin, answer.transitions, asked)
 
 
 def reaches(

@@ -188,6 +188,12 @@ class WayBackAnswer(Immutable):
     seconds: float
 
 
+def one_by_one(order: Iterable[str], minimal: bool = False) -> Plan:
+    """A plan that takes the starts of `order`, each in a tick of its own; `minimal` if no plan has fewer."""
+    ticks = (*(PlanTick((), (name,)) for name in order), PlanTick((), ()))
+    return Plan(ticks, minimal_ticks=minimal, minimal_starts=minimal)
+
+
 def starts_of(ticks: Iterable[PlanTick]) -> tuple[tuple[int, str], ...]:
     """All starts, each with the number of its tick, counted from 1."""
     return tuple((number, name) for number, tick in enumerate(ticks, 1) for name in tick.starts)

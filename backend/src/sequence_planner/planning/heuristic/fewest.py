@@ -15,7 +15,7 @@ from sequence_planner.planning.heuristic.estimate import Estimator
 from sequence_planner.planning.heuristic.graph import Kind
 from sequence_planner.planning.heuristic.relaxed_task import RelaxedTask
 from sequence_planner.planning.heuristic.space import Position, Space
-from sequence_planner.planning.plan import Plan, PlanTick
+from sequence_planner.planning.plan import one_by_one
 
 _MOST_VALUES = 2_000_000  # kept in memory, over all positions: beyond, the search gives up
 
@@ -60,8 +60,7 @@ class FewestStarts:
         found = self.find(task, task.longest - 1, budget)
         if found.order is None:
             return Finding(searched=min(found.least, task.longest), exhausted=found.exhausted)
-        ticks = (*(PlanTick((), (name,)) for name in found.order), PlanTick((), ()))
-        return Finding(Plan(ticks, minimal_ticks=True, minimal_starts=True), searched=len(ticks))
+        return Finding(one_by_one(found.order, minimal=True), searched=len(found.order) + 1)
 
     def find(self, task: Task, most: int, budget: Budget) -> Fewest:
         """Up to orders of `most` starts. When the budget is spent or there is too much, what is known by then."""

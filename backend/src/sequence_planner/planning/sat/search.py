@@ -13,7 +13,7 @@ from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.counting import counted
 from sequence_planner.planning.budget import Budget, SpentError
-from sequence_planner.planning.plan import Circumstances, Contract, Goal, Plan
+from sequence_planner.planning.plan import Circumstances, Contract, Goal, Plan, PlanTick
 from sequence_planner.planning.sat.fewest import Fewest
 from sequence_planner.planning.sat.succession import Succession
 from sequence_planner.planning.sat.unrolling import Unrolling
@@ -84,6 +84,29 @@ class Search:
             return [unrolling.reached(goal, length) for goal in goals]
 
         return self._shortest(state, circumstances, reached, longest, budget, contract, promising, False, least)
+
+    def plan_within(
+        self, state: State, goals: Sequence[Goal], circumstances: Circumstances, longest: int, budget: Budget
+    ) -> tuple[PlanTick, ...] | None:
+        """Some plan of at most `longest` ticks, of which there have been as many before; None if there is none.
+
+        Raises `SearchTimeoutError`.
+        """
+        unrolling = self._unrolling
+        assert unrolling is not None
+        given = unrolling.given(state, circumstances)
+        for length in range(1, longest + 1):
+            given += unrolling.keeps(circumstances, length)
+        given += (unrolling.reached(goal, longest) for goal in goals)
+        answer = unrolling.solver.solve(given, budget)
+        if answer is None:
+            raise SearchTimeoutError(0)
+        return unrolling.read(longest, longest - 1, unrolling.solver.model()) if answer else None
+
+    @property
+    def ticks(self) -> int:
+        """How many have been asked about."""
+        return 0 if self._unrolling is None else len(self._unrolling.ticks)
 
     def finishing(self, plan: Plan) -> frozenset[str]:
         """The abilities that finish in `plan`, which has just been found."""

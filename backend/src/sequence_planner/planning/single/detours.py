@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections import deque
+from heapq import heappop, heappush
+from itertools import count
 
 from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.planning.goals.pursuit import Goals
-from sequence_planner.planning.single.ways import Ways
+from sequence_planner.planning.single.ways import Way, Ways
 
-_MOST = 60  # states that are looked at
+_MOST = 120  # states that are looked at
+_NEAREST = 4  # rests of plans that a way is looked for to
 
 
 class Detours:
-    """Looks for ways back to `ways`."""
+    """Looks for ways back to `ways`: greedily, where the fewest values differ that the rest of a plan asks for."""
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor, ways: Ways) -> None:
         self._automaton = automaton
@@ -23,22 +25,21 @@ class Detours:
         self._compiled: CompiledTick | None = None
 
     def found(self, state: State, goals: Goals) -> tuple[str, ...] | None:
-        """The starts of a plan that soon comes to the rest of another; those of the shortest rest of the nearest."""
-        rest = self._ways.leading(state, goals)
-        if rest is not None:
-            return rest
-        if not any(set(goals) <= set(way.missing[0]) for way in self._ways):
+        """The starts of a plan that soon comes to the rest of another; the rest itself if it leads from `state`."""
+        nearest = self._ways.nearest(state, goals, _NEAREST)
+        if not nearest:
             return None
+        if nearest[0][0] == 0:
+            return min((way.order[number:] for far, way, number in nearest if far == 0), key=len)
+        targets = [(way, number) for _, way, number in nearest]
         if self._compiled is None:
             self._compiled = CompiledTick(self._automaton, hot=False)
         begin = CompiledRun(self._compiled, state)
-        pending: deque[tuple[CompiledRun, tuple[str, ...]]] = deque([(begin, ())])
         seen = {tuple(begin.values.values())}
-        best: tuple[str, ...] | None = None
-        while pending and len(seen) < _MOST:
-            run, order = pending.popleft()
-            if best is not None and len(order) + 1 >= len(best):
-                break
+        ages = count()
+        queue: list[tuple[int, int, CompiledRun, tuple[str, ...]]] = [(0, next(ages), begin, ())]
+        while queue and len(seen) < _MOST:
+            _, _, run, order = heappop(queue)
             for name in sorted(run.startable()):
                 after = run.fork()
                 if not after.start(name) or (self._safe is not None and not self._safe.includes(after.values)):
@@ -47,11 +48,16 @@ class Detours:
                 if key in seen:
                     continue
                 seen.add(key)
-                way = (*order, name)
-                rest = self._ways.leading(after.values, goals)
-                if rest is not None and (best is None or len(way) + len(rest) < len(best)):
-                    best = (*way, *rest)
-                pending.append((after, way))
-            if best is not None:
-                return best
-        return best
+                further = (*order, name)
+                far, way, number = min(
+                    ((way.far(number, after.values), way, number) for way, number in targets), key=_distance
+                )
+                if far == 0:
+                    return (*further, *way.order[number:])
+                heappush(queue, (2 * far + len(further), next(ages), after, further))
+        return None
+
+
+def _distance(target: tuple[int, Way, int]) -> tuple[int, int]:
+    far, _, number = target
+    return far, -number

@@ -11,7 +11,7 @@ from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Engine, Finding, Task
 from sequence_planner.planning.engines import FACTORIES, Factory, Lane, Maker
-from sequence_planner.planning.plan import Contract, Plan, PlanTick, starts_of
+from sequence_planner.planning.plan import Contract, one_by_one, starts_of
 from sequence_planner.planning.single.derived import with_flags
 
 LANE = Lane(
@@ -38,7 +38,7 @@ class Separately:
     def solve(self, task: Task, budget: Budget) -> Finding:
         """What the engine finds, the starts of each tick one after the other; each could have had its own."""
         finding = self._engine.solve(task, budget)
-        plan = None if finding.plan is None else single(tuple(name for _, name in starts_of(finding.plan.ticks)))
+        plan = None if finding.plan is None else one_by_one(name for _, name in starts_of(finding.plan.ticks))
         if plan is not None and len(plan.ticks) > task.longest:
             plan = None
         return Finding(plan, finding.proof)
@@ -89,9 +89,3 @@ FACTORIES_OF_SINGLE: Mapping[str, Factory] = {
     "first sight": _Proving("pdr.first_sight", "FirstSight"),
     "pdr": _Proving("pdr.engine", "Reachability"),
 }
-
-
-def single(order: tuple[str, ...], minimal: bool = False) -> Plan:
-    """A plan that takes the starts of `order`, each in a tick of its own."""
-    ticks = (*(PlanTick((), (name,)) for name in order), PlanTick((), ()))
-    return Plan(ticks, minimal_ticks=minimal, minimal_starts=minimal)

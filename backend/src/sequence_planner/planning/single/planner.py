@@ -15,14 +15,14 @@ from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.engines import Engines, Report
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plain_answer import PlainAnswer
-from sequence_planner.planning.plan import Contract, Goal, Plan, Verdict, starts_of
+from sequence_planner.planning.plan import Contract, Goal, Plan, Verdict, one_by_one, starts_of
 from sequence_planner.planning.planner import PlannerError
 from sequence_planner.planning.recollection import NAME as RECOLLECTION
 from sequence_planner.planning.repair import NAME as REPAIR
 from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.single.derived import without_flags
 from sequence_planner.planning.single.detours import Detours
-from sequence_planner.planning.single.engines import FACTORIES_OF_SINGLE, LANE, single
+from sequence_planner.planning.single.engines import FACTORIES_OF_SINGLE, LANE
 from sequence_planner.planning.single.ways import Ways
 
 
@@ -64,7 +64,7 @@ class SinglePlanner:
         attempt = Attempt(task, lambda plan: self._accepts(task, plan), budget)
         mended = self._detours.found(state, left)
         if mended is not None and len(mended) <= longest:
-            attempt.take(Report(REPAIR, Finding(single(mended))))
+            attempt.take(Report(REPAIR, Finding(one_by_one(mended))))
             task = replace(task, longest=len(mended), depth=len(mended))  # only a shorter one is of use
         if task.longest == 1 and attempt.plan is not None:
             attempt.take(Report(attempt.engine, Finding(searched=1)))  # some goal is missing

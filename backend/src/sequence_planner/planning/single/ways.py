@@ -9,6 +9,8 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
+from heapq import nsmallest
+from operator import itemgetter
 from typing import NamedTuple
 
 from sequence_planner.automaton.cone import read_variables
@@ -54,14 +56,12 @@ class Way:
         self.minimal = minimal
         self._touched = touched
 
-    def rests(self, state: State, goals: Goals) -> Iterator[int]:
-        """From where on the plan leads to `goals` from `state` too, the latest first."""
-        wanted = set(goals)
-        for number in range(len(self.order) - 1, -1, -1):
-            if all(state[name] == value for name, value in self._asked[number]) and wanted.issubset(
-                self.missing[number]
-            ):
-                yield number
+    def far(self, number: int, state: State) -> int:
+        """How many other values the rest of the plan, from so many starts on, asks for.
+
+        With none it leads from `state` to the goals that are missing there on the way.
+        """
+        return sum(state[name] != value for name, value in self._asked[number])
 
     @cached_property
     def _asked(self) -> list[list[tuple[str, Value | None]]]:
@@ -113,12 +113,16 @@ class Ways:
                         best = rest
         return best
 
-    def leading(self, state: State, goals: Goals) -> tuple[str, ...] | None:
-        """The shortest rest of a plan that leads from `state` to `goals`."""
+    def nearest(self, state: State, goals: Goals, most: int) -> list[tuple[int, Way, int]]:
+        """Plans that reach `goals`, each from so many starts on, whose rests ask the fewest values to be others."""
+        wanted = set(goals)
         found = [
-            way.order[number:] for way in self._ways if (number := next(way.rests(state, goals), None)) is not None
+            (way.far(number, state), number - len(way.order), age, way, number)
+            for age, way in enumerate(self._ways)
+            for number in range(len(way.order))
+            if wanted.issubset(way.missing[number])
         ]
-        return min(found, key=len, default=None)
+        return [(far, way, number) for far, _, _, way, number in nsmallest(most, found, key=itemgetter(0, 1, 2))]
 
     @cached_property
     def _touched(self) -> dict[str, _Touched]:
