@@ -234,7 +234,14 @@ def station(chance: random.Random, scale: int) -> Automaton:
 SHAPES: Mapping[str, Callable[[random.Random, int], _Shape]] = {
     shape.__name__: shape for shape in (net, rooms, line, counters, web)
 }
-SCALES = {"net": (2, 6, 13), "rooms": (1, 2, 4), "line": (1, 3, 6), "counters": (1, 2, 4), "web": (2, 5, 10)}
+SCALES = {
+    "net": (2, 6, 13),
+    "rooms": (1, 2, 4),
+    "line": (1, 3, 6),
+    "counters": (1, 2, 4),
+    "web": (2, 5, 10),
+    "station": (0, 1),
+}
 
 
 def unseen(name: str, scale: int, seed: int) -> Unseen:

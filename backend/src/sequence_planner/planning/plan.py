@@ -121,8 +121,9 @@ class Proof(Immutable):
     Every tick leads from states that satisfy all `invariant` clauses into such states, and the goals that are reached
     on the way never are all of them. Of several goals clauses also say whether one has been reached,
     `goal.<name>.reached`, and of formulas in which state their automata are, `goal.<name>.at`. `by` is the method that
-    found it. One by `pdr` has been checked by a solver of its own; one by `relaxation`, whose clauses say no more than
-    that values are never taken, has not, but passes the same check (`pdr.certificate`).
+    found it. One by `pdr` has been checked by a solver of its own; those by `relaxation` and `pairs`, whose clauses
+    say no more than that values are never taken, or two never together, have not, but pass the same check
+    (`pdr.certificate`).
     """
 
     by: str

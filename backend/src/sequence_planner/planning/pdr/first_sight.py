@@ -15,7 +15,6 @@ from sequence_planner.planning.plan import Circumstances
 
 if TYPE_CHECKING:
     from sequence_planner.planning.pdr.engine import Reachability
-    from sequence_planner.planning.sat.sweep import Order
 
 
 # Variables beyond which something else is tried first, and seconds of work for a look: those during which others have
@@ -30,9 +29,7 @@ class FirstSight:
 
     name = "first sight"
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor, order: Order | None = None) -> None:
-        """Starts are taken in `order`, if every order that can make a difference is a part of it."""
-        self._order = order
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
         self._few = len(automaton.variables) <= _FEW
         self._automaton = automaton
         self._supervisor = supervisor
@@ -57,4 +54,4 @@ class FirstSight:
         # Not before there is something to look at: importing it takes longer than many a plan.
         from sequence_planner.planning.pdr.engine import Reachability  # noqa: PLC0415
 
-        return Reachability(self._automaton, self._supervisor, self._order)
+        return Reachability(self._automaton, self._supervisor)

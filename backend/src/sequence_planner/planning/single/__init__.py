@@ -4,4 +4,5 @@
 - `ways`: plans given before, and what they ask of a state
 - `detours`: ways back to those
 - `engines`: who looks for plans and proofs, and in which order
+- `pairs`: proofs by values that two variables never have at the same time
 """

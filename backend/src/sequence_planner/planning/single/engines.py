@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from importlib import import_module
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
@@ -17,10 +16,10 @@ from sequence_planner.planning.single.derived import with_flags
 LANE = Lane(
     "single",
     {
-        Contract.MINIMAL: ("bmc", "relaxation", "first sight", "pdr", "a-star", "search"),
-        Contract.FAST: ("search", "relaxation", "bmc", "first sight", "pdr", "a-star"),
+        Contract.MINIMAL: ("pairs", "bmc", "relaxation", "pdr", "a-star", "search"),
+        Contract.FAST: ("pairs", "search", "relaxation", "pdr", "bmc", "a-star"),
     },
-    first_turns={"relaxation": 1.0, "first sight": 1.0, "pdr": 0.3},
+    first_turns={"pairs": 0.03, "bmc": 0.5, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
 )
 
 
@@ -55,18 +54,13 @@ class _Several:
         return Separately(self._make(replace(automaton, one_at_a_time=False), supervisor))
 
 
-class _Proving:
-    """Makes an engine that proves, where any order of starts will do: each could be in a tick of its own."""
+def _proving(automaton: Automaton, supervisor: Supervisor) -> Engine:
+    """The engine that proves, for which any order of starts will do: each could be in a tick of its own."""
+    from sequence_planner.planning.pdr.engine import Reachability  # noqa: PLC0415
 
-    def __init__(self, module: str, kind: str) -> None:
-        self._module, self._kind = module, kind
-
-    def __call__(self, automaton: Automaton, supervisor: Supervisor) -> Engine:
-        """A new engine."""
-        kind = getattr(import_module(f"sequence_planner.planning.{self._module}"), self._kind)
-        flagged = with_flags(automaton)
-        engine = kind(flagged, supervisor, tuple(flagged.abilities.values()))
-        return _WithFlags(engine, flagged.flag_predicates)
+    flagged = with_flags(automaton)
+    engine = Reachability(flagged, supervisor, tuple(flagged.abilities.values()))
+    return _WithFlags(engine, flagged.flag_predicates)
 
 
 class _WithFlags(Separately):
@@ -86,6 +80,6 @@ FACTORIES_OF_SINGLE: Mapping[str, Factory] = {
     "a-star": Maker("heuristic.fewest", "FewestStarts"),
     "search": _Several(FACTORIES["search"]),
     "relaxation": FACTORIES["relaxation"],
-    "first sight": _Proving("pdr.first_sight", "FirstSight"),
-    "pdr": _Proving("pdr.engine", "Reachability"),
+    "pairs": Maker("single.pairs", "Pairs"),
+    "pdr": _proving,
 }

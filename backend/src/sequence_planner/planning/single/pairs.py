@@ -1,0 +1,224 @@
+"""The engine that proves what pairs of values exclude: which values two variables ever have at the same time.
+
+From the state to plan from on it is noted which values can be there, each with which others; a start is taken where
+what it asks for can be there, pair by pair, and what it writes is noted with all that can have been there beside it
+(h^2 of Haslum and Geffner 2000). That only adds, so it ends soon. The values that are never noted together are an
+invariant: no start leads to them from states without them.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator
+from functools import reduce
+from operator import or_
+from typing import NamedTuple
+
+from sequence_planner.automaton.state_set import Supervisor
+from sequence_planner.automaton.structure import Ability, Automaton, target
+from sequence_planner.expressions.evaluation import evaluate
+from sequence_planner.expressions.syntax import Assignment, Constant, Expression, conjunction, conjuncts, variables
+from sequence_planner.expressions.types import Value
+from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.planning.engine import Finding, Task
+from sequence_planner.planning.known import Known
+from sequence_planner.planning.plan import Clause, Literal, Proof
+
+NAME = "pairs"  # of proofs, too
+
+_MOST = 1500  # values of all variables together
+
+Facts = int  # a set of values of variables, a bit each
+
+
+class _Asked(NamedTuple):
+    """One of these values, all of one variable, is asked for; `others` are those of other variables."""
+
+    values: Facts
+    others: Facts
+
+
+class _Outcome(NamedTuple):
+    """A value that may be written where that is asked for; `others` are those of other variables."""
+
+    value: int
+    others: Facts
+    asked: tuple[_Asked, ...]
+
+
+class _Start(NamedTuple):
+    """What a start asks for, what it may write, and the values of variables that it does not write in any case."""
+
+    asked: tuple[_Asked, ...]
+    outcomes: tuple[_Outcome, ...]
+    left: Facts
+
+
+class _Work:
+    """What has been noted for a task so far, and the starts that it may matter to."""
+
+    def __init__(self, task: Task, noted: list[Facts], waiting: set[int]) -> None:
+        self.task = task
+        self.noted = noted
+        self.waiting = waiting
+
+
+class Pairs:
+    """Proves for one automaton, whose starts are taken one at a time, that goals are never reached.
+
+    Asked again, it goes on where the budget was spent.
+    """
+
+    name = NAME
+
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        """What the supervisor allows is not looked at: nothing more than can be proven without it is."""
+        self._automaton = automaton
+        self._facts = [(name, value) for name, each in automaton.variables.items() for value in each.type.domain]
+        self._number = {fact: number for number, fact in enumerate(self._facts)}
+        self._all = (1 << len(self._facts)) - 1
+        self._own: dict[str, Facts] = defaultdict(int)  # all values of a variable
+        for number, (name, _) in enumerate(self._facts):
+            self._own[name] |= 1 << number
+        self._starts: list[_Start] | None = None
+        self._readers: dict[int, set[int]] = defaultdict(set)  # of each value, the starts that it matters to
+        self._unasked: set[int] = set()  # starts that ask for nothing, so that all values matter to them
+        self._work: _Work | None = None
+
+    def solve(self, task: Task, budget: Budget) -> Finding:
+        """A proof, or nothing."""
+        if len(self._facts) > _MOST:
+            return Finding()
+        wanted = [tuple(self._asked(goal.predicate)) for goal in task.goals]
+        work = self._work
+        if work is None or work.task is not task:
+            work = self._work = self._begun(task)
+        try:
+            while work.waiting:
+                if all(_beside(work.noted, each, self._all) for each in wanted):
+                    return Finding()
+                budget.require()
+                self._note(work)
+        except SpentError:
+            return Finding()
+        if all(_beside(work.noted, each, self._all) for each in wanted):
+            return Finding()
+        return Finding(proof=Proof(NAME, tuple(self._clauses(work.noted))))
+
+    def _begun(self, task: Task) -> _Work:
+        """The values that are there at first, and all starts."""
+        if self._starts is None:
+            self._starts = [self._start(ability) for ability in self._automaton.abilities.values()]
+            for number, start in enumerate(self._starts):
+                for asked in (*start.asked, *(each for outcome in start.outcomes for each in outcome.asked)):
+                    for fact in _bits(asked.values):
+                        self._readers[fact].add(number)
+                if not start.asked:
+                    self._unasked.add(number)
+        begin = sum(1 << self._number[name, value] for name in self._own if (value := task.state[name]) is not None)
+        noted = [begin if begin >> number & 1 else 0 for number in range(len(self._facts))]
+        return _Work(task, noted, set(range(len(self._starts))))
+
+    def _note(self, work: _Work) -> None:
+        """Take each of the starts that wait, and have those wait to which it matters what is noted then."""
+        assert self._starts is not None
+        noted = work.noted
+        layer, work.waiting = work.waiting, set()
+        for number in layer:
+            for fact, others in self._results(noted, self._starts[number]):
+                new = others & ~noted[fact]
+                if new:
+                    noted[fact] |= new
+                    work.waiting |= self._unasked | self._readers[fact]
+                    for other in _bits(new):
+                        noted[other] |= 1 << fact
+                        work.waiting |= self._readers[other]
+
+    def _results(self, noted: list[Facts], start: _Start) -> Iterator[tuple[int, Facts]]:
+        """What `start` writes, with all that can be there beside it."""
+        before = _beside(noted, start.asked, self._all)
+        if not before:
+            return
+        if not start.asked:
+            before &= reduce(or_, noted)
+        each = [(outcome, _beside(noted, (*start.asked, *outcome.asked), before)) for outcome in start.outcomes]
+        for outcome, beside in each:
+            if not beside:
+                continue
+            together = beside & start.left & outcome.others | 1 << outcome.value
+            for other, _ in each:
+                if outcome.others >> other.value & 1 and all(asked.values & beside for asked in other.asked):
+                    together |= 1 << other.value
+            yield outcome.value, together
+
+    def _start(self, ability: Ability) -> _Start:
+        asked = tuple(self._asked(conjunction(ability.enabled, ability.start_guard)))
+        left = self._all
+        for action in ability.start_actions:
+            if action.condition is None:
+                left &= ~self._own[target(action)]
+        outcomes = (outcome for action in ability.start_actions for outcome in self._outcomes(action))
+        return _Start(asked, tuple(outcomes), left)
+
+    def _outcomes(self, action: Assignment) -> Iterator[_Outcome]:
+        name = target(action)
+        others = self._all & ~self._own[name]
+        asked = () if action.condition is None else tuple(self._asked(action.condition))
+        read = frozenset(variables(action.value))
+        if isinstance(action.value, Constant):
+            yield _Outcome(self._number[name, action.value.value], others, asked)
+        elif len(read) == 1:
+            (source,) = read
+            for number in _bits(self._own[source]):
+                value = evaluate(action.value, Known({source: self._facts[number][1]}))
+                if value is not None and (name, value) in self._number:
+                    from_ = _Asked(1 << number, self._all & ~self._own[source])
+                    yield _Outcome(self._number[name, value], others, (*asked, from_))
+        else:
+            yield from (_Outcome(number, others, asked) for number in _bits(self._own[name]))
+
+    def _asked(self, predicate: Expression) -> Iterator[_Asked]:
+        """What the parts of a conjunction ask for that read one variable; others may ask for more."""
+        for part in conjuncts(predicate):
+            read = frozenset(variables(part))
+            if len(read) == 1 and read <= self._own.keys():
+                (name,) = read
+                numbers = (n for n in _bits(self._own[name]) if self._may(part, *self._facts[n]))
+                yield _Asked(reduce(or_, (1 << number for number in numbers), 0), self._all & ~self._own[name])
+
+    def _may(self, predicate: Expression, name: str, value: Value) -> bool:
+        return evaluate(predicate, Known({name: value})) is not False
+
+    def _clauses(self, noted: list[Facts]) -> Iterator[Clause]:
+        """That no two values are there together that never are."""
+        for number, others in enumerate(noted):
+            literal = self._without(number)
+            if not others:
+                yield (literal,)
+                continue
+            name = self._facts[number][0]
+            for other in _bits(self._all & ~others & ~self._own[name] & ((1 << number) - 1)):
+                if noted[other]:
+                    yield (literal, self._without(other))
+
+    def _without(self, number: int) -> Literal:
+        name, value = self._facts[number]
+        truth = isinstance(value, bool)
+        return Literal(name, not value) if truth else Literal(name, value, equal=False)
+
+
+def _beside(noted: list[Facts], asked: Iterable[_Asked], among: Facts) -> Facts:
+    """The values of `among` that can be there beside what is `asked`, pair by pair; none if that cannot be."""
+    beside = among
+    asked = tuple(asked)
+    for each in asked:
+        beside &= reduce(or_, (noted[number] for number in _bits(each.values)), 0) & (each.values | each.others)
+    return beside if all(each.values & beside for each in asked) else 0
+
+
+def _bits(facts: Facts) -> Iterator[int]:
+    """The numbers of a set, the lowest first."""
+    while facts:
+        lowest = facts & -facts
+        yield lowest.bit_length() - 1
+        facts ^= lowest
