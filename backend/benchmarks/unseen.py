@@ -35,9 +35,9 @@ from sequence_planner.planning.plan import Contract, Verdict
 from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.single.derived import as_station
 
-LIMIT = 20.0  # seconds for one question
-TRANSLATION = 15.0  # seconds, which do not count
-STATES = 5  # on the way of a plan, and as many off it
+LIMIT = 10.0  # seconds for one question
+TRANSLATION = 10.0  # seconds, which do not count
+STATES = 3  # on the way of a plan, and as many off it
 
 
 class Bench:

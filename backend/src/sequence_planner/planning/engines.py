@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from importlib import import_module
 from math import inf
 
@@ -139,13 +139,19 @@ class Engines:
             except Exception:
                 troubles.log("the engine %s cannot be made", name, trace=True)
 
-    def work(self, task: Task, budget: Budget, patience: Callable[[], float] = lambda: inf) -> Iterator[Report]:
-        """What they find, turn by turn, until each has given up or the budget is spent.
+    def work(
+        self,
+        task: Task,
+        budget: Budget,
+        patience: Callable[[], float] = lambda: inf,
+        without: Set[str] = frozenset(),
+    ) -> Iterator[Report]:
+        """What they find, turn by turn, until each but those `without` has given up or the budget is spent.
 
         No turn is longer than `patience` has seconds when it begins. An engine that fails is made anew for the next
         task: what it has learnt could be wrong.
         """
-        waiting: Sequence[str] = self._lane.engines[task.contract]
+        waiting: Sequence[str] = [name for name in self._lane.engines[task.contract] if name not in without]
         longer = 1
         while waiting and not budget.spent:
             going_on: list[str] = []

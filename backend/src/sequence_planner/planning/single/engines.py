@@ -23,6 +23,9 @@ LANE = Lane(
 )
 
 
+PROVING = frozenset(("pairs", "relaxation", "pdr"))  # engines that have nothing to say where there is a plan
+
+
 class Separately:
     """An engine for such automata, made of one for those that take several starts in a tick."""
 

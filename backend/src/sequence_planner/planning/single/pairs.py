@@ -15,7 +15,7 @@ from operator import or_
 from typing import NamedTuple
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, target
+from sequence_planner.automaton.structure import Ability, Automaton, State, target
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import Assignment, Constant, Expression, conjunction, conjuncts, variables
 from sequence_planner.expressions.types import Value
@@ -92,6 +92,8 @@ class Pairs:
         wanted = [tuple(self._asked(goal.predicate)) for goal in task.goals]
         work = self._work
         if work is None or work.task is not task:
+            if work is not None and work.task.goals == task.goals and self._in_vain(work, wanted, task.state):
+                return Finding()
             work = self._work = self._begun(task)
         try:
             while work.waiting:
@@ -104,6 +106,12 @@ class Pairs:
         if all(_beside(work.noted, each, self._all) for each in wanted):
             return Finding()
         return Finding(proof=Proof(NAME, tuple(self._clauses(work.noted))))
+
+    def _in_vain(self, work: _Work, wanted: Iterable[tuple[_Asked, ...]], state: State) -> bool:
+        """Whether all that is noted for another task, where the goals can be, holds for `state` too, at least."""
+        there = sum(1 << self._number[name, value] for name in self._own if (value := state[name]) is not None)
+        inside = all(there & ~work.noted[number] == 0 for number in _bits(there))
+        return inside and all(_beside(work.noted, each, self._all) for each in wanted)
 
     def _begun(self, task: Task) -> _Work:
         """The values that are there at first, and all starts."""

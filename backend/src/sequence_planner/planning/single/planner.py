@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
@@ -22,7 +22,7 @@ from sequence_planner.planning.repair import NAME as REPAIR
 from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.single.derived import without_flags
 from sequence_planner.planning.single.detours import Detours
-from sequence_planner.planning.single.engines import FACTORIES_OF_SINGLE, LANE
+from sequence_planner.planning.single.engines import FACTORIES_OF_SINGLE, LANE, PROVING
 from sequence_planner.planning.single.ways import Ways
 
 
@@ -63,12 +63,12 @@ class SinglePlanner:
         task = Task(state, left, contract=contract, longest=longest + 1, depth=longest + 1)
         attempt = Attempt(task, lambda plan: self._accepts(task, plan), budget)
         mended = self._detours.found(state, left)
+        without: Set[str] = frozenset()
         if mended is not None and len(mended) <= longest:
-            attempt.take(Report(REPAIR, Finding(one_by_one(mended))))
-            task = replace(task, longest=len(mended), depth=len(mended))  # only a shorter one is of use
-        if task.longest == 1 and attempt.plan is not None:
-            attempt.take(Report(attempt.engine, Finding(searched=1)))  # some goal is missing
-        for report in () if _enough(attempt) else self._engines.work(task, budget, lambda: attempt.patience):
+            attempt.take(Report(REPAIR, Finding(one_by_one(mended), searched=2)))  # some goal is missing
+            # Only a shorter one is of use.
+            task, without = replace(task, longest=len(mended), depth=len(mended)), PROVING
+        for report in () if _enough(attempt) else self._engines.work(task, budget, lambda: attempt.patience, without):
             attempt.take(report)
             if _enough(attempt) or not attempt.patience:
                 break
@@ -84,6 +84,7 @@ class SinglePlanner:
             taken = self._last[1] if self._last[0] == plan else self._taken(attempt.task, order)
             assert taken is not None
             self._ways.keep(order, taken.states, taken.missing, plan.minimal_ticks)
+            searched = len(order) if plan.minimal_ticks else max(searched, 1)
             return PlainAnswer(Verdict.FOUND, order, plan.minimal_ticks, searched, seconds, attempt.engine)
         if attempt.impossible:
             return PlainAnswer(Verdict.NONE_AT_ALL, (), False, 0, seconds, attempt.engine, attempt.proof)
