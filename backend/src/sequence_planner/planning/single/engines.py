@@ -19,7 +19,7 @@ LANE = Lane(
         Contract.MINIMAL: ("pairs", "bmc", "relaxation", "pdr", "a-star", "search"),
         Contract.FAST: ("pairs", "search", "relaxation", "pdr", "bmc", "a-star"),
     },
-    first_turns={"pairs": 0.03, "bmc": 0.5, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
+    first_turns={"pairs": 0.03, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
 )
 
 
