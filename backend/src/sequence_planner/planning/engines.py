@@ -44,6 +44,7 @@ class Lane(Immutable):
     engines: Mapping[Contract, tuple[str, ...]]
     niceness: int = 5  # ticks are not held up by planning
     first_turns: Mapping[str, float] = LONG_FIRST_TURNS  # of those whose first turn is not `FIRST_TURN`
+    by_work: bool = False  # turns are seconds of the processor, however long others hold the process up
 
     @property
     def all_engines(self) -> tuple[str, ...]:
@@ -157,7 +158,10 @@ class Engines:
             going_on: list[str] = []
             for name in waiting:
                 turn = longer * self._lane.first_turns.get(name, FIRST_TURN) if len(waiting) > 1 else inf
-                own = _at_most(budget, min(turn, patience()))
+                if self._lane.by_work and turn != inf:
+                    own = _at_most(budget, patience()).working(turn)
+                else:
+                    own = _at_most(budget, min(turn, patience()))
                 report = self._turn(name, task, own)
                 yield report
                 if own.spent and not report.trouble:

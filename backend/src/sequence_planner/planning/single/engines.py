@@ -19,7 +19,8 @@ LANE = Lane(
         Contract.MINIMAL: ("pairs", "bmc", "relaxation", "pdr", "a-star", "search"),
         Contract.FAST: ("pairs", "search", "relaxation", "pdr", "bmc", "a-star"),
     },
-    first_turns={"pairs": 0.03, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
+    first_turns={"pairs": 0.06, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
+    by_work=True,
 )
 
 
