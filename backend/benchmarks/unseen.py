@@ -3,7 +3,7 @@
 Run with `make bench`; each run draws new ones, `--seed` the same again, `--quick` takes the small. All figures are CPU
 time; those of the peers are of a fresh process, with its input made beforehand: ABC (`bmc3`, `pdr`) reads a circuit
 whose step is one transition, so that it looks for the fewest as well, and Fast Downward its own format. Ratios above 1
-say that the peer takes longer. Who does not answer in time has taken until then.
+say that the peer takes longer. Who does not answer in time has taken until then; where neither does, there is none.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from collections import defaultdict
 from collections.abc import Iterable
 from math import exp, log
 from pathlib import Path
+from typing import NamedTuple
 
 from compared import abc, fast_downward
 from compared.aiger import aiger_of_plain
@@ -35,9 +36,17 @@ from sequence_planner.planning.plan import Contract, Verdict
 from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.single.derived import as_station
 
-LIMIT = 10.0  # seconds for one question
+LIMIT = 10.0  # seconds of the processor for one question
+WAIT = 120.0  # seconds that we wait for them
 TRANSLATION = 10.0  # seconds, which do not count
 STATES = 3  # on the way of a plan, and as many off it
+
+
+class Took(NamedTuple):
+    """The seconds that a peer took, and whether it was done with the question then."""
+
+    seconds: float
+    done: bool
 
 
 class Bench:
@@ -55,7 +64,8 @@ class Bench:
         for contract, peer in ((Contract.MINIMAL, self._abc), (Contract.FAST, self._fast_downward)):
             planner = PlainPlanner(problem.automaton, problem.supervisor)
             answer, seconds = asked(planner, problem.goals, state, contract)
-            self._say(f"cold, {contract}", [seconds], [peer(problem, state)], told(answer))
+            done = answer.minimal or (contract is Contract.FAST and answer.verdict is Verdict.FOUND)
+            self._say(f"cold, {contract}", [seconds], [peer(problem, state)], told(answer), done)
             if answer.verdict is Verdict.FOUND and answer.transitions:
                 on, off = states_of(problem, state, answer, chance)
                 for where, met in (("on its way", on), ("off its way", off)):
@@ -64,10 +74,13 @@ class Bench:
         if problem.impossible:
             planner = PlainPlanner(problem.automaton, problem.supervisor)
             answer, seconds = asked(planner, problem.impossible, state, Contract.FAST)
-            self._say("none at all", [seconds], [self._pdr(problem, state)], told(answer))
+            done = answer.verdict is Verdict.NONE_AT_ALL
+            self._say("none at all", [seconds], [self._pdr(problem, state)], told(answer), done)
 
-    def _say(self, what: str, ours: list[float], peers: Iterable[float | None], more: str = "") -> None:
-        theirs = [each for each in peers if each is not None]
+    def _say(
+        self, what: str, ours: list[float], peers: Iterable[Took | None], more: str = "", done: bool = True
+    ) -> None:
+        theirs = [each.seconds for each in peers if each is not None and (each.done or done)]
         if not ours:
             return
         line = f"  {what:<28}{statistics.median(ours) * 1000:10.2f} ms   {more}"
@@ -77,35 +90,41 @@ class Bench:
             line += f"   peer {statistics.median(theirs) * 1000:.0f} ms, ratio {ratio:.2f}"
         print(line, flush=True)
 
-    def _abc(self, problem: Unseen, state: State) -> float | None:
-        return None if abc.PROGRAM is None else abc.bmc3(self._circuit(problem, state, problem.goals), LIMIT).seconds
-
-    def _pdr(self, problem: Unseen, state: State) -> float | None:
+    def _abc(self, problem: Unseen, state: State) -> Took | None:
         if abc.PROGRAM is None:
             return None
-        return abc.pdr(self._circuit(problem, state, problem.impossible), LIMIT).seconds
+        outcome = abc.bmc3(self._circuit(problem, state, problem.goals), LIMIT)
+        return Took(outcome.seconds, outcome.ticks > 0)
+
+    def _pdr(self, problem: Unseen, state: State) -> Took | None:
+        if abc.PROGRAM is None:
+            return None
+        outcome = abc.pdr(self._circuit(problem, state, problem.impossible), LIMIT)
+        return Took(outcome.seconds, outcome.proven)
 
     def _circuit(self, problem: Unseen, state: State, goals: Goals) -> Path:
         circuit = self._folder / "question.aig"
         circuit.write_bytes(aiger_of_plain(problem.automaton, state, missing(goals, state)))
         return circuit
 
-    def _fast_downward(self, problem: Unseen, state: State) -> float | None:
+    def _fast_downward(self, problem: Unseen, state: State) -> Took | None:
         if fast_downward.programs() is None or problem.name in self._untranslated:
             return None
         derived, task = as_station(problem.automaton, state, problem.goals)
         text = pddl_text(sequential(derived, UNSUPERVISED, task.state, task.goals))
         try:
-            return fast_downward.search(text, fast_downward.translated(text, self._folder, TRANSLATION), LIMIT).seconds
+            found = fast_downward.search(text, fast_downward.translated(text, self._folder, TRANSLATION), LIMIT)
         except fast_downward.TranslationError:
             self._untranslated.add(problem.name)
             return None
+        return Took(found.seconds, found.plan is not None)
 
 
 def asked(planner: PlainPlanner, goals: Goals, state: State, contract: Contract) -> tuple[PlainAnswer, float]:
     """What is answered, which takes every step of a plan on the reference, and after how long."""
     answers: list[PlainAnswer] = []
-    seconds = own(lambda: answers.append(planner.answer(goals, state, contract, budget=Budget.seconds(LIMIT))))
+    budget = Budget.seconds(WAIT).working(LIMIT)
+    seconds = own(lambda: answers.append(planner.answer(goals, state, contract, budget=budget)))
     return answers[0], seconds
 
 
