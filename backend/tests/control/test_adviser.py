@@ -25,10 +25,10 @@ def processes() -> list[Child]:
     return [child for child in children() if child.name == "adviser"]
 
 
-def run(scenario: Callable[[Adviser], Awaitable[None]], start_after: float = 0.0) -> None:
+def run(scenario: Callable[[Adviser], Awaitable[None]]) -> None:
     async def live() -> None:
         station, supervisor = cell()
-        adviser = Adviser(station.automaton, supervisor, start_after)
+        adviser = Adviser(station.automaton, supervisor)
         try:
             await scenario(adviser)
         finally:
@@ -58,14 +58,7 @@ def test_each_question_has_its_answer_whoever_else_asks() -> None:
         assert offered.offers[0].errand is not None
         assert advice.offers[0].kind == "replan"
 
-    run(scenario, start_after=60)
-
-
-def test_it_stands_by_before_it_is_asked() -> None:
-    async def scenario(adviser: Adviser) -> None:
-        await until(lambda: len(processes()) == 1)
-
-    run(scenario, start_after=0.05)
+    run(scenario)
 
 
 def test_who_waits_too_long_is_told_so_and_the_next_is_answered() -> None:

@@ -39,6 +39,9 @@ class Asking:
     answers: list[Answer] = field(default_factory=list)
     failures: list[tuple[str, bool]] = field(default_factory=list)
 
+    def has(self, answers: int) -> bool:
+        return len(self.answers) == answers
+
     def ask(self, goal: str = "fetch(left)") -> None:
         automaton = cell()[0].automaton
         self.planner.ask(PlanRequest(dict(initial_state(automaton)), goals_of(automaton, (goal,))))
@@ -143,6 +146,39 @@ def test_one_that_is_killed_is_replaced_without_a_question_too() -> None:
     run(scenario)
 
 
+def test_it_begins_with_a_question_and_ends_when_nobody_has_one(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(answering_process, "RESTS_AFTER", 0.2)
+
+    async def scenario(asking: Asking) -> None:
+        await asyncio.sleep(0.1)
+        assert processes() == []
+        for number in range(1, 4):
+            asking.ask()
+            assert len(processes()) == 1
+            await until(partial(asking.has, number))
+            began = time.monotonic()
+            await until(lambda: processes() == [])
+            assert time.monotonic() - began > 0.1, "it may be asked more at once"
+            assert not asking.planner.busy
+        assert asking.failures == []
+        assert asking.planner.replaced == 0
+        assert asking.planner.trouble is None
+
+    run(scenario)
+
+
+def test_a_question_in_the_moment_in_which_it_ends_is_answered(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(answering_process, "RESTS_AFTER", 0.0)
+
+    async def scenario(asking: Asking) -> None:
+        for number in range(1, 6):
+            asking.ask()
+            await until(partial(asking.has, number))
+        assert asking.failures == []
+
+    run(scenario)
+
+
 def test_one_that_stands_still_holds_up_nothing_and_is_replaced(monkeypatch: pytest.MonkeyPatch) -> None:
     async def scenario(asking: Asking) -> None:
         asking.ask()
@@ -167,6 +203,7 @@ def test_one_that_stands_still_holds_up_nothing_and_is_replaced(monkeypatch: pyt
 def test_one_that_dies_again_and_again_is_replaced_ever_later() -> None:
     async def scenario(asking: Asking) -> None:
         died: list[float] = []
+        asking.ask()
         for _ in range(3):
             await until(lambda: bool(processes()))
             (process,) = processes()

@@ -21,30 +21,26 @@ from sequence_planner.planning.reasons.diagnoser import Model
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
 from sequence_planner.synthesis.fewer import FewerSpecifications
 
-START_AFTER = 3.0  # seconds; a station that begins has other things to do
-
 
 class Adviser:
-    """Asks an adviser in another process, which is there before somebody asks. Used from one event loop."""
+    """Asks an adviser in another process. Used from one event loop."""
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor, start_after: float = START_AFTER) -> None:
-        self._model = Model(automaton, supervisor, FewerSpecifications(automaton, supervisor))
+    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+        model = Model(automaton, supervisor, FewerSpecifications(automaton, supervisor))
+        serving = Work[Model, Request]("adviser", work, model, lambda request: False)
         self._loop = asyncio.get_running_loop()
-        self._process: AnsweringProcess[Model, Request, Answer] | None = None
+        self._process = AnsweringProcess(serving, self._loop, Listener[Request, Answer](self._answered, self._failed))
         self._turn = asyncio.Lock()
         self._awaited: asyncio.Future[Answer] | None = None
-        self._starting = self._loop.call_later(start_after, self._there)
 
     @property
     def replaced(self) -> int:
         """How often the process was replaced."""
-        return 0 if self._process is None else self._process.replaced
+        return self._process.replaced
 
     def close(self) -> None:
         """End the process."""
-        self._starting.cancel()
-        if self._process is not None:
-            self._process.close()
+        self._process.close()
 
     @overload
     async def answer(self, request: AdviceRequest | ErrandRequest, deadline: float) -> Advice: ...
@@ -68,7 +64,7 @@ class Adviser:
             raise CommandRefused("adviser-late", "The adviser was too slow", detail, 504) from None
 
     async def _asked(self, request: Request) -> Answer:
-        process = self._there()
+        process = self._process
         if process.busy:
             raise _away(process.trouble or "the adviser is started again")
         self._awaited = self._loop.create_future()
@@ -79,14 +75,6 @@ class Adviser:
             if self._awaited.cancelled():
                 process.call_off()
             self._awaited = None
-
-    def _there(self) -> AnsweringProcess[Model, Request, Answer]:
-        if self._process is None:
-            self._starting.cancel()
-            listener = Listener[Request, Answer](self._answered, self._failed)
-            serving = Work[Model, Request]("adviser", work, self._model, lambda request: False)
-            self._process = AnsweringProcess(serving, self._loop, listener)
-        return self._process
 
     def _answered(self, request: Request, answer: Answer) -> None:
         if self._awaited is not None and not self._awaited.done():

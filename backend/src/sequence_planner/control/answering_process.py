@@ -1,5 +1,7 @@
 """A process that answers, as the controller sees it: one question at a time, a new one when it fails to answer.
 
+It begins with the first question, and ends when nobody has asked for some time: it is forked again in no time.
+
 The event loop never touches the pipe: a write or a read would wait for a process that stands still, and the ticks with
 it. The companion's threads do.
 """
@@ -8,6 +10,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
@@ -23,6 +26,7 @@ LOG = structlog.get_logger(__name__)
 GRACE = 10.0  # seconds beyond the deadline of a request, for the answer's way; then the process is replaced
 STARTING = 120.0  # seconds a process may take to start
 LONGEST_PAUSE = 30.0  # seconds before a process that has died again and again is replaced
+RESTS_AFTER = 30.0  # seconds without a question, after which it ends until there is one
 
 
 class Limited(Protocol):
@@ -71,7 +75,7 @@ class AnsweringProcess(Generic[Model, Request, Answer]):
         self._listener = listener
         self._asked: Request | None = None
         self._number = 0  # of the last question
-        self._timer: asyncio.TimerHandle | None = None
+        self._timer: asyncio.Handle | None = None
         self._companion: Companion[Model, Request] | None = None
         self._generation = 0  # of the process; what earlier ones say counts no more
         self._ready = False
@@ -79,48 +83,68 @@ class AnsweringProcess(Generic[Model, Request, Answer]):
         self._owes = False  # it has died over a question since
         self.trouble: str | None = None
         self.replaced = 0  # how often
-        self._start()
+        self._rests = True
+        self._leaving: threading.Thread | None = None  # ends one that rests
 
     @property
     def busy(self) -> bool:
-        """Whether a question is out, or there is no process to be asked."""
-        return self._asked is not None or self._companion is None
+        """Whether a question is out, or there can be no process to be asked yet."""
+        return self._asked is not None or (self._companion is None and not self._rests)
 
     def ask(self, request: Request) -> None:
         """Ask; the one question before must have been answered, or called off."""
-        if self._asked is not None or self._companion is None:
+        if self.busy:
             raise RuntimeError(f"the {self._work.name} is asked one thing at a time")
         self._asked = request
         self._number += 1
-        self._companion.ask(Question(self._number, request.deadline, request))
+        if self._rests:
+            self._start()
+        if self._companion is not None:
+            self._companion.ask(Question(self._number, request.deadline, request))
         if self._ready:
             self._limit(request.deadline + GRACE)
 
     def call_off(self) -> None:
         """Nobody waits for an answer any more: none is heard, and the next question may be asked at once."""
-        if self._asked is None or self._companion is None:
+        if self._asked is None:
             return
         self._asked = None
-        self._companion.call_off(self._number)
+        if self._companion is not None:
+            self._companion.call_off(self._number)
         if self._ready:
             self._limit(GRACE)
 
     def close(self) -> None:
         """End the process."""
+        companion = self._given_up()
+        if companion is not None:
+            companion.close()
+        if self._leaving is not None:
+            self._leaving.join()
+            self._leaving = None
+
+    def _given_up(self) -> Companion[Model, Request] | None:
+        """The process, which nobody hears any more."""
         self._limit(None)
         self._generation += 1
-        if self._companion is not None:
-            self._companion.close()
-        self._companion = None
+        companion, self._companion, self._ready = self._companion, None, False
+        return companion
+
+    def _rest(self) -> None:
+        """End the process until somebody asks; no tick waits for that."""
+        companion, self._rests = self._given_up(), True
+        if companion is not None:
+            self._leaving = threading.Thread(target=companion.close, daemon=True, name=self._work.name)
+            self._leaving.start()
 
     def _start(self) -> None:
-        self._ready = False
+        self._rests = False
         try:
             hear = partial(self._tell, self._generation)
             work = self._work
             self._companion = Companion(work.serve, work.model, hear, work.name)
         except OSError as error:
-            self._replace(f"cannot be started ({error})")
+            self._timer = self._loop.call_soon(self._replace, f"cannot be started ({error})")
             return
         self._limit(STARTING)
 
@@ -129,6 +153,11 @@ class AnsweringProcess(Generic[Model, Request, Answer]):
         if self._timer is not None:
             self._timer.cancel()
         self._timer = None if seconds is None else self._loop.call_later(seconds, self._replace, "was silent too long")
+
+    def _limit_to_rest(self) -> None:
+        """It rests unless it is asked in time."""
+        self._limit(None)
+        self._timer = self._loop.call_later(RESTS_AFTER, self._rest)
 
     def _tell(self, generation: int, word: Word) -> None:
         """In the thread that reads."""
@@ -143,12 +172,15 @@ class AnsweringProcess(Generic[Model, Request, Answer]):
                 self._ready = True
                 if not self._owes:
                     self.trouble = None
-                self._limit(None if self._asked is None else self._asked.deadline + GRACE)
+                if self._asked is None:
+                    self._limit_to_rest()
+                else:
+                    self._limit(self._asked.deadline + GRACE)
             case Answered(number, content) if number == self._number:
-                self._limit(None)
+                self._limit_to_rest()
                 self._take(content)
             case Finished(number, trouble) if number == self._number:
-                self._limit(None)
+                self._limit_to_rest()
                 if trouble:
                     self._take(f"the {self._work.name} failed ({trouble})")
             case Ended():

@@ -214,7 +214,6 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         running = [asyncio.create_task(each.run()) for each in parts]
         running += [asyncio.create_task(each.run()) for each in (backup_desk, retention_desk) if each is not None]
         if shop is not None:
-            running.append(asyncio.create_task(shop.read_ahead()))
             controller.listen(shop.hear)
         try:
             yield

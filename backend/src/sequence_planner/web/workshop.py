@@ -82,12 +82,6 @@ class Workshop:
         await self._process.close()
         await self._pipelines.close()
 
-    async def read_ahead(self) -> None:
-        """Read what the files hold, so that whoever asks for them first need not wait for that."""
-        files = await run_in_threadpool(self._files.read)
-        draft = await self._identity.read(drafts.read)
-        await self._editing.ask(draft.files or files, "shown", draft.number, None)
-
     async def open(self) -> Draft:
         """The draft, begun if there is none yet, with what has happened to the files of the station since.
 

@@ -22,6 +22,7 @@ from sequence_planner.forking.starting import start
 from sequence_planner.memory_limit import MemoryLimit, memory_limit
 
 PATIENCE = 60.0  # seconds for a task
+RESTS_AFTER = 60.0  # seconds without a question, after which a process that answers ends until there is one
 _ANSWERING, _WORKING = 5, 15  # niceness: ticks come first, then whoever waits for an answer, then checks
 _PREFIX = "sequence-planner-workshop-"  # of folders
 _NO_ANSWER = "the process has ended without an answer; is memory short?"
@@ -64,14 +65,16 @@ async def worked(name: str, *arguments: object, patience: float = PATIENCE) -> o
 
 
 class Answering:
-    """A process that answers one question after the other; it is started with the first of them. `name` is a function
-    of a module of this room that is called with a connection and the path of an empty folder. Used from one event loop.
+    """A process that answers one question after the other; it is started with the first of them, and ends when nobody
+    asks for long. `name` is a function of a module of this room that is called with a connection and the path of an
+    empty folder. Used from one event loop.
     """
 
     def __init__(self, module: str, name: str) -> None:
         self._what = module, name
         self._turn = asyncio.Lock()
         self._kept: tuple[Child, Connection, tempfile.TemporaryDirectory[str]] | None = None
+        self._resting: asyncio.Task[None] | None = None
 
     @property
     def begun(self) -> bool:
@@ -83,6 +86,7 @@ class Answering:
 
         Raises `WorkEndedError` when there is none; the process begins anew with the next question then.
         """
+        self._rest_no_more()
         async with self._turn:
             try:
                 async with asyncio.timeout(patience):
@@ -101,11 +105,27 @@ class Answering:
             except BaseException:
                 await self._end()  # its answer would be taken for that to the next question
                 raise
+            finally:
+                self._rest_no_more()
+                self._resting = asyncio.create_task(self._rest())
 
     async def close(self) -> None:
         """End the process."""
+        self._rest_no_more()
         async with self._turn:
             await self._end()
+
+    async def _rest(self) -> None:
+        """End the process when nobody has asked for long."""
+        await asyncio.sleep(RESTS_AFTER)
+        async with self._turn:
+            self._resting = None  # it is not to be cut short, and nobody has asked before it had its turn
+            await self._end()
+
+    def _rest_no_more(self) -> None:
+        if self._resting is not None:
+            self._resting.cancel()
+            self._resting = None
 
     async def _start(self) -> tuple[Child, Connection, tempfile.TemporaryDirectory[str]]:
         starting = asyncio.create_task(asyncio.to_thread(self._started))
