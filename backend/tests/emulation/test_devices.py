@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import contextlib
+import math
+import random
 from pathlib import Path
 
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from core.budget import examples
 from sequence_planner.emulation.devices import EmulatedDevices
+from sequence_planner.emulation.spoken import CannotSpeakError
 from sequence_planner.expressions.types import Value
 from sequence_planner.pipelines.running import RunningPipelines
 from sequence_planner.pipelines.running_outgoing import first_message
@@ -265,3 +270,54 @@ def test_nobody_emulates_the_person() -> None:
     assert bench.devices.state["operator.acknowledged"] is False
     with pytest.raises(ValueError, match=r"no emulated device has `operator.acknowledged`"):
         bench.devices.put("operator.acknowledged", True)
+
+
+DONE = st.one_of(
+    st.tuples(st.just("command"), st.integers(0, 10**6)),
+    st.tuples(st.just("put"), st.integers(0, 10**6)),
+    st.tuples(st.just("slow"), st.integers(0, 10**6)),
+    st.tuples(st.just("wait"), st.integers(1, 40)),
+)
+
+
+@given(st.sampled_from(["cell", "truck"]), st.lists(DONE, max_size=12), st.integers(0, 3))
+@examples(200)
+def test_who_looks_only_when_something_is_due_or_new_sees_the_same(
+    station: str, done: list[tuple[str, int]], seed: int
+) -> None:
+    always, when_due = Bench(seed=seed, station=station), Bench(seed=seed, station=station)
+    news = [True]
+    when_due.devices.on_change = lambda: news.append(True)
+    step = 0.0201  # so that nothing is due on a grid point to the last bit
+    for what, number in done:
+        for bench in (always, when_due):
+            _do(bench, what, number)
+        for _ in range(number if what == "wait" else 1):
+            always.now += step
+            when_due.now += step
+            always.devices.advance(always.now)
+            if news or when_due.devices.due <= when_due.now:
+                news.clear()
+                when_due.devices.advance(when_due.now)
+            assert when_due.devices.state == always.devices.state
+            assert all(when_due.devices.report(t) == always.devices.report(t) for t in always.devices.spoken)
+    if not news and when_due.devices.due == math.inf:
+        before = dict(always.devices.state)
+        always.wait(20)
+        assert always.devices.state == before, "nothing was due"
+
+
+def _do(bench: Bench, what: str, number: int) -> None:
+    draw = random.Random(number)
+    automaton = bench.station.automaton
+    if what == "command":
+        name = draw.choice(sorted(automaton.outputs))
+        bench.command(**{name: draw.choice(automaton.variables[name].type.domain)})
+    elif what == "put":
+        name = draw.choice(sorted(bench.devices.topics))
+        with contextlib.suppress(CannotSpeakError):
+            bench.devices.put(name, draw.choice(automaton.variables[name].type.domain))
+    elif what == "slow":
+        resource = draw.choice(sorted(automaton.resources))
+        bench.devices.advance(bench.now)
+        bench.devices.slow(draw.choice([{}, {resource: 2.0}]))

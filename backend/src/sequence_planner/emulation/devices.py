@@ -6,8 +6,9 @@ variable there are numbers, which glide to their next named point while the effe
 
 from __future__ import annotations
 
+import math
 import random
-from collections.abc import Iterable, Mapping, Set
+from collections.abc import Callable, Iterable, Mapping, Set
 from dataclasses import dataclass
 
 from sequence_planner.automaton.structure import Automaton, Effect, Kind, target
@@ -20,12 +21,16 @@ from sequence_planner.pipelines.graph import Flow, StationPipelines
 
 @dataclass(frozen=True)
 class _Underway:
-    """An effect that will write `writes` at `due`; `origin` has the messages from which a glide began."""
+    """An effect of a `resource` that will write `writes` at `due`; `origin` has the messages from which a glide began,
+    if it `glides`.
+    """
 
+    resource: str | None
     began: float
     due: float
     writes: Mapping[str, Value]
     origin: Mapping[str, Message]
+    glides: bool
 
 
 class EmulatedDevices:
@@ -75,6 +80,8 @@ class EmulatedDevices:
         for topic in pipelines.sources:
             self._messages[topic] = spoken(pipelines, topic, self.state, {})
         self._underway: dict[str, _Underway] = {}
+        self.on_change: Callable[[], None] = lambda: None
+        """Called when something is otherwise than it was: other effects may be possible, other reports due."""
 
     @property
     def spoken(self) -> list[str]:
@@ -114,11 +121,12 @@ class EmulatedDevices:
 
     def observe(self, values: Mapping[str, Value | None]) -> None:
         """Take note of what the devices say that are not emulated here."""
-        self.state |= {name: value for name, value in values.items() if name not in self.topics}
+        self._know({name: value for name, value in values.items() if name not in self.topics})
 
     def slow(self, slowness: Mapping[str, float]) -> None:
         """From now on the devices of these resources need so many times as long, and all others as long as ever."""
         self._slowness = dict(slowness)
+        self.on_change()
 
     def restart(self, resource: str) -> None:
         """The devices of a resource are as at the beginning, and have heard no command."""
@@ -133,6 +141,7 @@ class EmulatedDevices:
         for effect in self._effects:
             if effect.resource == resource:
                 self._underway.pop(effect.name, None)
+        self.on_change()
 
     def _commanded(self, resource: str) -> set[str]:
         said = (*self._pipelines.outgoing.values(), *self._pipelines.requests.values())
@@ -142,9 +151,7 @@ class EmulatedDevices:
     def command(self, topic: str, message: Mapping[str, object]) -> list[str]:
         """Take a message on an outgoing topic of the station, or a request; returns what in it made no sense."""
         values, troubles = self._readers[topic].read(message)
-        self.state |= {
-            name: value for name, value in values.items() if self._automaton.variables[name].kind is Kind.OUTPUT
-        }
+        self._know({n: value for n, value in values.items() if self._automaton.variables[n].kind is Kind.OUTPUT})
         return troubles
 
     def report(self, topic: str) -> dict[str, object]:
@@ -153,7 +160,12 @@ class EmulatedDevices:
 
     def want(self, output: str, is_wanted: bool) -> None:
         """A request for which the station sets an output has come, or has been answered."""
-        self.state[output] = is_wanted
+        self._know({output: is_wanted})
+
+    def _know(self, values: Mapping[str, Value | None]) -> None:
+        if any(self.state.get(name) != value for name, value in values.items()):
+            self.state |= values
+            self.on_change()
 
     def is_underway(self, variables: Iterable[str]) -> bool:
         """Whether an effect on one of these variables is on its way."""
@@ -188,16 +200,27 @@ class EmulatedDevices:
         underway = self._underway.get(effect.name)
         if underway is None or underway.writes != writes:  # a new destination is a new journey
             seconds = self._random.uniform(effect.shortest, effect.longest + self._jitter) / self._speed
-            underway = _Underway(now, now + seconds, writes, dict(self._messages))
+            glides = any(self._between.get(name) not in (None, value) for name, value in writes.items())
+            origin = dict(self._messages)
+            underway = _Underway(effect.resource, now, now + seconds, writes, origin, glides)
             self._underway[effect.name] = underway
         if now >= underway.due:
             self._set(writes)
             del self._underway[effect.name]
-        else:
+        elif underway.glides:
             self._glide(writes, underway, now)
+
+    @property
+    def due(self) -> float:
+        """When the next thing happens by itself, after the last `advance`: at once where numbers glide; inf if none."""
+        waiting = self._underway.values()
+        if any(each.glides or each.resource in self._slowness for each in waiting):
+            return -math.inf
+        return min((each.due + self._lost.get(each.resource or "", 0.0) for each in waiting), default=math.inf)
 
     def _set(self, writes: Mapping[str, Value]) -> None:
         self.state |= writes
+        self.on_change()
         for topic in self._spoken_on(writes):
             self._messages[topic] = spoken(self._pipelines, topic, self.state, self._messages[topic])
 

@@ -82,6 +82,12 @@ class FaultyDevices:
         self._end([each for each in self._underway if each.until is not None and each.until <= now])
         self.devices.advance(now)
 
+    @property
+    def due(self) -> float:
+        """When the next thing happens by itself, after the last `advance`; inf if none will."""
+        ends = min((each.until for each in self._underway if each.until is not None), default=math.inf)
+        return min(ends, self.devices.due)
+
     def says(self, topic: str) -> Message | None:
         """The message with which a device would report now; None while it says nothing."""
         if self._has(topic, *_OFFLINE, FaultKind.SILENT):
@@ -110,6 +116,8 @@ class FaultyDevices:
         return not self._has(topic, *_OFFLINE) and not self._is_lost(topic)
 
     def _end(self, ended: list[_Underway]) -> None:
+        if not ended:
+            return
         for each in ended:
             self._underway.remove(each)
             if each.fault.kind is FaultKind.RESTARTED:

@@ -67,6 +67,7 @@ def listen(transport: Transport, registry: MessageRegistry, devices: FaultyDevic
 
 def cause(devices: FaultyDevices, what: Fault | Clear, now: float) -> str:
     """Let faults begin or end; returns what has been done, for a person."""
+    devices.advance(now)  # who is slow from now on was not slow before
     if isinstance(what, Clear):
         ended = devices.clear(what)
         return f"ended: {'; '.join(map(str, ended))}" if ended else "there was nothing to end"

@@ -1,9 +1,13 @@
-"""The process of the emulated devices: messages in, time passing, messages out."""
+"""The process of the emulated devices: messages in, time passing, messages out.
+
+It looks at the devices when something has come for them, when a report is due, and when one of them is done.
+"""
 
 from __future__ import annotations
 
 import asyncio
 import contextlib
+import math
 import random
 import time
 from collections.abc import Callable, Sequence
@@ -20,6 +24,7 @@ from sequence_planner.emulation.links import Links
 from sequence_planner.emulation.live import cause, listen
 from sequence_planner.emulation.node import NODE
 from sequence_planner.emulation.serving import serve_clients
+from sequence_planner.emulation.spoken import Message
 from sequence_planner.emulation.standing import Standing, keep
 from sequence_planner.pipelines.running import RunningPipelines
 from sequence_planner.ros.actions import ActionNames
@@ -31,7 +36,7 @@ from sequence_planner.station import ReadyStation
 
 LOG = structlog.get_logger(__name__)
 
-STEP = 0.02  # seconds between two looks at the clock
+STEP = 0.02  # seconds between two looks at the devices, at least
 REPORT_EVERY = 0.1  # seconds between two reports that say the same
 
 
@@ -85,6 +90,15 @@ async def emulate(emulation: Emulation, connect: Callable[[str], Transport]) -> 
     await _Life(emulation, connect).run()
 
 
+@dataclass(frozen=True)
+class _Said:
+    """The last report on a topic, as it was and in bytes, and when the next one is due."""
+
+    message: Message | None
+    data: bytes
+    due: float
+
+
 class _Life:
     def __init__(self, emulation: Emulation, connect: Callable[[str], Transport]) -> None:
         station = emulation.station
@@ -104,7 +118,9 @@ class _Life:
         self._others = RunningPipelines(station.pipelines)  # what devices say that are not emulated
         self._random = random.Random(f"reports {emulation.seed}")
         self._troubles: dict[str, str] = {}  # what was wrong on each topic last, so that it is not said every time
-        self._said: dict[str, tuple[float, bytes]] = {}  # when the next report is due, and the last one
+        self._said: dict[str, _Said] = {}
+        self._news = asyncio.Event()
+        devices.on_change = self._news.set
         self._connect = connect
         self._links = Links(station.pipelines, emulation.emulated, lambda: connect(NODE), self._obey)
 
@@ -120,6 +136,7 @@ class _Life:
             self._keep()
             script, began = list(self._emulation.script), time.monotonic()
             while True:
+                self._news.clear()
                 now = time.monotonic()
                 while script and script[0].at <= now - began:
                     what = script.pop(0).what
@@ -128,11 +145,19 @@ class _Life:
                 self._links.keep(self._devices.offline_resources)
                 self._report(now)
                 await asyncio.sleep(STEP)
+                await self._until(script[0].at + began if script else math.inf)
         finally:
             self._keep()
             self._links.close()
             self._others.close()
             main.close()
+
+    async def _until(self, due: float) -> None:
+        """Wait until then, or until there is something to do before."""
+        due = min(due, self._devices.due, *(each.due for each in self._said.values()))
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(max(0.0, due - time.monotonic()) if due < math.inf else None):
+                await self._news.wait()
 
     def _keep(self) -> None:
         if self._emulation.kept_in is not None:
@@ -157,11 +182,13 @@ class _Life:
             if message is None:
                 self._said.pop(name, None)
                 continue
-            data = self._registry.encode(pipeline.topic.type_name, message)
-            due, last = self._said.get(name, (now, b""))
-            if data == last and now < due:
+            last = self._said.get(name, _Said(None, b"", now))
+            same = message is last.message  # what a device says is never changed, but another message takes its place
+            data = last.data if same else self._registry.encode(pipeline.topic.type_name, message)
+            if data == last.data and now < last.due:
                 continue
-            self._said[name] = (now + REPORT_EVERY + self._random.uniform(0, self._emulation.jitter), data)
+            due = now + REPORT_EVERY + self._random.uniform(0, self._emulation.jitter)
+            self._said[name] = _Said(message, data, due)
             if (sent := self._devices.sent(name, data)) is not None:
                 self._links.publish(name, pipeline.topic.type_name, sent)
 
