@@ -108,6 +108,9 @@ class Controller:
         self.begun = self._writer.end
         """The first record of this life."""
         self._wake = asyncio.Event()
+        self.changed = asyncio.Event()
+        """Set whenever there was a tick, or something was recorded."""
+        self._progress = 0, 0  # numbers of ticks, and of what was recorded, when it was set last
         self.devices = Devices(station, transport, self._wake.set)
         feeds, network, commander = self.devices.feeds, self.devices.network, self.devices.commander
         self._release = Release(
@@ -172,6 +175,7 @@ class Controller:
             while True:
                 moment = Moment.now()
                 self._step(moment)
+                self._tell_of_progress()
                 if self.devices.waiting or (self._again and self._in_a_row < MOST_TICKS):
                     await asyncio.sleep(0)
                 else:
@@ -183,6 +187,11 @@ class Controller:
             self._doubting.close()
             self._adviser.close()
             await self._writer.close()
+
+    def _tell_of_progress(self) -> None:
+        if self._progress != (progress := (self.execution.ticks, self.last_record)):
+            self._progress = progress
+            self.changed.set()
 
     def _rest(self) -> float:
         """Seconds until the next look at the clock: at the latest when a stage of a pipeline waits for it."""
@@ -237,11 +246,6 @@ class Controller:
     def last_record(self) -> int:
         """The number of the last record of what has happened, which may not be durable yet."""
         return self._writer.end.number
-
-    @property
-    def progress(self) -> tuple[int, int]:
-        """What changes whenever something has happened: numbers of ticks, and of what was recorded."""
-        return self.execution.ticks, self._writer.end.number
 
     async def until_recorded(self, number: int, patience: float) -> bool:
         """Whether what has happened up to a record is durable, or becomes so within so many seconds."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 from collections.abc import Sequence
 
 from sequence_planner.control.mismatches import call_uses, mismatches, not_understood, uses
@@ -17,7 +18,8 @@ class NetworkWatch:
     `peers` counts those that can be understood, `troubles` and `rivals` say in words what is wrong with others. They go
     by topic, or by the part of a service or action that answers. As long as the station only listens (`commands` is
     false), whoever commands its devices is no rival, unless the station `waits` for that one to end.
-    `seen` is all that there was, also on other topics, and of services where the transport can tell.
+    `seen` is all that there was, also on other topics, and of services where the transport can tell; when that is
+    something else than before, `changed` is set.
     """
 
     def __init__(self, pipelines: StationPipelines, registry: MessageRegistry) -> None:
@@ -26,12 +28,15 @@ class NetworkWatch:
         self.commands = self.waits = False
         self._speaking: set[str] = set()  # incoming topics that had a publisher
         self.seen: tuple[Sequence[Endpoint], Sequence[ServiceEnd] | None] = ((), None)
+        self.changed = asyncio.Event()
         self.peers: dict[str, int] = dict.fromkeys(self.uses, 0)
         self.troubles: dict[str, str] = {}
         self.rivals: dict[str, str] = {}  # who else publishes a topic with which the station commands, in words
 
     def look(self, graph: Sequence[Endpoint], ends: Sequence[ServiceEnd] | None = None) -> frozenset[str]:
         """Take a new look; returns the incoming topics whose publishers have all gone since the last one."""
+        if self.seen != (graph, ends):
+            self.changed.set()
         self.seen = (graph, ends)
         self.peers = dict.fromkeys(self.uses, 0)
         self.troubles, self.rivals = {}, {}

@@ -46,7 +46,7 @@ from sequence_planner.storage.database import Database
 LOG = structlog.get_logger(__name__)
 
 SETTLED_WITHIN = 10.0  # seconds in which a process beside one that has died says that all of its is recorded
-SHOW_EVERY = 0.1  # seconds between two views
+SHOW_EVERY = 0.1  # seconds between two views, at least
 SHOW_AT_REST = 0.5  # while nothing happens: only times and numbers change
 WISH_LASTS = 60.0  # seconds for which a station that stands by minds that somebody wanted to stop it
 RECORD_AGAIN = 5.0  # seconds
@@ -330,17 +330,18 @@ class _Life:
         return controller.view().model_copy(update={"deployment": self._deployment.view(), "standby": standby})
 
     async def _show(self, controller: Controller) -> None:
-        failed, shown, due = "", None, 0.0
+        failed = ""
         while True:
-            now, stands = time.monotonic(), (controller.progress, self._deployment.view())
-            if stands != shown or now >= due:
-                shown, due = stands, now + SHOW_AT_REST
-                try:
-                    self._link.publish(self._seen(controller))
-                except Exception as error:  # who looks on is told that nothing is heard; the station goes on
-                    if failed != (failed := repr(error)):
-                        LOG.exception("the station cannot be shown")
+            controller.changed.clear()
+            try:
+                self._link.publish(self._seen(controller))
+            except Exception as error:  # who looks on is told that nothing is heard; the station goes on
+                if failed != (failed := repr(error)):
+                    LOG.exception("the station cannot be shown")
             await asyncio.sleep(SHOW_EVERY)
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(SHOW_AT_REST - SHOW_EVERY):
+                    await controller.changed.wait()
 
     async def _show_preparing(self) -> None:
         identity, began, known = _identity(self._running, ""), time.time(), self._preparation
@@ -402,12 +403,10 @@ async def _require_sole_command(running: Running, station: ReadyStation) -> None
 
 async def show_network(network: NetworkWatch, link: ControllerLink) -> None:
     """Show the network whenever something has changed in it. The document is made in short steps between the ticks."""
-    shown: object = None
     while True:
-        if network.seen != shown:
-            shown = network.seen
-            link.publish_network(await _in_steps(network_steps(*network.seen, network.uses)))
-        await asyncio.sleep(SHOW_EVERY)
+        network.changed.clear()
+        link.publish_network(await _in_steps(network_steps(*network.seen, network.uses)))
+        await network.changed.wait()
 
 
 async def _in_steps(steps: Generator[None, None, NetworkView]) -> NetworkView:

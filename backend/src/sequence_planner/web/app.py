@@ -209,8 +209,7 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.backups = backup_desk = _backup_desk(office, settings, controller)
         app.state.retention = retention_desk = _retention_desk(office, settings, controller)
         deliverer = Deliverer(office.database, Sender(settings.webhooks), stands_by=lambda: controller.stands_by)
-        shows = (controller, broadcast, network, flows, watch_show)
-        parts = (*shows, Sweeper(office, controller), desk, sequencing, deliverer)
+        parts = (controller, flows, Sweeper(office, controller), desk, sequencing, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
         running += [asyncio.create_task(each.run()) for each in (backup_desk, retention_desk) if each is not None]
         if shop is not None:

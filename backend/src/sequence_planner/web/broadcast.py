@@ -19,7 +19,6 @@ from sequence_planner.web.difference import difference
 from sequence_planner.web.settings import StreamLimits
 from sequence_planner.web.stream_messages import ControllerState, Delta, Link, Snapshot, StreamError
 
-CHECK_INTERVAL = 0.1  # seconds between looks at whether the controller is still heard
 MOST_ERRORS = 8  # answers to wrong frames that wait; of more, the oldest are dropped
 
 
@@ -71,7 +70,7 @@ class Subscriber:
 
 
 class Broadcast:
-    """Follows the controller and tells every subscriber; `run` notices when it falls silent."""
+    """Follows the controller and tells every subscriber, also when it falls silent."""
 
     def __init__(self, controller: ControllerClient, limits: StreamLimits) -> None:
         self.limits = limits
@@ -80,14 +79,7 @@ class Broadcast:
         self._view: StationView | None = None  # what was told last; None while the controller is lost
         self._subscribers: set[Subscriber] = set()
         controller.listen(self._heard)
-
-    async def run(self) -> None:
-        """Watch the controller until cancelled."""
-        while True:
-            await asyncio.sleep(CHECK_INTERVAL)
-            if self._view is not None and not self._controller.heard:
-                self._view = None
-                self._tell_link(ControllerState.LOST)
+        controller.listen_to_silence(self._look)
 
     @contextmanager
     def subscription(self) -> Iterator[Subscriber | None]:
@@ -108,10 +100,17 @@ class Broadcast:
             self._tell_link(ControllerState.HEARD)
             self._tell(self._present())
             return
-        changed, removed = difference(before, view)
         self._sequence += 1
+        if not self._subscribers:
+            return
+        changed, removed = difference(before, view)
         delta = Delta(kind="delta", sequence=self._sequence, changed=changed, removed=removed)
         self._tell(delta.model_dump_json())
+
+    def _look(self) -> None:
+        if self._view is not None and not self._controller.heard:
+            self._view = None
+            self._tell_link(ControllerState.LOST)
 
     def _tell_link(self, state: ControllerState) -> None:
         self._sequence += 1

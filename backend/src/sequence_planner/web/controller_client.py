@@ -44,27 +44,23 @@ LOG = structlog.get_logger(__name__)
 SILENCE = 2.0  # seconds without a view after which the controller counts as lost
 FIRST_WAIT, LONGEST_WAIT = 0.05, 1.0  # seconds between attempts to connect
 REPLY_DEADLINE = 5.0  # seconds
+_A_LITTLE = 0.01  # seconds, so that it is over when it is looked at
 ON_THE_WAY = 0.5  # seconds that an answer may need back to us, beyond the patience of who asks
 
 
 class ControllerClient:
     """What is known of the controller, and the way to command it; `run` keeps it connected."""
 
-    def __init__(
-        self,
-        path: Path,
-        *,
-        clock: Callable[[], float] = time.monotonic,
-        reply_deadline: float = REPLY_DEADLINE,
-    ) -> None:
+    def __init__(self, path: Path, *, reply_deadline: float = REPLY_DEADLINE) -> None:
         self.path = path
         self.view: StationView | None = None
-        self.last_heard: float | None = None  # seconds, on `clock`
-        self._clock = clock
+        self.last_heard: float | None = None  # on the clock of `time.monotonic`
         self._reply_deadline = reply_deadline
         self.network: NetworkView | None = None
         self._listeners: list[Callable[[StationView], None]] = []
         self._network_listeners: list[Callable[[NetworkView], None]] = []
+        self._silence_listeners: list[Callable[[], None]] = []
+        self._looking: asyncio.TimerHandle | None = None  # for silence, while it is heard
         self._writer: asyncio.StreamWriter | None = None
         self._numbers = itertools.count(1)
         self._awaited: dict[int, asyncio.Future[Heard]] = {}
@@ -83,7 +79,7 @@ class ControllerClient:
     @property
     def heard(self) -> bool:
         """Whether a view came within the last two seconds."""
-        return self.last_heard is not None and self._clock() - self.last_heard <= SILENCE
+        return self.last_heard is not None and time.monotonic() - self.last_heard <= SILENCE
 
     def listen(self, listener: Callable[[StationView], None]) -> None:
         """Call `listener` with each view as it arrives; it must not block."""
@@ -92,6 +88,10 @@ class ControllerClient:
     def listen_to_network(self, listener: Callable[[NetworkView], None]) -> None:
         """Call `listener` with the ROS graph whenever it has changed; it must not block."""
         self._network_listeners.append(listener)
+
+    def listen_to_silence(self, listener: Callable[[], None]) -> None:
+        """Call `listener` when the controller is heard no more, or its ROS graph is not; it must not block."""
+        self._silence_listeners.append(listener)
 
     async def run(self) -> None:
         """Stay connected until cancelled."""
@@ -107,6 +107,7 @@ class ControllerClient:
                 LOG.exception("a message of the controller cannot be dealt with")
             finally:
                 self._forget_connection()
+                self._tell_silence()
             await asyncio.sleep(wait)
             wait = min(2 * wait, LONGEST_WAIT)
 
@@ -180,7 +181,9 @@ class ControllerClient:
                 LOG.warning("a line of the controller cannot be read", errors=error.error_count())
                 continue
             if isinstance(message, ViewMessage):
-                self.view, self.last_heard = message.view, self._clock()
+                self.view, self.last_heard = message.view, time.monotonic()
+                if self._looking is None:
+                    self._look_for_silence()
                 for listener in self._listeners:
                     listener(message.view)
             elif isinstance(message, NetworkMessage):
@@ -189,6 +192,19 @@ class ControllerClient:
                     each(message.network)
             else:
                 self._answered(message)
+
+    def _look_for_silence(self) -> None:
+        """Look again when it would have fallen silent by then."""
+        self._looking = None
+        if self.last_heard is not None and self.heard:
+            left = self.last_heard + SILENCE - time.monotonic()
+            self._looking = asyncio.get_running_loop().call_later(left + _A_LITTLE, self._look_for_silence)
+        else:
+            self._tell_silence()
+
+    def _tell_silence(self) -> None:
+        for each in self._silence_listeners:
+            each()
 
     def _answered(self, answer: Heard) -> None:
         awaited = None if answer.id is None else self._awaited.get(answer.id)

@@ -22,11 +22,10 @@ from sequence_planner.web.stream_messages import ControllerState
 Names = frozenset[str] | None
 
 LOOK_EVERY = 0.5  # seconds between two questions what has passed the pipelines
-NOTICE_EVERY = 0.1  # seconds between looks at whether the controller is still heard
 
 
 class NetworkShow:
-    """The ROS graph: told whenever it has changed; `run` notices when the controller falls silent."""
+    """The ROS graph: told whenever it has changed, and when the controller falls silent."""
 
     def __init__(self, controller: ControllerClient, limits: StreamLimits) -> None:
         self.latest = Latest(self._present, limits)
@@ -34,14 +33,13 @@ class NetworkShow:
         self._encoded: str | None = None
         self._is_heard = False
         controller.listen_to_network(self._changed)
+        controller.listen(lambda view: self._look())
+        controller.listen_to_silence(self._look)
 
-    async def run(self) -> None:
-        """Watch the controller until cancelled."""
-        while True:
-            await asyncio.sleep(NOTICE_EVERY)
-            if self._is_heard != (is_heard := self._controller.heard and self._controller.network is not None):
-                self._is_heard = is_heard
-                self._forget()
+    def _look(self) -> None:
+        if self._is_heard != (is_heard := self._controller.heard and self._controller.network is not None):
+            self._is_heard = is_heard
+            self._forget()
 
     def _changed(self, network: NetworkView) -> None:
         self._is_heard = self._controller.heard

@@ -35,6 +35,7 @@ from sequence_planner.web.order_dispatch import OrderDispatch
 
 LOG = structlog.get_logger(__name__)
 LOOK_EVERY = 0.25  # seconds
+LOOK_AT_REST = 1.0  # seconds, while there is no order
 ASK_EVERY = 5.0  # seconds after which it is asked again what jobs consist of
 READ_EVERY = 5.0  # seconds after which orders are read again though nobody has changed one here
 
@@ -84,7 +85,7 @@ class OrderDesk:
         if self._trouble:
             return
         with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(LOOK_EVERY):
+            async with asyncio.timeout(LOOK_EVERY if self._orders else LOOK_AT_REST):
                 await self._poked.wait()
 
     def poke(self) -> None:

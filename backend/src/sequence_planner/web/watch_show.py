@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import time
 from functools import partial
 
@@ -14,7 +13,6 @@ from sequence_planner.web.settings import StreamLimits
 from sequence_planner.web.stream_messages import ControllerState
 from sequence_planner.web.watch_messages import WatchSnapshot
 
-NOTICE_EVERY = 0.1  # seconds between looks at whether the controller is still heard
 TELL_EVERY = 0.4  # seconds after which the next view is told even if nothing has changed but the time
 
 
@@ -24,7 +22,7 @@ def own_tasks(view: StationView, resource: str) -> dict[str, TaskView]:
 
 
 class WatchShow:
-    """The tasks of each resource, told when they change and each second; `run` notices a silent controller."""
+    """The tasks of each resource, told when they change and each second, and when the controller falls silent."""
 
     def __init__(self, controller: ControllerClient, limits: StreamLimits) -> None:
         self._controller = controller
@@ -33,6 +31,7 @@ class WatchShow:
         self._told: dict[str, tuple[object, float]] = {}  # by resource: what was told last, and when it is time again
         self._is_heard = False
         controller.listen(self._heard)
+        controller.listen_to_silence(self._look)
 
     def of(self, resource: str) -> Latest:
         """What the watches of `resource` are shown."""
@@ -40,15 +39,12 @@ class WatchShow:
             self._shown[resource] = Latest(partial(self._present, resource), self._limits)
         return self._shown[resource]
 
-    async def run(self) -> None:
-        """Watch the controller until cancelled."""
-        while True:
-            await asyncio.sleep(NOTICE_EVERY)
-            if self._is_heard and not self._controller.heard:
-                self._is_heard = False
-                self._told.clear()
-                for latest in self._shown.values():
-                    latest.tell()
+    def _look(self) -> None:
+        if self._is_heard and not self._controller.heard:
+            self._is_heard = False
+            self._told.clear()
+            for latest in self._shown.values():
+                latest.tell()
 
     def _heard(self, view: StationView) -> None:
         self._is_heard = True
