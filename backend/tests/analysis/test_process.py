@@ -11,7 +11,8 @@ import pytest
 from control.bench import cell, until
 from control.rig import truck_engine
 from core.building import automaton
-from sequence_planner.analysis.analysis import Analysis, analyses
+from sequence_planner.analysis.analysis import Analysis
+from sequence_planner.analysis.finding import analyses
 from sequence_planner.analysis.process import SynthesisEndedError, analysing
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.types import BOOLEAN

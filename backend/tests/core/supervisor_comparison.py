@@ -7,7 +7,8 @@ from collections import Counter
 from collections.abc import Iterable, Mapping
 from random import Random
 
-from sequence_planner.automaton.plain.meaning import event_of, plain_automaton
+from sequence_planner.automaton.plain.events import event_of
+from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.types import Value

@@ -9,7 +9,8 @@ from itertools import product
 import pytest
 from hypothesis import given
 
-from sequence_planner.automaton.plain.meaning import event_of, plain_automaton
+from sequence_planner.automaton.plain.events import event_of
+from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.exporting.cif import cif_text

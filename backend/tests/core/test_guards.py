@@ -11,7 +11,8 @@ from typing import Any
 import pytest
 from hypothesis import given
 
-from sequence_planner.automaton.plain.meaning import event_of, plain_automaton
+from sequence_planner.automaton.plain.events import event_of
+from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.parser import parse

@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 from hypothesis import given
 
-from sequence_planner.automaton.plain.meaning import event_of, plain_automaton
+from sequence_planner.automaton.plain.events import event_of
+from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict
 
-from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.checking.warning import ModelWarning
 from sequence_planner.expressions.printing import print_expression
-from sequence_planner.model.source import Finding
-from sequence_planner.synthesis.guards import Guard
-from sequence_planner.synthesis.traces import Trace
+
+if TYPE_CHECKING:  # whoever reads what is kept needs none of that
+    from sequence_planner.analysis.analysis import Analysis
+    from sequence_planner.checking.warning import ModelWarning
+    from sequence_planner.model.source import Finding
+    from sequence_planner.synthesis.guards import Guard
+    from sequence_planner.synthesis.traces import Trace
 
 Value = bool | int | str
 

@@ -16,7 +16,8 @@ from dataclasses import dataclass
 from multiprocessing.connection import Connection, Pipe
 from typing import Generic, TypeVar
 
-from sequence_planner.analysis.analysis import Analysis, analyses
+from sequence_planner.analysis.analysis import Analysis
+from sequence_planner.analysis.finding import analyses
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.forking.copying import Copy, can_be_copied
 from sequence_planner.forking.starting import hang_up, start

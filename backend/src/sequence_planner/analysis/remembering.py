@@ -14,26 +14,24 @@ import pickle
 import stat
 import tempfile
 from pathlib import Path
-from typing import Final, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from sequence_planner.analysis.analysis import Analysis
-from sequence_planner.analysis.never_together import NeverTogether
 from sequence_planner.analysis.store import folder, key
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.late_log import LateLog
-from sequence_planner.synthesis.supervision import synthesise
+
+if TYPE_CHECKING:
+    from sequence_planner.analysis.never_together import NeverTogether
 
 LOG = LateLog(__name__)
-NAMES: Final[dict[type, str]] = {
-    Analysis: "analysis",
-    NeverTogether: "never-together",
-    Supervisor: "supervisor",
-}  # how files begin
+NAMES: Final = {"Analysis": "analysis", "NeverTogether": "never-together", "Supervisor": "supervisor"}
+"""How files begin, by what is in them."""
 MOST_KEPT: Final = 20  # files of each kind; the oldest are removed
 _DIGEST: Final = 32  # bytes of SHA-256, before what is kept
 
-Found = TypeVar("Found", Analysis, NeverTogether, Supervisor)
+Found = TypeVar("Found", Analysis, "NeverTogether", Supervisor)
 
 
 def cache() -> Path | None:
@@ -48,36 +46,46 @@ def cache() -> Path | None:
 
 def remember(where: Path, automaton: Automaton, found: Analysis | NeverTogether | Supervisor) -> None:
     """Keep what was found, if the folder is the user's alone."""
+    write(where, NAMES[type(found).__name__], key(automaton), found)
+
+
+def remembered(where: Path, automaton: Automaton, kind: type[Found]) -> Found | None:
+    """What was found of this very model, by this very program; None if nothing was, or it cannot be read."""
+    found = read(where, NAMES[kind.__name__], key(automaton))
+    return found if isinstance(found, kind) else None
+
+
+def write(where: Path, kind: str, of: str, found: object) -> None:
+    """Keep what was found of what has the key `of`, if the folder is the user's alone."""
     if not _is_own(where):
         return
     try:
         with tempfile.NamedTemporaryFile(dir=where, delete=False) as file:
             content = pickle.dumps(found)
             file.write(hashlib.sha256(content).digest() + content)
-        Path(file.name).replace(_file(where, automaton, type(found)))
-        of_its_kind = sorted(where.glob(f"{NAMES[type(found)]}-*"), key=lambda each: each.stat().st_mtime, reverse=True)
-        for each in of_its_kind[MOST_KEPT:]:
+        Path(file.name).replace(where / f"{kind}-{of}")
+        by_age = sorted(where.glob(f"{kind}-*"), key=lambda each: each.stat().st_mtime, reverse=True)
+        for each in by_age[MOST_KEPT:]:
             each.unlink(missing_ok=True)
     except OSError as error:
         LOG.warning("the next start of the controller has to find out about the model anew", because=str(error))
 
 
-def remembered(where: Path, automaton: Automaton, kind: type[Found]) -> Found | None:
-    """What was found of this very model, by this very program; None if nothing was, or it cannot be read."""
+def read(where: Path, kind: str, of: str) -> object:
+    """What was found of that; None if nothing was, or it cannot be read."""
     try:
         if not _is_own(where):
             return None
-        with _file(where, automaton, kind).open("rb") as file:
+        with (where / f"{kind}-{of}").open("rb") as file:
             digest, content = file.read(_DIGEST), file.read()
         if hashlib.sha256(content).digest() != digest:
             raise ValueError("it is damaged")
-        found = pickle.loads(content)
+        return pickle.loads(content)
     except FileNotFoundError:
         return None
     except Exception as error:  # whatever a damaged file makes of it
         LOG.warning("what was found of the model before cannot be read", because=repr(error))
         return None
-    return found if isinstance(found, kind) else None
 
 
 def supervisor_of(automaton: Automaton) -> Supervisor:
@@ -87,6 +95,8 @@ def supervisor_of(automaton: Automaton) -> Supervisor:
     """
     known = known_supervisor(automaton)
     if known is None:
+        from sequence_planner.synthesis.supervision import synthesise  # noqa: PLC0415
+
         known = synthesise(automaton)
         remember_supervisor(automaton, known)
     return known
@@ -106,10 +116,6 @@ def remember_supervisor(automaton: Automaton, found: Supervisor) -> None:
     where = cache()
     if where is not None:
         remember(where, automaton, found)
-
-
-def _file(where: Path, automaton: Automaton, kind: type) -> Path:
-    return where / f"{NAMES[kind]}-{key(automaton)}"
 
 
 def _is_own(where: Path) -> bool:

@@ -43,7 +43,9 @@ def key(automaton: Automaton) -> str:
     """
     masters = {name: replace(master, operations={}) for name, master in automaton.work_masters.items()}
     content = pickle.dumps((replace(automaton, work_masters=masters), dict(automaton.places)))
-    return hashlib.sha256(_program() + content).hexdigest()
+    # Equal texts may be one text or several, which a pickle tells; after one of them they are as after all others.
+    content = pickle.dumps(pickle.loads(content))
+    return hashlib.sha256(program() + content).hexdigest()
 
 
 def kept(automaton: Automaton) -> Kept | None:
@@ -83,9 +85,19 @@ def _remove_oldest(where: Path) -> None:
 
 
 @cache
-def _program() -> bytes:
-    """A sum of the program's own text, so that what an older one has found does not count."""
+def program() -> bytes:
+    """A sum of when, where and how long the program's own files were written, so that what an older one has found does
+    not count. To read them all would take as long as many a command.
+    """
     total = hashlib.sha256()
-    for file in sorted(Path(__file__).parents[1].rglob("*.py")):
-        total.update(file.read_bytes())
+    folders = [str(Path(__file__).parents[1])]
+    while folders:
+        with os.scandir(folders.pop()) as entries:
+            for entry in sorted(entries, key=lambda each: each.name):
+                if entry.is_dir():
+                    folders.append(entry.path)
+                elif entry.name.endswith(".py"):
+                    status = entry.stat()
+                    written = status.st_mtime_ns, status.st_ctime_ns, status.st_size, status.st_ino
+                    total.update(f"{entry.path} {written}\n".encode())
     return total.digest()

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from sequence_planner.automaton.grounding.findings import without_arguments
-from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.automaton.structure import Ability, Automaton, Operation
 from sequence_planner.checking.growth import Growth

@@ -11,7 +11,7 @@ from collections.abc import Iterator, Sequence
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.grounding.findings import without_arguments
-from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.automaton.structure import Ability, Automaton
 from sequence_planner.checking.inquiry import bearing_on, bits

@@ -9,28 +9,28 @@ from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from types import FrameType
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.analysis.analysis import COUNTING, GUARDS, Analysis, analyses, everything, without_numbers
+from sequence_planner.analysis.analysis import COUNTING, GUARDS, Analysis
 from sequence_planner.analysis.document import (
     AnalysisDocument,
     document_of,
     read_supervisor,
     supervisor_document,
 )
-from sequence_planner.analysis.process import SynthesisEndedError, told
 from sequence_planner.analysis.remembering import known_supervisor, remember_supervisor
 from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.checking.checks import CONFLICTS, Looked
-from sequence_planner.checking.connections import Connections
-from sequence_planner.checking.warning import ModelWarning
 from sequence_planner.cli.options import refuse
 from sequence_planner.memory_limit import USUAL
-from sequence_planner.synthesis.supervision import synthesise
+
+if TYPE_CHECKING:  # what is kept from before is shown without them
+    from sequence_planner.checking.checks import Looked
+    from sequence_planner.checking.connections import Connections
+    from sequence_planner.checking.warning import ModelWarning
 
 Deadline = Annotated[
     float,
@@ -76,12 +76,17 @@ def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Foun
     known = _kept(automaton, unwanted)
     if known is not None:
         return known
+    from sequence_planner.analysis.finding import analyses, without_numbers  # noqa: PLC0415
+
     work = (analyses, automaton, _COUNTING) if counts else (without_numbers, automaton)
     return _found(automaton, limits, _Hearing(work, unwanted))
 
 
 def checked(automaton: Automaton, connections: Connections | None, limits: Limits) -> Found:
     """What synthesis and all checks find within `limits`; `connections` are those of a station to its topics."""
+    from sequence_planner.analysis.finding import everything  # noqa: PLC0415
+    from sequence_planner.checking.checks import CONFLICTS  # noqa: PLC0415
+
     unwanted = frozenset({GUARDS, COUNTING})
     known = _kept(automaton, unwanted)
     hearing = _Hearing((everything, automaton, connections, known is None), unwanted, after=CONFLICTS)
@@ -118,6 +123,8 @@ def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Sup
         return read_supervisor(automaton, known.supervisor)
     if (remembered := known_supervisor(automaton)) is not None:
         return remembered
+    from sequence_planner.synthesis.supervision import synthesise  # noqa: PLC0415
+
     try:
         with within(deadline):
             found = synthesise(automaton)
@@ -145,7 +152,7 @@ def within(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGALRM, before)
 
 
-Work = tuple[Callable[..., Iterator[Looked | Analysis]], *tuple[object, ...]]
+Work = tuple[Callable[..., "Iterator[Looked | Analysis]"], *tuple[object, ...]]
 
 
 @dataclass
@@ -163,6 +170,8 @@ class _Hearing:
 
     def hear(self, limits: Limits) -> str | None:
         """Hear it until it is all, or `limits` are reached; returns what was not found then, and why."""
+        from sequence_planner.analysis.process import SynthesisEndedError, told  # noqa: PLC0415
+
         try:
             for word in told(limits.memory, limits.left, *self.work):
                 self._take(word)
@@ -174,10 +183,10 @@ class _Hearing:
         return None
 
     def _take(self, word: Looked | Analysis) -> None:
-        if isinstance(word, Looked):
-            self.suspicious |= set(word.warnings)
-        else:
+        if isinstance(word, Analysis):
             self.analysis = word
+        else:
+            self.suspicious |= set(word.warnings)
         self._pending = word.pending
 
     def _left(self) -> str:

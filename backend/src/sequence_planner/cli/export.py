@@ -12,7 +12,7 @@ import typer
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import synchronise
 from sequence_planner.cli.analysing import supervisor_of
-from sequence_planner.cli.loading import usable_model
+from sequence_planner.cli.loading import usable_automaton
 from sequence_planner.cli.moments import StateFile, moment
 from sequence_planner.cli.options import AnyModel, refuse
 from sequence_planner.exporting.cif import cif_text
@@ -64,7 +64,7 @@ def export(model: AnyModel, to: To, output: Output = None, goal: GoalTexts = Non
     What differs from the model, and what has another name in a plain automaton, is said on standard error. PDDL and
     SMV ask how goals are reached from the initial state, or from that of --state: what `tick --json` prints.
     """
-    automaton = usable_model(model).automaton
+    automaton = usable_automaton(model)
     if to in (Notation.PDDL, Notation.SMV):
         _write_question(automaton, to, goal or [], state, output)
         return

@@ -86,13 +86,13 @@ def _replaying(
 ) -> Iterator[tuple[WholeRun, Automaton, Supervisor]]:
     """What a replay needs; what keeps it from being done is said with exit code 2."""
     from sequence_planner.cli.analysing import supervisor_of  # noqa: PLC0415
-    from sequence_planner.cli.loading import usable_model  # noqa: PLC0415
+    from sequence_planner.cli.loading import usable_automaton  # noqa: PLC0415
     from sequence_planner.history.error import HistoryError  # noqa: PLC0415
     from sequence_planner.journal.archive import Archive  # noqa: PLC0415
     from sequence_planner.journal.whole_run import WholeRun  # noqa: PLC0415
     from sequence_planner.synthesis.supervision import SynthesisError  # noqa: PLC0415
 
-    automaton = usable_model(model).automaton
+    automaton = usable_automaton(model)
     try:
         supervisor = supervisor_of(automaton)
         with the_database(model, database) as opened, opened.reading() as connection:

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from sequence_planner.automaton.plain.meaning import plain_automaton
+from sequence_planner.analysis.read_before import automaton_read_before, content_key, keep_automaton
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.cli.options import refuse
-from sequence_planner.model.plain_documents import load_plain
-from sequence_planner.model.source import ModelError
 
 if TYPE_CHECKING:
     from sequence_planner.checking.connections import Connections
@@ -35,6 +33,9 @@ class Model:
 def load_model(path: Path) -> Model:
     """Read a model. Raises `ModelError` with the findings."""
     if path.name.endswith(PLAIN_SUFFIX):
+        from sequence_planner.automaton.plain.meaning import plain_automaton  # noqa: PLC0415
+        from sequence_planner.model.plain_documents import load_plain  # noqa: PLC0415
+
         return Model(plain_automaton(load_plain(path)), None)
     from sequence_planner.station import prepare_station  # noqa: PLC0415 (a plain automaton needs no pipelines)
 
@@ -44,7 +45,20 @@ def load_model(path: Path) -> Model:
 
 def usable_model(path: Path) -> Model:
     """Read a model, or end with what is wrong with it."""
+    from sequence_planner.model.source import ModelError  # noqa: PLC0415 (most commands read none: see below)
+
     try:
         return load_model(path)
     except ModelError as error:
         refuse(str(error))
+
+
+def usable_automaton(path: Path) -> Automaton:
+    """The automaton of a model, kept from before where it was read by this very program; or end with what is wrong."""
+    content = content_key(path)
+    known = None if content is None else automaton_read_before(content)
+    if known is None:
+        known = usable_model(path).automaton
+        if content is not None and content == content_key(path):  # nobody has changed it meanwhile
+            keep_automaton(content, known)
+    return known

@@ -15,7 +15,7 @@ from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import record_activity, update_operations
 from sequence_planner.cli.analysing import supervisor_of
 from sequence_planner.cli.lanes import lanes
-from sequence_planner.cli.loading import usable_model
+from sequence_planner.cli.loading import usable_automaton
 from sequence_planner.cli.moments import Moment, StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
 from sequence_planner.cli.plan_answers import because, document, plain_document, said, said_of_plain
@@ -98,7 +98,7 @@ def plan(
     Time runs down, and each resource has a lane. The goals of a plain automaton are goal_1, goal_2 and so on, or else
     all of them. The exit code is 1 when there is no plan for all of the goals.
     """
-    automaton = usable_model(model).automaton
+    automaton = usable_automaton(model)
     before = moment(automaton, state)
     try:
         supervisor = supervisor_of(automaton, deadline)

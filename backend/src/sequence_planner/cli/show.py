@@ -12,7 +12,7 @@ from sequence_planner.analysis.document import GuardDocument
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, Operation, VariableDeclaration
 from sequence_planner.cli.analysing import Deadline, Limits, analysed
 from sequence_planner.cli.describing import described_automaton, guard_lines
-from sequence_planner.cli.loading import Model, usable_model
+from sequence_planner.cli.loading import Model, usable_automaton, usable_model
 from sequence_planner.cli.options import USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.cli.pipelines import chosen, pipeline_lines
 from sequence_planner.control.pipeline_graph import pipelines_view
@@ -46,12 +46,11 @@ def show(
     edge, where a stage adds or changes some, and what becomes of them.
     """
     limits = Limits(deadline, memory)
-    usable = usable_model(model)
     wanted = list(names or ())
     if pipelines:
-        _show_pipelines(model, usable, wanted, json)
+        _show_pipelines(model, usable_model(model), wanted, json)
         return
-    automaton = usable.automaton
+    automaton = usable_automaton(model)
     known = _names(automaton)
     for name in wanted:
         if not any(_bears(each, name) for each in known):

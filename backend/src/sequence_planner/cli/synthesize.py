@@ -8,12 +8,12 @@ from collections.abc import Iterator, Mapping
 import typer
 
 from sequence_planner.analysis.document import AnalysisDocument, GuardDocument
-from sequence_planner.automaton.plain.meaning import NUMBER_SIGN, event_of
+from sequence_planner.automaton.plain.events import NUMBER_SIGN, event_of
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, Limits, analysed
 from sequence_planner.cli.describing import guard_lines
 from sequence_planner.cli.findings import finding_lines
-from sequence_planner.cli.loading import usable_model
+from sequence_planner.cli.loading import usable_automaton
 from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json
 from sequence_planner.counting import counted
 from sequence_planner.expressions.printing import print_expression
@@ -31,7 +31,7 @@ def synthesize(
     findings.
     """
     limits = Limits(deadline, memory)
-    automaton = usable_model(model).automaton
+    automaton = usable_automaton(model)
     found = analysed(automaton, limits, counts=True)
     if json:
         print_json(_document(automaton, found))

@@ -7,13 +7,13 @@ from typing import Annotated, Any, TypeVar
 
 import typer
 
-from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.plain.steps import plain_transitions, step
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, Kind, State, target
 from sequence_planner.automaton.tick import writes
 from sequence_planner.cli.analysing import supervisor_of
-from sequence_planner.cli.loading import usable_model
+from sequence_planner.cli.loading import usable_automaton
 from sequence_planner.cli.moments import StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
 from sequence_planner.cli.ticking import Changes, EffectRefused, Request, TickTaken, changes, lacking, take_tick
@@ -57,7 +57,7 @@ def tick(
     other. There a value that is unknown is null, and variables that are left out have their initial value. The exit
     code is 1 when a start that was asked for was not taken, or finishes are in conflict.
     """
-    automaton = usable_model(model).automaton
+    automaton = usable_automaton(model)
     before = moment(automaton, state)
     if automaton.one_at_a_time:
         if sets or unknown or effects or len(starts or ()) != 1:

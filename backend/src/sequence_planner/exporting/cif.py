@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.plain.steps import plain_transitions
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.transitions import Transition

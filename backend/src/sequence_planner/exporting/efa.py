@@ -6,7 +6,7 @@ import json
 from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
-from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.plain.steps import plain_transitions
 from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.exporting.names import different, dotted

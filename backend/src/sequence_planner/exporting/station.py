@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from sequence_planner.automaton.plain.meaning import NUMBER_SIGN
+from sequence_planner.automaton.plain.events import NUMBER_SIGN
 from sequence_planner.automaton.structure import (
     Ability,
     Automaton,

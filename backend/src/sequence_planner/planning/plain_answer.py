@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sequence_planner.automaton.plain.meaning import event_of
+from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.structure import State
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.plan import Proof, Verdict

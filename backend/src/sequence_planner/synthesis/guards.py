@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from sequence_planner.automaton.plain.meaning import NUMBER_SIGN, event_of
+from sequence_planner.automaton.plain.events import NUMBER_SIGN, event_of
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.synthesis.diagrams import Function

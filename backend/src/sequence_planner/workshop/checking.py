@@ -9,8 +9,9 @@ import contextlib
 from collections.abc import Iterator
 from pathlib import Path
 
-from sequence_planner.analysis.analysis import COUNTING, without_numbers
+from sequence_planner.analysis.analysis import COUNTING
 from sequence_planner.analysis.document import FindingDocument, document_of, error_document, findings_of
+from sequence_planner.analysis.finding import without_numbers
 from sequence_planner.checking.checks import check_automaton
 from sequence_planner.collection import collection_put_off
 from sequence_planner.model.source import ModelError

@@ -6,8 +6,8 @@ import contextlib
 from collections.abc import Callable, Collection, Iterator, Mapping
 from pathlib import Path
 
-from sequence_planner.analysis.analysis import analyses
 from sequence_planner.analysis.document import TraceDocument
+from sequence_planner.analysis.finding import analyses
 from sequence_planner.control.definition_view import AutomatonView
 from sequence_planner.control.view_part import View
 from sequence_planner.expressions.types import Value

@@ -8,6 +8,7 @@ from itertools import islice
 from typing import TypeVar
 
 from sequence_planner.automaton.plain.declarations import declared_types
+from sequence_planner.automaton.plain.events import NUMBER_SIGN
 from sequence_planner.automaton.plain.updates import enabling_guard
 from sequence_planner.automaton.plain.valuations import TooEntangledError, valuations_of
 from sequence_planner.automaton.structure import (
@@ -53,10 +54,6 @@ from sequence_planner.model.source import Finding, ModelError, SourceText
 
 T = TypeVar("T")
 
-# What tells the transitions of one event apart: `grab`, `grab#2`, `grab#3`.
-NUMBER_SIGN = "#"
-
-
 # What an update is read as being written to: a name that nothing in a document can have.
 _WRITTEN = ":="
 
@@ -71,11 +68,6 @@ def plain_automaton(model: PlainModel) -> Automaton:
     if findings:
         raise ModelError(findings)
     return automaton
-
-
-def event_of(transition: str) -> str:
-    """The event of a transition, by its name."""
-    return transition.partition(NUMBER_SIGN)[0]
 
 
 def _unlimited(type_: Type) -> Type:

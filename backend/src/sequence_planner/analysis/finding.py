@@ -1,0 +1,102 @@
+"""What synthesis finds of a model, piece by piece: whoever cannot wait for all of it has what there is."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from dataclasses import replace
+
+from sequence_planner.analysis.analysis import COUNTING, GUARDS, Analysis
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.checking.checks import Looked, conflicting, looked
+from sequence_planner.checking.connections import Connections
+from sequence_planner.checking.supervised import check_supervision
+from sequence_planner.checking.unmeetable import unmeetable
+from sequence_planner.checking.warning import ModelWarning, place
+from sequence_planner.synthesis.effort import Effort, TooMuchError
+from sequence_planner.synthesis.guards import Restrictions
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor
+from sequence_planner.synthesis.unmeetable import why_unmeetable
+
+MOST_COUNTING = 50_000_000  # nodes, see `Effort`: a station that runs has other things to do
+_SOON = 2_000_000  # nodes, see `Effort`: whoever waits for guards does not notice
+
+
+def analyses(automaton: Automaton, counting: int = MOST_COUNTING) -> Iterator[Analysis]:
+    """What is found of `automaton`, again and again, each time more of it.
+
+    No more is spent on `counting` states than so much `Effort`: with 0 they are not counted. Where they soon are, their
+    numbers come first.
+    """
+    found = Analysis("the safe states")
+    yield found
+    supervision = Supervision(Plant(automaton, relevant(automaton)))
+    if not supervision.possible:
+        found = replace(found, pending="why they are none")
+        yield found
+        found = replace(found, warnings=(_unmet(supervision),))
+    else:
+        found = replace(found, supervisor=supervisor(supervision), pending="the findings")
+        yield found
+        found = _counted(found, supervision, min(counting, _SOON))
+        yield found
+        found = replace(found, warnings=tuple(check_supervision(automaton, supervision)))
+        yield found
+        restrictions = Restrictions(supervision)
+        guarded = tuple(start for starts in restrictions.starts.values() for start in starts)
+        found = replace(found, guarded=guarded, pending=GUARDS)
+        yield found
+        found = replace(found, guards={name: restrictions.guard(name) for name in restrictions.starts})
+    found = replace(found, pending=COUNTING)
+    yield found
+    yield replace(_counted(found, supervision, counting), pending=None)
+
+
+def without_numbers(automaton: Automaton, guards: bool = True) -> Iterator[Analysis]:
+    """What is found of `automaton` but for numbers of states, which few wait for; `guards` only where wanted."""
+    last = (COUNTING,) if guards else (GUARDS, COUNTING)
+    for found in analyses(automaton, counting=0):
+        yield found
+        if found.pending in last:
+            return
+
+
+def everything(automaton: Automaton, connections: Connections | None, synthesis: bool) -> Iterator[Looked | Analysis]:
+    """What the checks find, and what synthesis finds where it is asked for, without numbers of states and guards.
+
+    What may take longest comes last.
+    """
+    yield from looked(automaton, connections)
+    if synthesis:
+        yield from without_numbers(automaton, guards=False)
+    yield from conflicting(automaton)
+
+
+def _unmet(supervision: Supervision) -> ModelWarning:
+    automaton = supervision.plant.automaton
+    why = why_unmeetable(supervision.plant, supervision.forbidden)
+    broken = () if why.trace is None else why.trace.breaks
+    return unmeetable(automaton, why, place(automaton, *broken, "rest", *automaton.specifications))
+
+
+def _counted(found: Analysis, supervision: Supervision, most: int) -> Analysis:
+    """With the numbers of states that are not known yet, as far as so much `Effort` goes."""
+    if not most or (found.reachable_states is not None and found.supervised_states is not None):
+        return found
+    effort = Effort(most)
+    with contextlib.suppress(TooMuchError):
+        whole = _of_all_variables(supervision)
+        count = whole.plant.diagrams.count
+        if found.reachable_states is None:
+            found = replace(found, reachable_states=count(whole.reachable(supervised=False, effort=effort)))
+        if found.supervisor is not None:
+            found = replace(found, supervised_states=count(whole.reachable(supervised=True, effort=effort)))
+    return found
+
+
+def _of_all_variables(supervision: Supervision) -> Supervision:
+    automaton, diagrams = supervision.plant.automaton, supervision.plant.diagrams
+    if len(diagrams.names) == len(automaton.variables):
+        return supervision
+    return Supervision(Plant(automaton, tuple(automaton.variables)), diagrams.exported(supervision.safe))
