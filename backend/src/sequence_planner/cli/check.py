@@ -4,20 +4,31 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.analysis.document import FindingDocument, error_document, findings_of
-from sequence_planner.checking.warning import ModelWarning, place
+from sequence_planner.analysis.document import Document, FindingDocument, error_document, findings_of
+from sequence_planner.analysis.read_before import content_key
+from sequence_planner.analysis.remembering import cache, read, write
 from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, Limits, checked, within
 from sequence_planner.cli.findings import finding_lines
 from sequence_planner.cli.loading import Model, load_model
 from sequence_planner.cli.options import FINDINGS, UNUSABLE, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.counting import counted
-from sequence_planner.model.source import Finding, ModelError
-from sequence_planner.start_findings import start_findings
-from sequence_planner.start_needs import StartNeeds
+
+if TYPE_CHECKING:
+    from sequence_planner.model.source import Finding
+
+STAGES = "stages"  # the folder of a model's own Python, of which nobody knows what it goes by
+
+
+class Told(Document):
+    """What `check` tells of a model: its findings, and what it is like, for programs and for people."""
+
+    findings: list[FindingDocument]
+    summary: dict[str, object]
+    line: str
 
 
 @dataclass(frozen=True)
@@ -47,8 +58,35 @@ def check(
     With --json: {model, findings: [{severity, kind, file, line, column, message, trace}], summary}; a trace is
     {initial, forbidden_by, steps: [{kind, names, finished, changes, forbidden_by, text}]}, or null.
     """
+    limits = Limits(deadline, memory)
+    told = _told_before(of := _key(model, emulator)) or _told(model, limits, of, emulator=emulator, json=json)
+    if json:
+        findings = [each.model_dump() for each in told.findings]
+        print_json({"model": str(model), "findings": findings, "summary": told.summary})
+    else:
+        typer.echo("\n".join([*(line for each in told.findings for line in finding_lines(each)), told.line]))
+    if told.findings:
+        raise typer.Exit(FINDINGS)
+
+
+def _key(model: Path, emulator: bool) -> str | None:
+    """What was checked; None where the same may be found otherwise another time."""
+    content = None if (model / STAGES).exists() else content_key(model)
+    return None if content is None else f"{content}{'-emulator' if emulator else ''}"
+
+
+def _told_before(of: str | None) -> Told | None:
+    where = cache()
+    found = None if of is None or where is None else read(where, "check", of)
+    return Told.model_validate_json(found) if isinstance(found, str) else None
+
+
+def _told(model: Path, limits: Limits, of: str | None, *, emulator: bool, json: bool) -> Told:
+    """What is found now; it is kept if that is all, and nobody has changed the model meanwhile."""
+    from sequence_planner.model.source import ModelError  # noqa: PLC0415
+
     try:
-        found = check_model(model, Limits(deadline, memory), emulator=emulator)
+        found = check_model(model, limits, emulator=emulator)
     except ModelError as error:
         if json:
             findings = [unusable(each) for each in error.findings]
@@ -56,19 +94,23 @@ def check(
         else:
             typer.echo(str(error), err=True)
         raise typer.Exit(UNUSABLE) from error
-    if json:
-        findings = [each.model_dump() for each in found.findings]
-        print_json({"model": str(model), "findings": findings, "summary": _summary(found)})
-    else:
-        _say(found)
-    if found.findings:
-        raise typer.Exit(FINDINGS)
+    told = Told(findings=found.findings, summary=_summary(found), line=_summary_line(found))
+    where = cache()
+    if of is not None and where is not None and found.found.unfinished is None and of == _key(model, emulator):
+        write(where, "check", of, told.model_dump_json())
+    return told
 
 
 def check_model(path: Path, limits: Limits, *, emulator: bool = False) -> Checked:
     """All that is found in a model within `limits`. Raises `ModelError` when it cannot be used, and where its devices
     are to be emulated for what keeps them from it.
     """
+    # Of a model that was checked before, what was found is told without them.
+    from sequence_planner.checking.warning import ModelWarning, place  # noqa: PLC0415
+    from sequence_planner.model.source import ModelError  # noqa: PLC0415
+    from sequence_planner.start_findings import start_findings  # noqa: PLC0415
+    from sequence_planner.start_needs import StartNeeds  # noqa: PLC0415
+
     try:
         with within(limits.left):
             model = load_model(path)
@@ -86,11 +128,6 @@ def check_model(path: Path, limits: Limits, *, emulator: bool = False) -> Checke
         warnings.append(ModelWarning(where, "not-finished", found.unfinished))
     findings = [*findings_of(automaton, warnings), *(found.document.findings or ())]
     return Checked(model, sorted(findings, key=lambda each: (each.file, each.line, each.column, each.kind)), found)
-
-
-def _say(checked: Checked) -> None:
-    lines = [line for each in checked.findings for line in finding_lines(each)]
-    typer.echo("\n".join([*lines, _summary_line(checked)]))
 
 
 def unusable(finding: Finding) -> dict[str, object]:
