@@ -16,10 +16,10 @@ import pytest
 from core.actors import EVA
 from sequence_planner import deployment_under_way
 from sequence_planner.control.command_base import CommandRefused
+from sequence_planner.control.control_view import ControlView
 from sequence_planner.control.deploying import Deploying, LastDeployment
 from sequence_planner.control.known import Known
 from sequence_planner.control.production_commands import Deploy
-from sequence_planner.control.view import ControlView
 from sequence_planner.deployment_folder import NAME, DeploymentFolder, DeploymentNote, undo_what_was_cut_off
 from sequence_planner.deployment_under_way import LONGEST_START, UnderWay
 from sequence_planner.exchange import exchanging

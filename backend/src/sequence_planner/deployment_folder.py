@@ -14,7 +14,7 @@ from pathlib import Path
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 
-from sequence_planner.control.view import ControlView
+from sequence_planner.control.control_view import ControlView
 from sequence_planner.exchange import brought_back, exchanging
 from sequence_planner.workshop.files import Contents, read_contents, restore_contents, write_contents
 

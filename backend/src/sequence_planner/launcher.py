@@ -50,7 +50,6 @@ from sequence_planner.storage.environment import DATABASE
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.binding import bind, check_demonstration, check_endpoint
 from sequence_planner.web.settings import Endpoint, SettingsError
-from sequence_planner.workshop import draft as drafts
 
 # The page as the build leaves it: in the package where that was installed, or beside the backend in the repository.
 PACKAGED = Path(__file__).resolve().parent / "page"
@@ -261,6 +260,8 @@ class _Launcher:
 
 def _has_draft(url: str) -> bool:
     """Whether somebody has edited the model in the browser, so that it can be repaired there. No database is made."""
+    from sequence_planner.workshop import draft as drafts  # noqa: PLC0415
+
     try:
         with contextlib.closing(Database.open(url, create=False)) as database:
             database.upgrade()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+STATION: Final = ("sequence_planner.station",)
 EMULATOR: Final = ("sequence_planner.cli.emulating",)
 CONTROLLER: Final = ("sequence_planner.cli.controlling",)
 SERVER: Final = ("sequence_planner.cli.serving", "sequence_planner.web.server")
@@ -24,4 +25,4 @@ OTHERS: Final = tuple(
         "workshop.pipelines.worker",
     )
 )
-ALL: Final = (*EMULATOR, *CONTROLLER, *SERVER, *OTHERS)
+ALL: Final = (*STATION, *EMULATOR, *CONTROLLER, *SERVER, *OTHERS)

@@ -157,6 +157,9 @@ def test_what_does_not_end_in_good_order_is_killed(monkeypatch: pytest.MonkeyPat
     assert process.returncode == -signal.SIGKILL
 
 
+PARTS = {"emulate", "controller", "server"}
+
+
 @pytest.mark.usefixtures("_no_nohup")
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 @pytest.mark.parametrize("after", [0.0, 1.0])
@@ -174,7 +177,8 @@ def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, short_
     ):
         try:
             # The fork server and the first part, or all of them.
-            eventually(lambda: len(descendants(running.pid)) >= (4 if after else 2))
+            begun = lambda: {name for name in PARTS for each in descendants(running.pid) if each.runs(name)}  # noqa: E731
+            eventually(lambda: begun() == PARTS if after else bool(begun()))
             time.sleep(after)
             left = [each.number for each in descendants(running.pid)]
             running.send_signal(how)

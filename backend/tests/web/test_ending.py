@@ -14,7 +14,7 @@ from websockets.sync.client import ClientConnection, connect
 
 from sequence_planner.actor import SYSTEM
 from sequence_planner.control.commands import AcknowledgeTask, WithdrawControl
-from sequence_planner.control.view import ControlView
+from sequence_planner.control.control_view import ControlView
 from sequence_planner.identity import keys, people, sessions, watches
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.identity.sessions import SignedIn

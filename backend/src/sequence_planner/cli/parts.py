@@ -11,7 +11,7 @@ import signal
 from collections.abc import Awaitable, Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -19,12 +19,13 @@ from sequence_planner.cli.options import UNUSABLE, refuse
 from sequence_planner.control.unix_socket import SocketTakenError
 from sequence_planner.lifeline import end_with_launcher, leave_last_words
 from sequence_planner.logs import configure_logs
-from sequence_planner.model.source import ModelError
 from sequence_planner.ros.choice import TransportChoice, open_transport
 from sequence_planner.ros.routing import ROSBRIDGE, open_routed
 from sequence_planner.ros.transport import Transport, TransportError
-from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.storage.error import StorageError
+
+if TYPE_CHECKING:  # the launcher knows no station
+    from sequence_planner.station import ReadyStation
 
 TransportOption = Annotated[
     TransportChoice, typer.Option(help="How to speak ROS 2; auto takes rclpy where it can be imported.")
@@ -52,6 +53,9 @@ def begin(launched: bool, folder: Path | None = None) -> None:
 
 def prepare(folder: Path, code: int = UNUSABLE) -> ReadyStation:
     """The station in `folder`, or the end of this process with `code`."""
+    from sequence_planner.model.source import ModelError  # noqa: PLC0415
+    from sequence_planner.station import prepare_station  # noqa: PLC0415
+
     try:
         return prepare_station(folder)
     except ModelError as error:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from multiprocessing.connection import Pipe
 from pathlib import Path
 from socket import socket as ListeningSocket  # noqa: N812 - the option `socket` is a path
 from typing import Annotated
@@ -31,11 +32,11 @@ from sequence_planner.cli.provider_options import Client, Groups, Issuer, Others
 from sequence_planner.cli.together import webhook_targets, wrong_together
 from sequence_planner.configuration import ConfigurationError, has_password, url_in
 from sequence_planner.deployment_folder import DeploymentNote, undo_what_was_cut_off
+from sequence_planner.forking.starting import start
 from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
 from sequence_planner.logs import LogFormat
 from sequence_planner.mes.webhooks.targets import Targets
-from sequence_planner.model.source import ModelError
 from sequence_planner.retention.settings import (
     JOURNAL_DAYS,
     JOURNAL_GB,
@@ -50,7 +51,6 @@ from sequence_planner.ros.choice import TransportChoice, settled
 from sequence_planner.ros.transport import TransportError
 from sequence_planner.secret_variables import CLIENT_SECRET
 from sequence_planner.start_needs import StartNeeds
-from sequence_planner.station import prepare_station
 from sequence_planner.storage.environment import DATABASE
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
@@ -302,12 +302,19 @@ def _undone(model: Path) -> DeploymentNote | None:
 
 
 def _unusable(model: Path) -> str | None:
-    """Why the model cannot be used, if it cannot; said, since it may be repaired in the browser."""
-    try:
-        prepare_station(model)
-    except ModelError as error:
-        return str(error)
-    return None
+    """Why the model cannot be used, if it cannot; said, since it may be repaired in the browser.
+
+    A process looks that has imported what it takes: this one lives as long as the station, and needs it for no more.
+    """
+    ours, theirs = Pipe(duplex=False)
+    with ours:
+        looking = start("sequence_planner.station:tell_whether_usable", model, name="reading", connection=theirs)
+        try:
+            said: str | None = ours.recv()
+        except EOFError:
+            refuse(f"{model}: the process that reads it has ended without an answer; is memory short?")
+        looking.wait()
+    return said
 
 
 def _url_in(file: Path) -> str:

@@ -14,9 +14,10 @@ from pathlib import Path
 
 from sequence_planner.actor import SYSTEM
 from sequence_planner.control.command_base import CommandRefused
+from sequence_planner.control.control_view import ControlView
 from sequence_planner.control.known import Known
 from sequence_planner.control.production_commands import Deploy
-from sequence_planner.control.view import ControlView, DeploymentState, DeploymentView
+from sequence_planner.control.view import DeploymentState, DeploymentView
 from sequence_planner.deployment_folder import DeploymentFolder, DeploymentNote
 from sequence_planner.emulation.standing import standing_file
 from sequence_planner.exchange import exchanging

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from sequence_planner.actor import Actor
 from sequence_planner.control.commands import CommandRefused
-from sequence_planner.control.view import ControlView
+from sequence_planner.control.control_view import ControlView
 
 
 class InControl:

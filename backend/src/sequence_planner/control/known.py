@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 
 from sequence_planner.control.alarming.keeping import PutAside
 from sequence_planner.control.conduct import Beginning
-from sequence_planner.control.view import BeliefView, ControlView, DeploymentView, Mode
+from sequence_planner.control.control_view import ControlView
+from sequence_planner.control.view import BeliefView, DeploymentView, Mode
 
 
 @dataclass(frozen=True)

@@ -17,9 +17,9 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.commands import CommandRefused
+from sequence_planner.control.control_view import ControlView
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.view import (
-    ControlView,
     DeploymentView,
     Mode,
     PackML,

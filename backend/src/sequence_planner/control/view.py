@@ -12,6 +12,7 @@ from enum import StrEnum
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.approval_view import ApprovalView
+from sequence_planner.control.control_view import ControlView
 from sequence_planner.control.job_view import JobView
 from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import (
@@ -110,16 +111,6 @@ class StationIdentity(View):
     description: str
     transport: str
     emulated: bool
-
-
-class ControlView(View):
-    """The session that is in control; `taken_from` is who was before it, where control was taken over."""
-
-    session: str
-    person: str
-    name: str
-    since: float
-    taken_from: str | None
 
 
 class DeploymentState(StrEnum):

@@ -12,6 +12,7 @@ from sequence_planner.control.alarming.consequence import Consequences
 from sequence_planner.control.approval_view import ApprovalView
 from sequence_planner.control.belief import Beliefs
 from sequence_planner.control.commander import Commander
+from sequence_planner.control.control_view import ControlView
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.heard import TickOutcome
@@ -31,7 +32,6 @@ from sequence_planner.control.tasks import TaskDesk, TaskProblem
 from sequence_planner.control.timetable import Expected, Timetable
 from sequence_planner.control.view import (
     AbilityView,
-    ControlView,
     DiagnosisView,
     DroppedStepView,
     OperationView,

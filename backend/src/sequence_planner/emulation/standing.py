@@ -9,11 +9,12 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from sequence_planner.emulation.devices import EmulatedDevices
-from sequence_planner.emulation.spoken import Message
-from sequence_planner.expressions.types import Value
+if TYPE_CHECKING:  # the launcher asks only where it is kept
+    from sequence_planner.emulation.devices import EmulatedDevices
+    from sequence_planner.emulation.spoken import Message
+    from sequence_planner.expressions.types import Value
 
 
 def standing_file(beside: Path) -> Path:

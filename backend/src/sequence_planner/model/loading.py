@@ -22,17 +22,12 @@ from sequence_planner.model.documents import (
     StationDocument,
     WorkMasterDocument,
 )
+from sequence_planner.model.folder import DEFINITIONS, FILES, FOLDERS
 from sequence_planner.model.reading import Document, EntryPath, read_text, text_of
 from sequence_planner.model.source import Finding, ModelError, SourceText
 from sequence_planner.model.validation import findings_of, shown
 
 D = TypeVar("D", bound=BaseModel)
-
-FOLDERS = ("resources", "messages", "stages")
-# What files below `messages` define, by what their names end with.
-DEFINITIONS = {"msg": "message", "srv": "service", "action": "action"}
-# The documents of a station beside its resources.
-FILES = ("station.yaml", "operations.yaml", "specifications.yaml", "work_masters.yaml")
 
 
 @dataclass(frozen=True)

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING
 
 from sequence_planner.expressions.resolution import suggestion
-from sequence_planner.model.reading import EntryPath
+
+if TYPE_CHECKING:
+    from sequence_planner.model.reading import EntryPath
 
 
 class EditError(Exception):

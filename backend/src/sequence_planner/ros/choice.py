@@ -19,10 +19,10 @@ from typing import TYPE_CHECKING, Literal
 
 import structlog
 
-from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.transport import Transport, TransportError
 
 if TYPE_CHECKING:
+    from sequence_planner.ros.messages import MessageRegistry
     from sequence_planner.ros.rclpy_transport import RclpyTransport
 
 TransportChoice = Literal["auto", "rclpy", "cyclonedds"]

@@ -6,8 +6,8 @@ import asyncio
 import os
 from collections.abc import Callable, Collection
 from contextlib import ExitStack
+from typing import TYPE_CHECKING
 
-from sequence_planner.ros.messages import MessageRegistry
 from sequence_planner.ros.service_graph import ServiceEnd, TellsServices
 from sequence_planner.ros.transport import (
     Endpoint,
@@ -20,6 +20,9 @@ from sequence_planner.ros.transport import (
     TransportError,
     unhindered,
 )
+
+if TYPE_CHECKING:
+    from sequence_planner.ros.messages import MessageRegistry
 
 #: The environment variable that holds the address of the rosbridge server, such as `ws://127.0.0.1:9090`.
 ROSBRIDGE = "SEQUENCE_PLANNER_ROSBRIDGE"

@@ -12,6 +12,7 @@ from pydantic import BaseModel
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.approval_view import ApprovalView
+from sequence_planner.control.control_view import ControlView
 from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import (
     ErrandView,
@@ -24,7 +25,6 @@ from sequence_planner.control.restart_view import (
 )
 from sequence_planner.control.view import (
     AbilityView,
-    ControlView,
     DeploymentView,
     Mode,
     OperationView,

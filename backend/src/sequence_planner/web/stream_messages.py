@@ -16,6 +16,7 @@ from typing_extensions import TypedDict
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.control.alarm_view import AlarmView
 from sequence_planner.control.approval_view import ApprovalView
+from sequence_planner.control.control_view import ControlView
 from sequence_planner.control.job_view import JobView
 from sequence_planner.control.override_view import OverrideView
 from sequence_planner.control.restart_view import (
@@ -29,7 +30,6 @@ from sequence_planner.control.restart_view import (
 )
 from sequence_planner.control.view import (
     AbilityView,
-    ControlView,
     DeploymentView,
     Mode,
     OperationView,

@@ -17,7 +17,7 @@ from operator import itemgetter
 from pathlib import Path
 from typing import NamedTuple
 
-from sequence_planner.model.loading import DEFINITIONS, FILES
+from sequence_planner.model.folder import DEFINITIONS, FILES
 from sequence_planner.model.paths import EditError
 from sequence_planner.model.saving import BYTE_ORDER_MARK
 
