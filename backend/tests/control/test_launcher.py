@@ -160,6 +160,12 @@ def test_what_does_not_end_in_good_order_is_killed(monkeypatch: pytest.MonkeyPat
 PARTS = {"emulate", "controller", "server"}
 
 
+def begun(launcher: int) -> set[str]:
+    """Those of them that there are."""
+    there = descendants(launcher)
+    return {name for name in PARTS if any(each.runs(name) for each in there)}
+
+
 @pytest.mark.usefixtures("_no_nohup")
 @pytest.mark.parametrize("how", [signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 @pytest.mark.parametrize("after", [0.0, 1.0])
@@ -177,8 +183,7 @@ def test_nothing_outlives_the_launcher(how: signal.Signals, after: float, short_
     ):
         try:
             # The fork server and the first part, or all of them.
-            begun = lambda: {name for name in PARTS for each in descendants(running.pid) if each.runs(name)}  # noqa: E731
-            eventually(lambda: begun() == PARTS if after else bool(begun()))
+            eventually(lambda: begun(running.pid) == PARTS if after else bool(begun(running.pid)))
             time.sleep(after)
             left = [each.number for each in descendants(running.pid)]
             running.send_signal(how)
