@@ -7,7 +7,7 @@ from typing import Final
 STATION: Final = ("sequence_planner.station",)
 EMULATOR: Final = ("sequence_planner.cli.emulating",)
 CONTROLLER: Final = ("sequence_planner.cli.controlling",)
-SERVER: Final = ("sequence_planner.cli.serving", "sequence_planner.web.server")
+SERVER: Final = ("sequence_planner.cli.serving",)
 OTHERS: Final = tuple(
     f"sequence_planner.{each}"
     for each in (

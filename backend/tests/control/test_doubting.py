@@ -6,10 +6,13 @@ import asyncio
 import contextlib
 import time
 
-from sequence_planner.analysis.never_together import NeverTogether
+from core.building import Does, automaton
+from sequence_planner.analysis.never_together import MOST_BITS, NeverTogether
 from sequence_planner.analysis.never_together_process import find_never_together
 from sequence_planner.control.doubting import SETTLED, Doubting
 from sequence_planner.control.moment import Moment
+from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.synthesis.supervision import synthesise
 
 from .corrected import WHY, Station, what_is_never_together
 from .rig import Rig, truck_engine
@@ -76,6 +79,16 @@ def test_a_station_at_work_asks_nothing() -> None:
 
     assert not rig.run(60, wondering)
     assert rig.completed
+
+
+def test_what_is_not_found_in_time_is_not_looked_for_again() -> None:
+    lamps = {f"lamp_{number}": (BOOLEAN, False) for number in range(MOST_BITS + 1)}
+    large = automaton(
+        {"shine": Does(start=("lamp_0 := true", "lit := true"))}, output=lamps, estimated={"lit": (BOOLEAN, False)}
+    )
+    found = asyncio.run(find_never_together(large, synthesise(large), 0.0))
+    assert found == NeverTogether(frozenset(), None), "which is kept"
+    assert contradictory(found).doubting.impossible() == frozenset()
 
 
 def test_another_process_finds_it_and_can_be_stopped() -> None:

@@ -17,7 +17,9 @@ _NICENESS = 15  # it only serves questions
 
 
 async def find_never_together(automaton: Automaton, supervisor: Supervisor, seconds: float) -> NeverTogether | None:
-    """What is never together; None when that is not found within so many seconds of work. It can be cancelled."""
+    """What is never together; nothing when that is not found within so many seconds of work, as it would not be another
+    time. None when the process has ended early. It can be cancelled.
+    """
     ours, theirs = Pipe()
     with ours:
         process = await asyncio.to_thread(
@@ -44,4 +46,5 @@ def _heard(connection: Connection) -> NeverTogether | None:
 def _work(connection: Connection, automaton: Automaton, supervisor: Supervisor, seconds: float) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # whoever started this process ends it
     os.nice(_NICENESS)
-    connection.send(never_together(automaton, supervisor, Budget(float("inf")).working(seconds)))
+    found = never_together(automaton, supervisor, Budget(float("inf")).working(seconds))
+    connection.send(found or NeverTogether(frozenset(), None))
