@@ -76,7 +76,7 @@ from sequence_planner.synthesis.guards import Guard
 LOG = structlog.get_logger(__name__)
 
 LOOK_EVERY = 0.05  # seconds between two looks at the clock
-LOOK_AT_REST = 0.2  # once there was no tick for a second: messages, commands and plans are heard at once all the same
+LOOK_AT_REST = 0.2  # once there was no tick for a second: news, commands and plans are heard at once all the same
 REST = 1.0
 PATIENCE = 1.0  # seconds for which outputs may wait for their record before nothing more is started
 MOST_UNWRITTEN = 100_000  # records; then nothing more is taken in, and no tick taken

@@ -147,8 +147,8 @@ class Devices:
         self.commander.close()
 
     def _hear(self, samples: Sequence[Sample]) -> None:
-        self._inbox.put(samples)
-        self._wake()
+        if self._inbox.put(samples):
+            self._wake()
 
     def _hear_quality(self, event: QualityEvent) -> None:
         """A quality of service is not kept; on what is not agreed on, `network` looks itself."""

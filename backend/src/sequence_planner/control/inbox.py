@@ -11,6 +11,7 @@ from sequence_planner.control.feeds import one_per_topic
 from sequence_planner.ros.transport import Sample
 
 MOST_WAITING = 500  # samples of one topic; then the oldest are passed over
+AGAIN = 1.0  # seconds after which the same is said anew, and not once more
 LONGEST = 0.02  # seconds for which one look at what waits may go on
 
 
@@ -20,13 +21,25 @@ class Inbox:
     def __init__(self, reports: Reports) -> None:
         self._reports = reports
         self._waiting: deque[Sample] = deque()
+        self._last: dict[str, Sample] = {}
 
     def __bool__(self) -> bool:
         return bool(self._waiting)
 
-    def put(self, samples: Sequence[Sample]) -> None:
-        """Samples have come."""
+    def put(self, samples: Sequence[Sample]) -> bool:
+        """Samples have come; whether one of them is to be looked at now, and not only at the next look.
+
+        It is not where a topic says again and again what it has said: that tells no more than that it is alive.
+        """
         self._waiting.extend(samples)
+        news = False
+        for sample in samples:
+            last, self._last[sample.topic] = self._last.get(sample.topic), sample
+            if last is None or sample.received - last.received > AGAIN:
+                news = True
+            elif (last.data, last.trouble) != (sample.data, sample.trouble):
+                news = True
+        return news
 
     def parts(self) -> Iterator[list[Sample]]:
         """What waits, in parts of which no topic has more than one; the rest stays when that takes too long."""
