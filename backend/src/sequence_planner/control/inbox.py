@@ -35,10 +35,8 @@ class Inbox:
         news = False
         for sample in samples:
             last, self._last[sample.topic] = self._last.get(sample.topic), sample
-            if last is None or sample.received - last.received > AGAIN:
-                news = True
-            elif (last.data, last.trouble) != (sample.data, sample.trouble):
-                news = True
+            same = last is not None and (last.data, last.trouble) == (sample.data, sample.trouble)
+            news = news or not same or last is None or sample.received - last.received > AGAIN
         return news
 
     def parts(self) -> Iterator[list[Sample]]:
