@@ -16,6 +16,7 @@ from sequence_planner.emulation.faults import Fault, FaultKind
 from sequence_planner.emulation.live import BY_HAND_TOPIC, FAULTS_TOPIC, SAID_TOPIC, TEXT_TYPE, move
 from sequence_planner.emulation.process import Emulation, emulate
 from sequence_planner.emulation.spoken import spoken
+from sequence_planner.emulation.standing import read
 from sequence_planner.expressions.syntax import ExpressionError
 from sequence_planner.ros import exclusivity
 from sequence_planner.ros.memory import MemoryNetwork
@@ -66,6 +67,30 @@ def test_devices_obey_report_and_survive_what_cannot_be_read(monkeypatch: pytest
         emulating.cancel()
         await asyncio.gather(emulating, return_exceptions=True)
         assert all(endpoint.own for endpoint in person.graph()), "it has left the network"
+
+    asyncio.run(scenario())
+
+
+def test_how_devices_stand_is_written_down_while_they_move(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    """They may be killed, and others go on from there."""
+    monkeypatch.setattr(exclusivity, "DISCOVERY", 0.05)
+    registry, file = cell()[0].registry, tmp_path / "standing.json"
+
+    def stood() -> object:
+        return read(file).values.get("arm.pose")
+
+    async def scenario() -> None:
+        network, loop = MemoryNetwork(), asyncio.get_running_loop()
+        emulation = Emulation(cell()[0], speed=20, kept_in=file)
+        emulating = asyncio.create_task(emulate(emulation, lambda node: network.join(registry, node, loop)))
+        await until(lambda: stood() == "home")
+        person = network.join(registry, "person", loop)
+        person.advertise(COMMAND, COMMAND_TYPE, QualityOfService.RELIABLE)
+        person.publish(COMMAND, COMMAND_TYPE, registry.encode(COMMAND_TYPE, {"joints": POSES["out"]}))
+        await until(lambda: stood() == "out")
+        assert not emulating.done()
+        emulating.cancel()
+        await asyncio.gather(emulating, return_exceptions=True)
 
     asyncio.run(scenario())
 

@@ -37,6 +37,7 @@ from sequence_planner.station import ReadyStation
 LOG = structlog.get_logger(__name__)
 
 STEP = 0.02  # seconds between two looks at the devices, at least
+KEEP_EVERY = 1.0  # seconds between two notes of how they stand
 REPORT_EVERY = 0.1  # seconds between two reports that say the same
 
 
@@ -47,7 +48,7 @@ class Emulation:
     Devices go `speed` times as fast. `seed` draws all that is random; effects and repeated reports come up to `jitter`
     seconds late. Only the devices of `resources` are emulated; None stands for all. `script` has faults, in the order
     in which they begin. They begin as others were `standing`; how they stand is `kept_in` a file, as soon as they are
-    up and at the end.
+    up, while they change, and at the end: they may be killed before they come to that.
     """
 
     station: ReadyStation
@@ -120,7 +121,8 @@ class _Life:
         self._troubles: dict[str, str] = {}  # what was wrong on each topic last, so that it is not said every time
         self._said: dict[str, _Said] = {}
         self._news = asyncio.Event()
-        devices.on_change = self._news.set
+        self._kept, self._unkept = 0.0, True  # when it was written down how they stand, and whether they have changed
+        devices.on_change = self._change
         self._connect = connect
         self._links = Links(station.pipelines, emulation.emulated, lambda: connect(NODE), self._obey)
 
@@ -144,6 +146,8 @@ class _Life:
                 self._devices.advance(now)
                 self._links.keep(self._devices.offline_resources)
                 self._report(now)
+                if self._unkept and now - self._kept > KEEP_EVERY:
+                    self._keep()
                 await asyncio.sleep(STEP)
                 await self._until(script[0].at + began if script else math.inf)
         finally:
@@ -159,7 +163,12 @@ class _Life:
             async with asyncio.timeout(max(0.0, due - time.monotonic()) if due < math.inf else None):
                 await self._news.wait()
 
+    def _change(self) -> None:
+        self._unkept = True
+        self._news.set()
+
     def _keep(self) -> None:
+        self._kept, self._unkept = time.monotonic(), False
         if self._emulation.kept_in is not None:
             with contextlib.suppress(OSError):  # then those that come after begin as their model says
                 keep(self._devices.devices, self._emulation.kept_in)
