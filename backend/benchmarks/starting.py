@@ -73,7 +73,7 @@ def station(name: str, cache: Path) -> None:
 def said(starts: list[tuple[float, float]]) -> str:
     """Medians of seconds on the wall and of a processor."""
     ready, processor = (statistics.median(each) for each in zip(*starts, strict=True))
-    return f"{ready:.2f} s ({processor:.1f} s of a processor; medians of {len(starts)})"
+    return f"{ready:.2f} s ({processor:.2f} s of a processor; medians of {len(starts)})"
 
 
 def at_rest(launcher: int) -> None:
