@@ -24,13 +24,14 @@ from core.random_stations import automaton as random_automaton
 from core.replaying import replay
 from core.test_plain import meant, read
 from sequence_planner.automaton.structure import Ability, Automaton, Operation
+from sequence_planner.checking import far
 from sequence_planner.checking import supervised as checking
 from sequence_planner.checking.supervised import check_supervision
 from sequence_planner.checking.warning import ModelWarning
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import Expression, Variable
 from sequence_planner.expressions.types import BOOLEAN, IntegerRange
-from sequence_planner.synthesis.supervision import supervised
+from sequence_planner.synthesis.supervision import supervised, supervisor
 from sequence_planner.synthesis.traces import StepKind
 
 OFF = (BOOLEAN, False)
@@ -313,6 +314,10 @@ def test_of_what_is_too_much_to_find_out_it_is_said_that_it_is_not_known(monkeyp
     assert found(made) == []
     monkeypatch.setattr(checking, "MOST_EFFORT", 0)
     monkeypatch.setattr(checking, "MOST_EFFORT_IN_PARTS", 0)
+    supervision = supervised(made)
+    assert check_supervision(made, supervision, supervisor(supervision)) == []  # from afar it can still be known
+    monkeypatch.setattr(far, "MOST_EFFORT", 0)
+    assert check_supervision(made, supervision, supervisor(supervision)) == found(made)
     (warning,) = found(made)
     assert warning.kind == "too-many-states"
     assert warning.message.startswith("of `one`, `two` it is not known whether they are always possible")

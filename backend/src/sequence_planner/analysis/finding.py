@@ -10,6 +10,7 @@ from sequence_planner.analysis.analysis import COUNTING, GUARDS, Analysis
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.checks import Looked, conflicting, looked
 from sequence_planner.checking.connections import Connections
+from sequence_planner.checking.possibility import UNKNOWN
 from sequence_planner.checking.supervised import check_supervision
 from sequence_planner.checking.unmeetable import unmeetable
 from sequence_planner.checking.warning import ModelWarning, place
@@ -19,15 +20,16 @@ from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor
 from sequence_planner.synthesis.unmeetable import why_unmeetable
 
+FAR = "the findings that too many states bear on"
 MOST_COUNTING = 50_000_000  # nodes, see `Effort`: a station that runs has other things to do
 _SOON = 2_000_000  # nodes, see `Effort`: whoever waits for guards does not notice
 
 
-def analyses(automaton: Automaton, counting: int = MOST_COUNTING) -> Iterator[Analysis]:
+def analyses(automaton: Automaton, counting: int = MOST_COUNTING, far: bool = False) -> Iterator[Analysis]:
     """What is found of `automaton`, again and again, each time more of it.
 
     No more is spent on `counting` states than so much `Effort`: with 0 they are not counted. Where they soon are, their
-    numbers come first.
+    numbers come first. What too many states bear on is found out only with `far`: it can take a minute.
     """
     found = Analysis("the safe states")
     yield found
@@ -43,6 +45,11 @@ def analyses(automaton: Automaton, counting: int = MOST_COUNTING) -> Iterator[An
         yield found
         found = replace(found, warnings=tuple(check_supervision(automaton, supervision)))
         yield found
+        if far and any(each.kind == UNKNOWN for each in found.warnings or ()):
+            found = replace(found, pending=FAR)
+            yield found
+            found = replace(found, warnings=tuple(check_supervision(automaton, supervision, found.supervisor)))
+            yield found
         restrictions = Restrictions(supervision)
         guarded = tuple(start for starts in restrictions.starts.values() for start in starts)
         found = replace(found, guarded=guarded, pending=GUARDS)
@@ -53,10 +60,10 @@ def analyses(automaton: Automaton, counting: int = MOST_COUNTING) -> Iterator[An
     yield replace(_counted(found, supervision, counting), pending=None)
 
 
-def without_numbers(automaton: Automaton, guards: bool = True) -> Iterator[Analysis]:
-    """What is found of `automaton` but for numbers of states, which few wait for; `guards` only where wanted."""
+def without_numbers(automaton: Automaton, guards: bool = True, far: bool = False) -> Iterator[Analysis]:
+    """What is found of `automaton` but for numbers of states, which few wait for; `guards` and `far` where wanted."""
     last = (COUNTING,) if guards else (GUARDS, COUNTING)
-    for found in analyses(automaton, counting=0):
+    for found in analyses(automaton, counting=0, far=far):
         yield found
         if found.pending in last:
             return
@@ -69,7 +76,7 @@ def everything(automaton: Automaton, connections: Connections | None, synthesis:
     """
     yield from looked(automaton, connections)
     if synthesis:
-        yield from without_numbers(automaton, guards=False)
+        yield from without_numbers(automaton, guards=False, far=True)
     yield from conflicting(automaton)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
 
@@ -16,19 +16,31 @@ from sequence_planner.synthesis.effort import MOST_BITS, Effort, TooMuchError
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.reaction import Reaction
 from sequence_planner.synthesis.saturation import reachable, reaching
+from sequence_planner.synthesis.shortest import Tracer
 from sequence_planner.synthesis.steps import Step
 from sequence_planner.synthesis.supervision import with_initial
+from sequence_planner.synthesis.traces import Trace
 
 
 class Inquiry:
     """An automaton over what can influence `questions` and `safe`, the states that its supervisor keeps to.
 
-    All initial states must be safe. Raises `TooMuchError` when answers take more than `effort`.
+    All initial states must be safe. Raises `TooMuchError` when answers take more than `effort`. An `order` of these
+    variables can be given.
     """
 
-    def __init__(self, automaton: Automaton, questions: Iterable[Expression], safe: StateSet, effort: Effort) -> None:
+    def __init__(
+        self,
+        automaton: Automaton,
+        questions: Iterable[Expression],
+        safe: StateSet,
+        effort: Effort,
+        order: Sequence[str] = (),
+    ) -> None:
+        self._order = order
         self._questions = [*_given(automaton), *questions]
-        self._effort = effort
+        self.effort = effort
+        self._reached: dict[tuple[bool, bool], Function] = {}
         self.plant = self._plant(automaton)
         self.diagrams = self.plant.diagrams
         self.safe = self.diagrams.imported(safe) & self.diagrams.valid
@@ -37,52 +49,48 @@ class Inquiry:
         names = with_initial(automaton, self._questions)
         if bits(automaton, names) > MOST_BITS:
             raise TooMuchError
-        return Plant(automaton, names)
+        return Plant(automaton, names, self._order if set(self._order) == set(names) else None)
 
-    @cached_property
-    def supervised(self) -> Function:
-        """What is reached under the supervisor."""
-        return self._reachable(self.plant.uncontrollable, self.safe)
+    def reached(self, target: Function, *, supervised: bool = True, faults: bool = True) -> Function:
+        """Those states of `target` that are reached with or without the supervisor, and counting on faults or not."""
+        if not faults and self.plant.helpful is self.plant.uncontrollable:
+            faults = True
+        if (supervised, faults) not in self._reached:
+            uncontrollable = self.plant.uncontrollable if faults else self.plant.helpful
+            steps = self.limited(self.plant, uncontrollable)
+            within = self.safe if supervised else None
+            self._reached[supervised, faults] = reachable(self.diagrams, self.plant.initial, steps, within)
+        return target & self._reached[supervised, faults]
 
-    @cached_property
-    def unsupervised(self) -> Function:
-        """What is reached without it."""
-        return self._reachable(self.plant.uncontrollable)
+    def way(self, target: Function, *, supervised: bool = True, faults: bool = True) -> Trace | None:
+        """The shortest run to some of `target`; None if there is none, or it takes too long to find."""
+        return Tracer(self.plant, faults=faults, within=self.safe if supervised else None).shortest(target)
 
-    @cached_property
-    def supervised_without_faults(self) -> Function:
-        """What can be counted on to be reached under the supervisor."""
-        if self.plant.helpful is self.plant.uncontrollable:
-            return self.supervised
-        return self._reachable(self.plant.helpful, self.safe)
+    def stuck(self, active: Function, goal: Function) -> Function:
+        """Reached states of `active` from which `goal` cannot be brought about; all of them, or at least some."""
+        return self.reached(active) & ~self._completing(goal, self.safe)
 
-    @cached_property
-    def unsupervised_without_faults(self) -> Function:
-        """What could be counted on to be reached without it."""
-        if self.plant.helpful is self.plant.uncontrollable:
-            return self.unsupervised
-        return self._reachable(self.plant.helpful)
+    def leads(self, states: Function, goal: Function) -> bool | None:
+        """Whether `goal` can be reached from `states` without faults, the supervisor not asked; None if unknown."""
+        steps = self.limited(self.plant, self.plant.helpful)
+        return (states & reaching(self.diagrams, goal, steps)).satisfiable()
 
-    def _reachable(self, uncontrollable: list[Step], within: Function | None = None) -> Function:
-        return reachable(self.diagrams, self.plant.initial, self._limited(self.plant, uncontrollable), within)
-
-    def _limited(self, plant: Plant, uncontrollable: Iterable[Step]) -> list[Step]:
+    def limited(self, plant: Plant, uncontrollable: Iterable[Step]) -> list[Step]:
+        """These steps and all starts, which raise `TooMuchError` when all effort is spent."""
         starts = [step for steps in plant.starts.values() for step in steps]
-        return self._effort.limited([*uncontrollable, *starts])
+        return self.effort.limited([*uncontrollable, *starts])
 
-    def reaching(self, goal: Function, within: Function | None = None) -> Function:
-        """From where `goal`, all of it in `within`, can be reached there without faults."""
-        return reaching(self.diagrams, goal, self._limited(self.plant, self.plant.helpful), within)
+    def _completing(self, goal: Function, within: Function) -> Function:
+        """The states of `within` in which `goal` holds, or can be brought about so that a tick sees it."""
+        steps = self.limited(self.plant, self.plant.helpful)
+        return reaching(self.diagrams, self.seen(goal, within), steps, within) | (goal & within)
 
-    def completing(self, goal: Function) -> Function:
-        """The safe states in which `goal` holds, or from which it can be brought about so that a tick sees it."""
-        if self.plant.automaton.one_at_a_time:
-            return self.reaching(goal & self.safe, self.safe)
+    def seen(self, goal: Function, within: Function) -> Function:
+        """The states of `within` in which a tick can begin that sees `goal`; without ticks, in which it holds."""
         ticks = [step for step in self.plant.helpful if isinstance(step, Reaction)]
-        if not ticks:  # in which nothing changes
-            return self.reaching(goal & self.safe, self.safe)
-        seen = self.diagrams.disjunction(tick.before(goal & self.safe) for tick in ticks) & self.safe
-        return self.reaching(seen, self.safe) | (goal & self.safe)
+        if self.plant.automaton.one_at_a_time or not ticks:  # nothing changes in a tick
+            return goal & within
+        return self.diagrams.disjunction(tick.before(goal & within) for tick in ticks) & within
 
     def may_start(self, ability: Ability) -> Function:
         """The states in which what is written lets it start."""
@@ -101,23 +109,25 @@ class Inquiry:
 
     def broken_unasked(self, states: Function) -> list[str]:
         """The specifications that can be broken from `states` on without any start."""
-        steps = self._effort.limited(self.plant.uncontrollable)
+        steps = self.effort.limited(self.plant.uncontrollable)
         reached = reachable(self.diagrams, states, steps)
         return [name for name, where in self.forbidden().items() if (where & reached).satisfiable()]
 
     def unbroken_unasked(self, states: Function) -> bool:
         """Whether from some of `states` on no specification can be broken without any start."""
         broken = self.diagrams.disjunction(self.forbidden().values())
-        return (
-            states & ~reaching(self.diagrams, broken, self._effort.limited(self.plant.uncontrollable))
-        ).satisfiable()
+        return (states & ~reaching(self.diagrams, broken, self.effort.limited(self.plant.uncontrollable))).satisfiable()
 
     @cached_property
     def ever(self) -> tuple[Plant, Function]:
         """All that may be reached by any means, on a plant of its own."""
         automaton = _with_every_move(self.plant.automaton)
         plant = self._plant(automaton)
-        return plant, reachable(plant.diagrams, plant.initial, self._limited(plant, plant.uncontrollable))
+        return plant, self._closed(plant)
+
+    def _closed(self, plant: Plant) -> Function:
+        """What is reached in `plant`, with all that can happen in it."""
+        return reachable(plant.diagrams, plant.initial, self.limited(plant, plant.uncontrollable))
 
     def may_ever(self, predicate: Expression) -> bool:
         """Whether it holds in any state that may be reached: also restarted, called off, or with a new product."""

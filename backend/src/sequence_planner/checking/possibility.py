@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 from sequence_planner.automaton.grounding.findings import without_arguments
 from sequence_planner.automaton.plain.events import event_of
-from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.automaton.structure import Ability, Automaton, Operation
 from sequence_planner.checking.growth import Growth
 from sequence_planner.checking.inquiry import Inquiry
@@ -18,9 +17,10 @@ from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.simplification import simplify
 from sequence_planner.expressions.syntax import Expression, conjunction
 from sequence_planner.synthesis.diagrams import Function
-from sequence_planner.synthesis.effort import Effort
 from sequence_planner.synthesis.shortest import Tracer
 from sequence_planner.synthesis.traces import Trace
+
+UNKNOWN = "too-many-states"  # the kind of a finding that says that nothing is known
 
 
 @dataclass(frozen=True)
@@ -59,30 +59,28 @@ class Finding:
 
 
 class Possibility:
-    """What is possible of `subjects` where nothing leaves the states of `safe`. Raises `TooMuchError`."""
+    """What is possible where nothing leaves the states that are safe, as an inquiry answers."""
 
-    def __init__(self, automaton: Automaton, subjects: Sequence[Subject], safe: StateSet, effort: Effort) -> None:
+    def __init__(self, automaton: Automaton, inquiry: Inquiry) -> None:
         self._automaton = automaton
-        self._subjects = subjects
-        self._inquiry = Inquiry(automaton, [each for subject in subjects for each in subject.expressions], safe, effort)
+        self._inquiry = inquiry
         self._growth = Growth(automaton, any_measurement=False)
 
-    def findings(self) -> Iterator[Finding]:
-        """What is not possible, subject by subject."""
-        for subject in self._subjects:
-            if subject.operation is None:
-                yield from self._start(subject)
-            else:
-                yield from self._operation(subject, subject.operation)
+    def findings(self, subject: Subject) -> Iterator[Finding]:
+        """What is not possible of `subject`. Raises `TooMuchError`."""
+        if subject.operation is None:
+            yield from self._start(subject)
+        else:
+            yield from self._operation(subject, subject.operation)
 
     def _start(self, subject: Subject) -> Iterator[Finding]:
         inquiry = self._inquiry
-        if any((inquiry.allowed(each) & inquiry.supervised).satisfiable() for each in subject.abilities):
+        if any(inquiry.reached(inquiry.allowed(each)).satisfiable() for each in subject.abilities):
             return
-        if (known := self._with_guards(subject.abilities, inquiry.supervised)) is not None:
+        if (known := self._with_guards(subject.abilities, supervised=True)) is not None:
             yield self._never_allowed(subject, *known)
-        elif (beyond := self._with_guards(subject.abilities, inquiry.unsupervised)) is not None:
-            trace = Tracer(inquiry.plant).shortest(beyond[1])
+        elif (beyond := self._with_guards(subject.abilities, supervised=False)) is not None:
+            trace = inquiry.way(beyond[1], supervised=False)
             message = (
                 f"never starts under the supervisor: its guards hold only {self._after(trace)}. Let another way lead "
                 "there, forbid less, or leave it out"
@@ -94,10 +92,11 @@ class Possibility:
             guard = print_expression(simplify(conjunction(first.enabled, first.start_guard)))
             yield Finding("never-starts", subject, f"never starts: {_never(guard)}", relative=True)
 
-    def _with_guards(self, members: Sequence[Ability], reached: Function) -> tuple[Ability, Function] | None:
-        """One of `members` whose guards hold in some of the states, and those."""
+    def _with_guards(self, members: Sequence[Ability], supervised: bool) -> tuple[Ability, Function] | None:
+        """One of `members` whose guards hold in some of the states that are reached, and those."""
+        inquiry = self._inquiry
         for ability in members:
-            if (where := self._inquiry.may_start(ability) & reached).satisfiable():
+            if (where := inquiry.reached(inquiry.may_start(ability), supervised=supervised)).satisfiable():
                 return ability, where
         return None
 
@@ -114,7 +113,7 @@ class Possibility:
     def _never_allowed(self, subject: Subject, ability: Ability, where: Function) -> Finding:
         """The way to a state in which only the supervisor keeps it from starting, the start, and what may follow."""
         inquiry = self._inquiry
-        trace = Tracer(inquiry.plant, within=inquiry.safe).shortest(where)
+        trace = inquiry.way(where)
         if trace is not None:
             trace = Tracer(inquiry.plant).started(trace, ability.name)
             broken = inquiry.diagrams.disjunction(inquiry.forbidden().values())
@@ -163,10 +162,10 @@ class Possibility:
     def _operation(self, subject: Subject, operation: Operation) -> Iterator[Finding]:
         inquiry = self._inquiry
         active = inquiry.plant.where(operation.precondition)
-        if (active & inquiry.supervised).satisfiable():
+        if inquiry.reached(active).satisfiable():
             yield from self._goal(subject, operation, active)
-        elif (beyond := active & inquiry.unsupervised).satisfiable():
-            trace = Tracer(inquiry.plant).shortest(beyond)
+        elif (beyond := inquiry.reached(active, supervised=False)).satisfiable():
+            trace = inquiry.way(beyond, supervised=False)
             message = (
                 f"never becomes active under the supervisor: its precondition holds only {self._after(trace)}. Let "
                 "another way lead there, or forbid less"
@@ -180,11 +179,11 @@ class Possibility:
     def _goal(self, subject: Subject, operation: Operation, active: Function) -> Iterator[Finding]:
         inquiry, plain = self._inquiry, self._automaton.one_at_a_time
         goal = inquiry.plant.where(operation.goal)
-        if (goal & inquiry.supervised_without_faults).satisfiable():
+        if inquiry.reached(goal, faults=False).satisfiable():
             if plain:
                 return  # a goal of the automaton, which nobody undertakes again in each state
-        elif (lost := goal & inquiry.unsupervised_without_faults).satisfiable():
-            trace = Tracer(inquiry.plant, faults=False).shortest(lost)
+        elif (lost := inquiry.reached(goal, supervised=False, faults=False)).satisfiable():
+            trace = inquiry.way(lost, supervised=False, faults=False)
             message = (
                 f"cannot be {'reached' if plain else 'completed'} under the supervisor, though it could without it: "
                 f"{'it' if plain else 'its goal'} holds only {self._after(trace)}. Let another way lead there, or "
@@ -198,15 +197,17 @@ class Possibility:
             return
         elif not self._may_by_its_words(operation.goal):
             return
-        bad = active & inquiry.supervised & ~inquiry.completing(goal)
+        bad = inquiry.stuck(active, goal)
         if bad.satisfiable():
             yield self._out_of_reach(subject, goal, bad)
 
     def _out_of_reach(self, subject: Subject, goal: Function, bad: Function) -> Finding:
         inquiry = self._inquiry
-        trace = Tracer(inquiry.plant, within=inquiry.safe).shortest(bad)
-        some = bad if trace is None else inquiry.diagrams.states(trace.last)
-        if (some & inquiry.reaching(goal)).satisfiable():
+        trace = inquiry.way(bad)
+        leads = inquiry.leads(bad if trace is None else inquiry.diagrams.states(trace.last), goal)
+        if leads is None:
+            cause = "nothing that the supervisor allows leads there"
+        elif leads:
             cause = "the supervisor forbids all that would lead there"
         else:
             cause = "no ability and no effect leads there, with or without the supervisor"

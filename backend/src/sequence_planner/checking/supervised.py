@@ -12,10 +12,11 @@ from collections.abc import Iterator, Sequence
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.grounding.findings import without_arguments
 from sequence_planner.automaton.plain.events import event_of
-from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton
-from sequence_planner.checking.inquiry import bearing_on, bits
-from sequence_planner.checking.possibility import Finding, Possibility, Subject
+from sequence_planner.checking.far import from_afar
+from sequence_planner.checking.inquiry import Inquiry, bearing_on, bits
+from sequence_planner.checking.possibility import UNKNOWN, Finding, Possibility, Subject
 from sequence_planner.checking.warning import ModelWarning, listed, place
 from sequence_planner.synthesis.effort import MOST_BITS, Effort, TooMuchError
 from sequence_planner.synthesis.supervision import Supervision
@@ -23,24 +24,44 @@ from sequence_planner.synthesis.supervision import Supervision
 MOST_EFFORT = 20_000_000  # nodes, see `synthesis.effort`: a few seconds
 MOST_EFFORT_IN_PARTS = 5_000_000
 MOST_TOO_WIDE = 3  # parts with too many variables: then no further ones are looked for
-UNKNOWN = "too-many-states"
 
 
-def check_supervision(automaton: Automaton, supervision: Supervision) -> list[ModelWarning]:
+def check_supervision(
+    automaton: Automaton, supervision: Supervision, supervisor: Supervisor | None = None
+) -> list[ModelWarning]:
     """What can never be done in `automaton` under a `supervision` that is possible, by place, with traces.
 
-    What it would take more than `MOST_EFFORT` to find out is said not to be known.
+    What would take too much effort to find out is said not to be known. With its `supervisor` it is looked at from
+    afar first, which takes longer.
     """
     safe = supervision.plant.diagrams.exported(supervision.safe)
-    subjects = list(_subjects(automaton))
-    try:
-        found = list(Possibility(automaton, subjects, safe, Effort(MOST_EFFORT)).findings())
-    except TooMuchError:
-        found = list(_in_parts(automaton, subjects, safe))
+    subjects = list(subjects_of(automaton))
+    found = list(exactly(automaton, subjects, safe))
+    left = [each.subject for each in found if each.kind == UNKNOWN]
+    if left and supervisor is not None:
+        found = [each for each in found if each.kind != UNKNOWN]
+        found += from_afar(automaton, left, safe, supervisor)
     return sorted(_warnings(automaton, subjects, _without_consequences(found)))
 
 
-def _subjects(automaton: Automaton) -> Iterator[Subject]:
+def exactly(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet) -> Iterator[Finding]:
+    """What is found where all that can be reached is computed, over fewer variables if it must be."""
+    try:
+        yield from list(_asked(automaton, subjects, safe, Effort(MOST_EFFORT)))
+    except TooMuchError:
+        yield from _in_parts(automaton, subjects, safe)
+
+
+def _asked(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet, effort: Effort) -> Iterator[Finding]:
+    """What an inquiry about `subjects` says. Raises `TooMuchError`."""
+    inquiry = Inquiry(automaton, [each for subject in subjects for each in subject.expressions], safe, effort)
+    possibility = Possibility(automaton, inquiry)
+    for subject in subjects:
+        yield from possibility.findings(subject)
+
+
+def subjects_of(automaton: Automaton) -> Iterator[Subject]:
+    """All that should be possible in it."""
     events: dict[str, list[Ability]] = defaultdict(list)
     for ability in automaton.abilities.values():
         if not ability.restart:
@@ -70,7 +91,7 @@ def _in_parts(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet)
         try:
             if len(parts) == 1 or bits(automaton, names) > MOST_BITS:
                 raise TooMuchError
-            yield from list(Possibility(automaton, members, safe, effort).findings())
+            yield from list(_asked(automaton, members, safe, effort))
         except TooMuchError:
             yield from (Finding(UNKNOWN, each, "") for each in members)
 

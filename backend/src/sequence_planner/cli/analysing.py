@@ -78,8 +78,8 @@ def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Foun
         return known
     from sequence_planner.analysis.finding import analyses, without_numbers  # noqa: PLC0415
 
-    work = (analyses, automaton, _COUNTING) if counts else (without_numbers, automaton)
-    return _found(automaton, limits, _Hearing(work, unwanted))
+    work = (analyses, automaton, _COUNTING, True) if counts else (without_numbers, automaton)
+    return _found(automaton, limits, _Hearing(work, unwanted), far=counts)
 
 
 def checked(automaton: Automaton, connections: Connections | None, limits: Limits) -> Found:
@@ -103,11 +103,13 @@ def _kept(automaton: Automaton, unwanted: Collection[str]) -> Found | None:
     return Found(known.analysis, supervisor, None)
 
 
-def _found(automaton: Automaton, limits: Limits, hearing: _Hearing) -> Found:
+def _found(automaton: Automaton, limits: Limits, hearing: _Hearing, *, far: bool = True) -> Found:
+    """What is heard, and kept: but not what is unknown only as nobody looked `far`."""
     unfinished = hearing.hear(limits)
     analysis = hearing.analysis
     document = document_of(automaton, analysis)
-    if analysis.pending in (None, GUARDS, COUNTING):
+    known = far or all(each.kind != "too-many-states" for each in analysis.warnings or ())
+    if analysis.pending in (None, GUARDS, COUNTING) and known:
         supervisor_kept = None if analysis.supervisor is None else supervisor_document(analysis.supervisor)
         keep(automaton, Kept(analysis=document, supervisor=supervisor_kept))
     return Found(document, analysis.supervisor, unfinished, tuple(sorted(hearing.suspicious)))

@@ -17,12 +17,16 @@ class TooMuchError(Exception):
 
 
 class Effort:
-    """What may still be spent: the nodes of all sets from which steps are taken or that are compared, by samples."""
+    """What may still be spent: the nodes of all sets from which steps are taken or that are compared, by samples.
 
-    def __init__(self, most: int, least: int = 0) -> None:
+    What is spent is spent of the `whole` as well, if it is a part of one.
+    """
+
+    def __init__(self, most: int, least: int = 0, whole: Effort | None = None) -> None:
         """`most` nodes are left. Whatever is done counts as `least` nodes at least."""
         self._left = most
         self._least = least
+        self._whole = whole
         self._taken = 0
 
     def limited(self, steps: Iterable[Step]) -> list[Step]:
@@ -34,6 +38,8 @@ class Effort:
         if self._taken % _SAMPLED == 0:
             self.use(max(states.node_count(), self._least) * _SAMPLED)
         self._taken += 1
+        if self._whole is not None:
+            self._whole.spend(states)
 
     def use(self, nodes: int) -> None:
         """Count what takes about as long as something is done with so many nodes."""

@@ -39,12 +39,13 @@ class _FlagReader(Reader):
 class Plant:
     """An automaton over the variables `names`, on which nothing that is asked of it depends further.
 
-    Flags are functions of the variables. Restart abilities are left out: they are not counted on.
+    Flags are functions of the variables. Restart abilities are left out: they are not counted on. Their `order` is one
+    that makes small what is forbidden, unless another one is given.
     """
 
-    def __init__(self, automaton: Automaton, names: Sequence[str]) -> None:
+    def __init__(self, automaton: Automaton, names: Sequence[str], order: Sequence[str] | None = None) -> None:
         self.automaton = automaton
-        order = _ordered(automaton, names)
+        order = _ordered(automaton, names) if order is None else order
         afterwards = set(_written_afterwards(automaton, order))
         self.diagrams = Diagrams({name: automaton.variables[name].type.domain for name in order}, afterwards)
         self.reader = _FlagReader(automaton, self.diagrams)
@@ -124,10 +125,17 @@ class Plant:
 
 def _ordered(automaton: Automaton, names: Sequence[str]) -> tuple[str, ...]:
     """The better of two orders: the one in which what is forbidden and what is rest take fewer nodes."""
-    groups = list(_together(automaton))
+    groups = list(together(automaton))
     order = ordered(names, groups)
     other = hubs_first(order, groups)
     return order if other == order else min((order, other), key=lambda each: _size(automaton, each))
+
+
+def orders(automaton: Automaton, names: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Orders to try where it is not known which suits: what draws variables together does not see which way round."""
+    groups = list(together(automaton))
+    order = ordered(names, groups)
+    yield from dict.fromkeys((order[::-1], hubs_first(order, groups), order))
 
 
 def _size(automaton: Automaton, order: Sequence[str]) -> float:
@@ -150,7 +158,7 @@ def _written_afterwards(automaton: Automaton, names: Sequence[str]) -> Iterator[
             yield from transition.writes
 
 
-def _together(automaton: Automaton) -> Iterator[frozenset[str]]:
+def together(automaton: Automaton) -> Iterator[frozenset[str]]:
     """The variables that each transition and each part of a specification reads or writes."""
     for transition in transitions(automaton):
         read = read_variables(automaton, (transition.guard, *(a.value for a in transition.actions)))

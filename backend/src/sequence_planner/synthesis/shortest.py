@@ -46,6 +46,10 @@ class Tracer:
         forbidden_by = forbidding(self._plant.automaton, first)
         return Trace(first, forbidden_by, tuple(self._replayed(first, way[1:])))
 
+    def leads(self, goal: Function, begin: Function) -> bool:
+        """Whether some of `begin` leads into `goal`, and that is soon found."""
+        return self._layers(goal, begin) is not None
+
     def onward(self, trace: Trace, goal: Function) -> Trace | None:
         """`trace`, and then the fewest steps that lead on into `goal`; None as above."""
         way = self._way(goal, self._plant.diagrams.states(trace.last), trace.last)
