@@ -13,11 +13,14 @@ import resource
 import subprocess
 import sys
 import tempfile
+import threading
 import time
-from collections.abc import Callable
+from collections import defaultdict
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
+from stations.curves import drawn
 from stations.several import write_several
 
 from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
@@ -35,27 +38,46 @@ SIZES = (1, 2, 4, 8, 16)
 LIMIT = 300.0  # seconds for one size
 DEADLINE = 30.0  # seconds for one plan
 TICKING = 1.0  # seconds
+DRAWN = ("load", "safe states", "guards that the supervisor adds", "first plan, near", "first plan, far")
 FAR = "tighten_bolt_pair_{}(AtBoltPair1TCPPose)"
 
 _Given = TypeVar("_Given")
 
 
 def main() -> None:
-    """Measure every size in a process of its own, and print a row for each."""
+    """Measure every size in a process of its own, and print what is known."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--most", type=int, default=SIZES[-1])
     parser.add_argument("--limit", type=float, default=LIMIT)
+    parser.add_argument("--draw", type=Path, help="a file for a picture of the curves, as SVG")
     parser.add_argument("--one", type=int, help="this size, in this process")
     options = parser.parse_args()
     if options.one is not None:
         measure(options.one)
         return
+    curves: dict[str, list[tuple[float, float]]] = defaultdict(list)
     for size in (each for each in SIZES if each <= options.most):
         print(f"\n{size} x the truck engine station", flush=True)
-        try:
-            subprocess.run([sys.executable, __file__, "--one", str(size)], check=True, timeout=options.limit)
-        except subprocess.TimeoutExpired:
-            print(f"  not done after {options.limit:g} s on the wall", flush=True)
+        for what, seconds in measured(size, options.limit):
+            curves[what].append((size, seconds))
+    if options.draw is not None:
+        options.draw.write_text(drawn({what: points for what, points in curves.items() if what in DRAWN}, "s"))
+
+
+def measured(size: int, limit: float) -> Iterator[tuple[str, float]]:
+    """What a process says of one size, in seconds; it is ended when so many have passed."""
+    with subprocess.Popen([sys.executable, __file__, "--one", str(size)], stdout=subprocess.PIPE, text=True) as process:
+        timer = threading.Timer(limit, process.kill)
+        timer.start()
+        assert process.stdout is not None
+        for line in process.stdout:
+            print(line, end="", flush=True)
+            what, _, rest = line.strip().partition(": ")
+            if rest.endswith(" s"):
+                yield what, float(rest.removesuffix(" s"))
+        timer.cancel()
+    if process.returncode:
+        print(f"  not done after {limit:g} s" if process.returncode < 0 else "  failed", flush=True)
 
 
 def measure(size: int) -> None:
