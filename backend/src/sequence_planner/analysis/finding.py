@@ -25,11 +25,14 @@ MOST_COUNTING = 50_000_000  # nodes, see `Effort`: a station that runs has other
 _SOON = 2_000_000  # nodes, see `Effort`: whoever waits for guards does not notice
 
 
-def analyses(automaton: Automaton, counting: int = MOST_COUNTING, far: bool = False) -> Iterator[Analysis]:
+def analyses(
+    automaton: Automaton, counting: int = MOST_COUNTING, far: bool = False, guards: bool = True
+) -> Iterator[Analysis]:
     """What is found of `automaton`, again and again, each time more of it.
 
     No more is spent on `counting` states than so much `Effort`: with 0 they are not counted. Where they soon are, their
-    numbers come first. What too many states bear on is found out only with `far`: it can take a minute.
+    numbers come first. What too many states bear on is found out only with `far`: it can take a minute, so that guards
+    come before it. Without `guards` these are what is left at last.
     """
     found = Analysis("the safe states")
     yield found
@@ -45,16 +48,19 @@ def analyses(automaton: Automaton, counting: int = MOST_COUNTING, far: bool = Fa
         yield found
         found = replace(found, warnings=tuple(check_supervision(automaton, supervision)))
         yield found
+        restrictions = Restrictions(supervision)
+        found = replace(found, guarded=tuple(start for starts in restrictions.starts.values() for start in starts))
+        if guards:
+            found = replace(found, pending=GUARDS)
+            yield found
+            found = replace(found, guards={name: restrictions.guard(name) for name in restrictions.starts})
         if far and any(each.kind == UNKNOWN for each in found.warnings or ()):
             found = replace(found, pending=FAR)
             yield found
             found = replace(found, warnings=tuple(check_supervision(automaton, supervision, found.supervisor)))
-            yield found
-        restrictions = Restrictions(supervision)
-        guarded = tuple(start for starts in restrictions.starts.values() for start in starts)
-        found = replace(found, guarded=guarded, pending=GUARDS)
-        yield found
-        found = replace(found, guards={name: restrictions.guard(name) for name in restrictions.starts})
+        if not guards:
+            yield replace(found, pending=GUARDS)
+            return
     found = replace(found, pending=COUNTING)
     yield found
     yield replace(_counted(found, supervision, counting), pending=None)
@@ -62,10 +68,9 @@ def analyses(automaton: Automaton, counting: int = MOST_COUNTING, far: bool = Fa
 
 def without_numbers(automaton: Automaton, guards: bool = True, far: bool = False) -> Iterator[Analysis]:
     """What is found of `automaton` but for numbers of states, which few wait for; `guards` and `far` where wanted."""
-    last = (COUNTING,) if guards else (GUARDS, COUNTING)
-    for found in analyses(automaton, counting=0, far=far):
+    for found in analyses(automaton, counting=0, far=far, guards=guards):
         yield found
-        if found.pending in last:
+        if found.pending == COUNTING:
             return
 
 
