@@ -10,8 +10,12 @@ from hypothesis import given
 
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import initial_state, supervised_start
-from sequence_planner.expressions.types import BOOLEAN
+from sequence_planner.expressions.types import BOOLEAN, IntegerRange
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.pdr.engine import Reachability
+from sequence_planner.planning.plan import Circumstances, goals_of
+from sequence_planner.planning.sat.bounded import BoundedModelChecking
 from sequence_planner.planning.sat.circles import circles, linear
 from sequence_planner.planning.sat.demands import Demands
 from sequence_planner.planning.sat.pairs import Pairs
@@ -115,6 +119,47 @@ def test_a_tick_without_needless_starts_ends_wherever_one_can(given_: Problem) -
         if given_.supervisor.safe.includes(given_.state):
             anyhow = ends(station, given_, given_.state, None, restart)
             assert ends(station, given_, given_.state, order, restart) == anyhow
+
+
+LEVEL = IntegerRange(0, 2)
+
+
+def test_a_start_that_another_one_makes_possible_comes_after_it() -> None:
+    """Nothing else does: `use` cannot start before `two`, though it could at other times."""
+    station = automaton(
+        {
+            "use": Does(start=("x := 1", "done := true"), when="x == 2"),
+            "two": Does(start=("x := 2",), finish="x == 2", finally_=("x := 0",)),
+            "one": Does(start=("x := 1",)),
+            "zero": Does(start=("x := 0",)),
+            "mark": Does(start=("o := true",), when="x == 1"),
+        },
+        estimated={"x": (LEVEL, 1), "done": OFF, "o": OFF},
+        goals={"done": "done"},
+    )
+    found_in_two_ticks(station, Circumstances())
+
+
+def test_what_the_safe_states_ask_of_a_restart_ability_comes_before_it() -> None:
+    station = automaton(
+        {
+            "reset": Does(start=("a := true",), restart=True),
+            "open": Does(start=("shut := false",), finish="not a", finally_=("shut := true",)),
+        },
+        estimated={"a": OFF, "shut": (BOOLEAN, True)},
+        forbidden={"shut": "a and shut"},
+        goals={"a": "a"},
+    )
+    found_in_two_ticks(station, Circumstances(restart=True))
+
+
+def found_in_two_ticks(station: Automaton, circumstances: Circumstances) -> None:
+    goals, supervisor = goals_of(station, station.operations), synthesise(station)
+    task = Task(initial_state(station), goals, circumstances)
+    plan = BoundedModelChecking(station, supervisor).solve(task, Budget.seconds(60)).plan
+    assert plan is not None
+    assert len(plan.ticks) == 2
+    assert Reachability(station, supervisor).solve(task, Budget.seconds(60)).proof is None
 
 
 def test_what_is_done_and_undone_at_will_is_not_repeated() -> None:

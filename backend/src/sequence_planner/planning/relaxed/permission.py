@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Set
 from functools import cached_property
 
 from sequence_planner.automaton.state_set import EVERYTHING, FIRST_NODE, NOTHING, StateSet, Supervisor
@@ -28,16 +28,21 @@ class Permission:
         """Whether `move` may be taken from a safe state and lead to one, as far as `possible` values tell."""
         if move.phase is not Phase.START or self._safe.root == EVERYTHING or self._left < 0:
             return True
-        written = {
-            target(action): {action.value.value}
-            for action in move.actions
-            if action.condition is None and isinstance(action.value, Constant) and possible[target(action)] != {None}
-        }
-        return self._may_be_safe(possible, written) and self._may_be_safe(possible, {})
+        return self._may_be_safe(possible, self._written(move, possible)) and self._may_be_safe(possible, {})
 
-    def _may_be_safe(
-        self, possible: Mapping[str, set[Value | None]], written: Mapping[str, set[bool | int | str]]
-    ) -> bool:
+    def _written(self, move: Transition, possible: Mapping[str, set[Value | None]]) -> Mapping[str, Set[Value | None]]:
+        """The values that what `move` writes may have then: any, where that depends on the state."""
+        written: dict[str, Set[Value | None]] = {}
+        for action in move.actions:
+            name = target(action)
+            if name not in self._domains or possible[name] == {None}:  # what is unknown stays so
+                continue
+            may: Set[Value | None] = {action.value.value} if isinstance(action.value, Constant) else self._domains[name]
+            otherwise = frozenset() if action.condition is None else possible[name]
+            written[name] = may | otherwise | written.get(name, frozenset())
+        return written
+
+    def _may_be_safe(self, possible: Mapping[str, set[Value | None]], written: Mapping[str, Set[Value | None]]) -> bool:
         """Whether a safe state may have `written` values, or else `possible` ones; of an unknown variable every one."""
         axes = [(possible[name], written.get(name)) for name in self._safe.names]
         children: dict[int, tuple[bool, list[int]]] = {}  # whether every one of them must be, and which
@@ -61,6 +66,10 @@ class Permission:
             every, below = children[reference]
             may[reference] = (all if every else any)(may[each] for each in below)
         return may[self._safe.root]
+
+    @cached_property
+    def _domains(self) -> Mapping[str, frozenset[Value | None]]:
+        return dict(zip(self._safe.names, map(frozenset, self._safe.domains), strict=True))
 
     @cached_property
     def _positions(self) -> tuple[dict[Value, int], ...]:

@@ -43,7 +43,7 @@ class Pairs:
         names = self._written(one, other)
         exchangeable = self._circuit.conjunction((second_now, first_then, *self._same(names, end, end_other)))
         undone = self._circuit.conjunction(self._same(names, end, self._state)) if self._known else Circuit.FALSE
-        if Circuit.TRUE in (exchangeable, undone) or -first_now in (second_then, exchangeable):
+        if Circuit.TRUE in (exchangeable, undone) or -first_now in (second_then, -exchangeable):
             return False
         budget = Budget.seconds(_AS_LONG_AS_IT_TAKES)
         return bool(self._solver.solve([first_now, second_then, -exchangeable, -undone], budget))

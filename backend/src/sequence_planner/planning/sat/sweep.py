@@ -134,6 +134,8 @@ class Sweep:
             used = _read(self._automaton, ability) | self._written[name]
             if (guard := self._supervisor.guards.get(name)) is not None:
                 used |= frozenset(guard.names)
+            if ability.restart:  # which has no guard: the safe states themselves keep it
+                used |= frozenset(self._supervisor.safe.names)
             for variable in used:
                 users[variable].append(name)
         found: dict[tuple[str, str], None] = {}
