@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import sys
+
 
 class LateLog:
     """As `structlog.get_logger`, but that nothing is imported before something is said."""
@@ -20,4 +22,6 @@ class LateLog:
     def _say(self, level: str, event: str, values: dict[str, object]) -> None:
         import structlog  # noqa: PLC0415
 
+        if not structlog.is_configured():  # by a process with a log: what a command answers is on standard output
+            structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))
         getattr(structlog.get_logger(self._name), level)(event, **values)

@@ -84,7 +84,7 @@ def read(where: Path, kind: str, of: str) -> object:
     except FileNotFoundError:
         return None
     except Exception as error:  # whatever a damaged file makes of it
-        LOG.warning("what was found of the model before cannot be read", because=repr(error))
+        LOG.warning("what was found of the model before cannot be read and is found anew", because=str(error))
         return None
 
 

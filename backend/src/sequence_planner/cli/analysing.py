@@ -24,7 +24,7 @@ from sequence_planner.analysis.remembering import known_supervisor, remember_sup
 from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.cli.options import refuse
+from sequence_planner.cli.options import FINDINGS, refuse
 from sequence_planner.memory_limit import USUAL
 
 if TYPE_CHECKING:  # what is kept from before is shown without them
@@ -131,7 +131,8 @@ def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Sup
         with within(deadline):
             found = synthesise(automaton)
     except TimeoutError:
-        refuse(f"the safe states could not be computed within {deadline:g} s: let fewer variables bear on them")
+        late = f"the safe states could not be computed within {deadline:g} s"
+        refuse(f"{late}: allow more with --deadline, or let fewer variables bear on them", FINDINGS)
     except MemoryError:
         refuse("the safe states have outgrown the memory set aside for them: let fewer variables bear on them")
     remember_supervisor(automaton, found)

@@ -15,7 +15,7 @@ from sequence_planner.planning.plan import Contract, Plan, Proof
 
 # For a shorter plan a fast one waits this share of the time it took, in seconds at least and at most.
 _SHARE, _LEAST_GRACE, _MOST_GRACE = 0.2, 0.002, 0.1
-_PROOF_GRACE = 0.5  # seconds, or as long as it took, for a proof, when it is known that there is no plan short enough
+_PROOF_GRACE = 0.5  # seconds, or as long as it took, for a proof, when it is known that no plan is short enough
 
 
 class Attempt:
@@ -112,7 +112,7 @@ class Attempt:
             return
         if self._plan is not None and self.task.contract is Contract.FAST:
             self._grace_ends = now + min(max(_SHARE * took, _LEAST_GRACE), _MOST_GRACE)
-        elif self._plan is None and self._searched >= self.task.bound:
+        elif self._plan is None and self._searched >= self.task.longest:
             self._grace_ends = now + max(_PROOF_GRACE, took)
 
 
