@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
+from math import inf
 
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, target
@@ -15,7 +16,7 @@ from sequence_planner.synthesis.reaction import Reaction
 from sequence_planner.synthesis.reading import Reader
 from sequence_planner.synthesis.steps import Flip, Step, depends, updates
 
-_MOST_TRIED = 1 << 16  # nodes, to find out whether an order is a good one
+_MOST_TRIED = 1 << 18  # nodes, to find out whether an order is a good one
 
 
 class _FlagReader(Reader):
@@ -128,7 +129,11 @@ def _ordered(automaton: Automaton, names: Sequence[str]) -> tuple[str, ...]:
     groups = list(together(automaton))
     order = ordered(names, groups)
     other = hubs_first(order, groups)
-    return order if other == order else min((order, other), key=lambda each: _size(automaton, each))
+    if other == order:
+        return order
+    sizes = {each: _size(automaton, each) for each in (order, other)}
+    # Where neither is small, hubs first is: what is forbidden by station after station is then told apart early.
+    return other if min(sizes.values()) == inf else min(sizes, key=sizes.__getitem__)
 
 
 def orders(automaton: Automaton, names: Sequence[str]) -> Iterator[tuple[str, ...]]:
@@ -147,7 +152,7 @@ def _size(automaton: Automaton, order: Sequence[str]) -> float:
     try:
         return sum(diagrams.disjunction(map(reader.predicate, each)).node_count() for each in inside)
     except MemoryError:
-        return float("inf")
+        return inf
 
 
 def _written_afterwards(automaton: Automaton, names: Sequence[str]) -> Iterator[str]:
