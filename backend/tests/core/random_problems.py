@@ -58,7 +58,7 @@ class Problem:
 def problem(choices: Choices, unknown: bool = False, demanding: bool = False) -> Problem:
     """A problem, with `unknown` from a state with unknown values, with `demanding` with formulas and circumstances."""
     station = device_station(choices) if choices.chance(2) else automaton(choices)
-    station, supervisor = _supervised(_shared_out(choices, station) if demanding else station)
+    station, supervisor = with_supervisor(_shared_out(choices, station) if demanding else station)
     state = state_of(choices, station, unknown)
     for _ in range(5):
         if not supervisor.safe.includes(state):
@@ -112,7 +112,7 @@ def _circumstances(choices: Choices, station: Automaton) -> Circumstances:
     )
 
 
-def _supervised(station: Automaton) -> tuple[Automaton, Supervisor]:
+def with_supervisor(station: Automaton) -> tuple[Automaton, Supervisor]:
     """The station with its supervisor; what cannot be met is left out."""
     for each in (station, replace(station, rest=None), replace(station, specifications={})):
         with contextlib.suppress(SynthesisError):

@@ -6,10 +6,11 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 from itertools import permutations
 
+import pytest
 from hypothesis import given
 
-from sequence_planner.automaton.structure import Automaton, State
-from sequence_planner.automaton.tick import initial_state, supervised_start
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.tick import initial_state
 from sequence_planner.expressions.types import BOOLEAN, IntegerRange
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engine import Task
@@ -25,6 +26,7 @@ from sequence_planner.synthesis.supervision import synthesise
 from .budget import examples
 from .building import Does, automaton
 from .choices import Choices, made_by
+from .order_comparison import compare_orders, compare_pairs, ends
 from .random_problems import Problem, problem
 
 OFF = (BOOLEAN, False)
@@ -83,31 +85,6 @@ def test_what_texts_show_the_solver_finds_too(given_: Problem) -> None:
             assert not told.order_matters(one, other)
 
 
-def ends(
-    station: Automaton, given_: Problem, settled: State, order: Sequence[str] | None, restart: bool
-) -> set[tuple[object, ...]]:
-    """All states at the end of the tick: with starts in any order, or as parts of `order`; `restart` allows more."""
-    found = {(tuple(settled.values()), frozenset[str](), 0)}
-    pending = [(settled, frozenset[str](), 0)]
-    while pending:
-        state, taken, place = pending.pop()
-        choices = (
-            enumerate(order[place:], start=place + 1) if order is not None else ((0, n) for n in station.abilities)
-        )
-        for following, name in choices:
-            ability = station.abilities[name]
-            if name in taken or (ability.restart and not restart):
-                continue
-            after = supervised_start(station, given_.supervisor, given_.state, state, ability)
-            if after is None:
-                continue
-            key = (tuple(after.values()), taken | {name}, following)
-            if key not in found:
-                found.add(key)
-                pending.append((after, taken | {name}, following))
-    return {values for values, _, _ in found}
-
-
 @examples(100)
 @given(made_by(problem))
 def test_a_tick_without_needless_starts_ends_wherever_one_can(given_: Problem) -> None:
@@ -117,8 +94,18 @@ def test_a_tick_without_needless_starts_ends_wherever_one_can(given_: Problem) -
         order = [ability.name for ability in sweep.complete(Budget.seconds(60), restart=restart)]
         assert restart or not any(station.abilities[name].restart for name in order)
         if given_.supervisor.safe.includes(given_.state):
-            anyhow = ends(station, given_, given_.state, None, restart)
-            assert ends(station, given_, given_.state, order, restart) == anyhow
+            of = (station, given_.supervisor, given_.state, given_.state)
+            assert ends(*of, order, restart).keys() == ends(*of, None, restart).keys()
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_an_order_of_many_abilities_has_all_others_in_it(seed: int) -> None:
+    assert compare_orders(f"orders.0.{seed}")["orders"]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_order_of_two_starts_matters_where_it_makes_a_difference_in_some_state(seed: int) -> None:
+    assert compare_pairs(f"pairs.0.{seed}")
 
 
 LEVEL = IntegerRange(0, 2)
