@@ -1,13 +1,14 @@
 """A model with the resources of the truck engine station several times, side by side.
 
 Each copy has its own names and topics. Neighbours share the place at which the kit is taken from the AGV, so that what
-one does matters to the next: a robot is there while no neighbour is.
+one does matters to the next: a robot is there while no neighbour is. `several.py FOLDER NUMBER` writes it.
 """
 
 from __future__ import annotations
 
 import json
 import re
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -59,3 +60,7 @@ def _read(text: str) -> dict[str, Any]:
 def _write(path: Path, text: str) -> None:
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
+
+
+if __name__ == "__main__":
+    write_several(Path(sys.argv[1]), int(sys.argv[2]))

@@ -11,6 +11,7 @@ import pytest
 
 from control.bench import cell
 from sequence_planner.analysis.process import SynthesisEndedError, TooLargeError
+from sequence_planner.cli.analysing import Limits, checked, supervisor_of
 from sequence_planner.control.preparation import Preparation, analyse
 
 
@@ -33,6 +34,7 @@ def test_a_model_of_which_it_is_not_known_what_is_safe_stays_and_can_be_changed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A controller that ended with it would be started again for ever, and the first one would end the station."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
 
     async def scenario() -> None:
         preparation = Preparation()
@@ -76,5 +78,32 @@ def test_at_the_next_start_it_is_there_at_once(tmp_path: Path, monkeypatch: pyte
         await analyse(cell()[0].automaton, second, tmp_path)
         assert await second.supervisor == await first.supervisor
         assert second.analysis == first.analysis
+
+    asyncio.run(scenario())
+
+
+@pytest.mark.parametrize("command", ["plan", "check"])
+def test_what_is_safe_is_there_at_once_where_a_command_has_found_it(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A model whose safe states take longer than a station waits for them can be run after such a command."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    automaton = cell()[0].automaton
+    if command == "plan":
+        found = supervisor_of(automaton)
+    else:
+        of = checked(automaton, None, Limits()).supervisor
+        assert of is not None
+        found = of
+
+    async def scenario() -> None:
+        monkeypatch.setattr("sequence_planner.control.preparation.ANALYSIS_DEADLINE", 0.001)
+        monkeypatch.setattr("sequence_planner.control.preparation.PUT_OFF", 0.0)
+        preparation = Preparation()
+        await analyse(automaton, preparation, tmp_path)
+        assert await preparation.supervisor == found
+        assert preparation.analysis is not None
+        assert preparation.analysis.supervised is True
+        assert preparation.trouble is None
 
     asyncio.run(scenario())

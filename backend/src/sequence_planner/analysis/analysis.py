@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from sequence_planner.checking.warning import ModelWarning
     from sequence_planner.synthesis.guards import Guard
 
+FINDINGS = "the findings"
 GUARDS = "the guards"
 COUNTING = "the number of states"  # the last that is computed, where it is not soon done
 

@@ -6,7 +6,7 @@ import contextlib
 from collections.abc import Iterator
 from dataclasses import replace
 
-from sequence_planner.analysis.analysis import COUNTING, GUARDS, Analysis
+from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.checks import Looked, conflicting, looked
 from sequence_planner.checking.connections import Connections
@@ -42,7 +42,7 @@ def analyses(
         yield found
         found = replace(found, warnings=(_unmet(supervision),))
     else:
-        found = replace(found, supervisor=supervisor(supervision), pending="the findings")
+        found = replace(found, supervisor=supervisor(supervision), pending=FINDINGS)
         yield found
         found = _counted(found, supervision, min(counting, _SOON))
         yield found

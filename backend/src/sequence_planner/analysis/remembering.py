@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final, TypeVar
 
 from sequence_planner.analysis.analysis import Analysis
-from sequence_planner.analysis.store import folder, key
+from sequence_planner.analysis.document import read_supervisor
+from sequence_planner.analysis.store import folder, kept, key
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.late_log import LateLog
@@ -107,8 +108,12 @@ def known_supervisor(automaton: Automaton) -> Supervisor | None:
     where = cache()
     if where is None:
         return None
-    analysis = remembered(where, automaton, Analysis)
-    return analysis.supervisor if analysis is not None else remembered(where, automaton, Supervisor)
+    found = remembered(where, automaton, Supervisor)
+    if found is None and (analysis := remembered(where, automaton, Analysis)) is not None:
+        found = analysis.supervisor
+    if found is None and (command := kept(automaton)) is not None and command.supervisor is not None:
+        found = read_supervisor(automaton, command.supervisor)
+    return found
 
 
 def remember_supervisor(automaton: Automaton, found: Supervisor) -> None:

@@ -120,11 +120,8 @@ def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Sup
 
     Raises `SynthesisError` if there is none.
     """
-    known = kept(automaton)
-    if known is not None and known.supervisor is not None:
-        return read_supervisor(automaton, known.supervisor)
-    if (remembered := known_supervisor(automaton)) is not None:
-        return remembered
+    if (known := known_supervisor(automaton)) is not None:
+        return known
     from sequence_planner.synthesis.supervision import synthesise  # noqa: PLC0415
 
     try:

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import structlog
 
-from sequence_planner.analysis.analysis import Analysis
+from sequence_planner.analysis.analysis import FINDINGS, Analysis
 from sequence_planner.analysis.document import AnalysisDocument, document_of, error_document
 from sequence_planner.analysis.process import SynthesisEndedError, TooLargeError, analysing
-from sequence_planner.analysis.remembering import remember, remembered
+from sequence_planner.analysis.remembering import known_supervisor, remember, remembered
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
@@ -251,11 +251,11 @@ def _why_no_plan(trouble: str | None, *, unusable: bool) -> str:
 async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) -> None:
     """Have all found that synthesis can find, as long as that takes no unreasonable time.
 
-    What an earlier life of the controller has left of it in `folder` is there at once.
+    What an earlier life of the controller has left of it in `folder`, or a command, is there at once.
     """
     try:
-        known = await asyncio.to_thread(remembered, folder, automaton, Analysis)
-        if known is not None and known.supervisor is not None:
+        known = await asyncio.to_thread(_known, automaton, folder)
+        if known is not None:
             preparation.take(document_of(automaton, known), known)
             if known.pending is None:
                 return
@@ -270,8 +270,18 @@ async def analyse(automaton: Automaton, preparation: Preparation, folder: Path) 
         preparation.end(ended)
     except TimeoutError:
         LOG.warning("not all was found of the station", within=ANALYSIS_DEADLINE)
-        late = f"the safe states could not be computed within {ANALYSIS_DEADLINE:g} s: let fewer variables bear on them"
+        late = f"the safe states could not be computed within {ANALYSIS_DEADLINE:g} s: let fewer variables bear on "
+        late += "them, or have `sequence-planner plan` find them with a longer --deadline before the next start"
         preparation.end(TooLargeError(late))
     except Exception as error:
         LOG.exception("synthesis failed")
         preparation.end(SynthesisEndedError(f"the safe states could not be computed ({type(error).__name__}: {error})"))
+
+
+def _known(automaton: Automaton, folder: Path) -> Analysis | None:
+    """All that an earlier life of the controller has left, or else the supervisor that a command has."""
+    known = remembered(folder, automaton, Analysis)
+    if known is not None and known.supervisor is not None:
+        return known
+    supervisor = known_supervisor(automaton)
+    return None if supervisor is None else Analysis(FINDINGS, supervisor)
