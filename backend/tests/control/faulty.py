@@ -73,7 +73,7 @@ class FaultyRig(Rig):
         goals = execution.pursued.of(execution.active & execution.pursued.goals.keys())
         circumstances = execution.circumstances
         return advisor().advise(
-            AdviceRequest(execution.state, goals, circumstances, stalled, self.last.values, deadline=60)
+            AdviceRequest(execution.state, goals, circumstances, stalled, last=self.last.values, deadline=60)
         )
 
     def _is_fresh(self, topic: str) -> bool:

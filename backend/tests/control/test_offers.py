@@ -24,6 +24,7 @@ from sequence_planner.control.offer_view import OfferView
 from sequence_planner.control.offers import Offers
 from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_commands import GivenValue, TakeErrand
+from sequence_planner.control.standing_still import StandingStill
 from sequence_planner.control.view import Mode
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.immutable import replace
@@ -70,7 +71,7 @@ class Desk:
         self.adviser, self.execution = adviser, execution
         doubting = Doubting(execution)
         corrections = Corrections(execution, adviser, Beliefs(execution), doubting)
-        self.offers = Offers(execution, adviser, corrections, doubting.impossible)
+        self.offers = Offers(execution, adviser, corrections, doubting.impossible, StandingStill(execution))
         self.seconds = 0.0
         self.at: Value = "home"
 

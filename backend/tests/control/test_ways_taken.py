@@ -11,8 +11,10 @@ from sequence_planner.automaton.structure import State
 from sequence_planner.automaton.tick import initial_state, record_activity, synchronise, update_operations
 from sequence_planner.control.alarming.of_plans import PlanAlarms
 from sequence_planner.control.errand import Errand, ErrandKind
+from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.standing_still import StandingStill
 from sequence_planner.control.who_can import WhoCan
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.immutable import replace
@@ -47,6 +49,13 @@ def standing() -> Taken:
 
 def take(taken: Taken, errand: Errand) -> None:
     taken.execution.take_errand(errand, Moment(taken.seconds, taken.seconds))
+
+
+def alarms_of(execution: Execution) -> PlanAlarms:
+    """The alarms of what it does."""
+    ready = prepare_station(MODELS / NAME)
+    feeds = Feeds(ready.pipelines, ready.registry)
+    return PlanAlarms(execution, feeds, StandingStill(execution), WhoCan(execution))
 
 
 def test_the_way_to_make_the_bolts_tight_comes_first_and_nobody_is_asked_to_say_they_are() -> None:
@@ -105,8 +114,7 @@ def test_what_is_proposed_after_a_fault_comes_to_its_end(name: str) -> None:
 def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_seconds() -> None:
     """The robot has to arrive before the second start, and does not."""
     tried, taken = station(NAME), standing()
-    ready = prepare_station(MODELS / NAME)
-    alarms = PlanAlarms(taken.execution, Feeds(ready.pipelines, ready.registry), lambda: False, WhoCan(taken.execution))
+    alarms = alarms_of(taken.execution)
     arrives = "robot.move_to_position(home).robot_arrives"
     to_home = "robot.move_to_position(home)"
     ticks = (PlanTick((), (TO_ABOVE,)), PlanTick((LEAVES,), ()), PlanTick((arrives,), (to_home,)))
@@ -120,7 +128,7 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     taken.tick((LEAVES,))
     assert causes(20) == [], "what runs is overdue by its own time-outs"
     taken = standing()
-    alarms = PlanAlarms(taken.execution, Feeds(ready.pipelines, ready.registry), lambda: False, WhoCan(taken.execution))
+    alarms = alarms_of(taken.execution)
     missing = Errand(ErrandKind.WAY_BACK, "home", Plan((PlanTick((), (to_home,)),), False, False), goal, by="Eva")
     take(taken, missing)
     assert taken.tick() == ()
@@ -128,7 +136,7 @@ def test_what_was_taken_and_does_not_start_says_why_and_is_an_alarm_after_five_s
     held = replace(missing, plan=Plan((PlanTick((), (TO_ABOVE,)),), False, False), into_safe=True, unsupervised=True)
     taken = standing()
     taken.execution.set_stepping(True)
-    alarms = PlanAlarms(taken.execution, Feeds(ready.pipelines, ready.registry), lambda: False, WhoCan(taken.execution))
+    alarms = alarms_of(taken.execution)
     take(taken, replace(held, goal=TRUE))
     assert taken.tick() == ()
     assert causes(4) == []

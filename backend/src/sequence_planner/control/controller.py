@@ -130,7 +130,7 @@ class Controller:
         self._questions = Questions(self.execution, self._outside, self._take, self._figures.answers)
         self._adviser = Adviser(automaton, supervisor)
         self._corrections = Corrections(self.execution, self._adviser, self._beliefs, self._doubting)
-        offers = Offers(self.execution, self._adviser, self._corrections, self._doubting.impossible)
+        offers = Offers(self.execution, self._adviser, self._corrections, self._doubting.impossible, self._alarms.still)
         around = Surroundings(feeds.heard_on, self._viewing.since, self._beliefs, lambda: self._viewing.guards)
         trials = Trials(self.execution, around, self.devices.real_devices)
         in_control = InControl(known.control)

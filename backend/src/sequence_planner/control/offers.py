@@ -65,7 +65,8 @@ class _Asked:
 class Offers:
     """Asks for offers about `execution`, and carries out those that are taken.
 
-    `impossible` says which values of estimates cannot go together with which of other variables.
+    `impossible` says which values of estimates cannot go together with which of other variables, and `still` which
+    devices do nothing: what alarms tell, nobody counts on.
     """
 
     def __init__(
@@ -74,13 +75,14 @@ class Offers:
         adviser: Adviser,
         corrections: CorrectionDesk,
         impossible: Callable[[], frozenset[Pairing]],
+        still: StandingStill,
     ) -> None:
         self._execution = execution
         self._adviser = adviser
         self._corrections = corrections
         self._impossible = impossible
         self._last_known = LastKnown(execution)
-        self._still = StandingStill(execution)
+        self._still = still
         self._kept: dict[str, _Kept] = {}
         self._life = secrets.token_hex(3)  # no offer is taken for one of an earlier life of the controller
         self._numbers = itertools.count(1)
@@ -97,6 +99,7 @@ class Offers:
             violated=violated_goals(execution),
             circumstances=execution.circumstances,
             stalled=self._stalled(),
+            explained=self._still.explained_effects(Moment.now().monotonic),
             last=self._last_known.values,
             impossible=self._impossible(),
             fixed=frozenset(execution.conduct.forces) | execution.conduct.answers.keys(),
@@ -232,7 +235,7 @@ class Offers:
             each.name for each in execution.conduct.service.values() if each.of is ServiceKind.ABILITY and not each.by
         }
         resources = frozenset(abilities[name].resource for name in late | given_up)
-        return stalled_effects(execution.automaton, execution.state, resources) | self._still.late(now)
+        return stalled_effects(execution.automaton, execution.state, resources) | self._still.stalled(now)
 
 
 def hopeful_goals(execution: Execution) -> Goals:

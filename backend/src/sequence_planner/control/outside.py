@@ -81,6 +81,12 @@ class Outside:
         return self._seen[1]
 
     @property
+    def certain(self) -> bool:
+        """Whether the state is outside whatever the unknown values are."""
+        situation = self.situation
+        return situation is not None and situation.certain
+
+    @property
     def answer(self) -> WayBackAnswer | str | None:
         """What is known of the way back from here, or why it cannot be computed; None while it is looked for."""
         if self._answer is None or self._answer[0] != self._key(self._execution.state):

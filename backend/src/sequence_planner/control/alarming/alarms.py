@@ -31,6 +31,7 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.standing_still import StandingStill
 from sequence_planner.control.who_can import Run, WhoCan, at_once
 
 Tell = Callable[[str, Mapping[str, JsonValue]], None]
@@ -60,7 +61,8 @@ class Alarms(StationAlarms):
         super().__init__(execution, outside, known, undone)
         self.who_can = WhoCan(execution, run)
         self._devices = DeviceAlarms(execution, feeds, network, commander, self.who_can)
-        self._plans = PlanAlarms(execution, feeds, lambda: bool(self._touched()), self.who_can)
+        self.still = StandingStill(execution, lambda: outside.certain)
+        self._plans = PlanAlarms(execution, feeds, self.still, self.who_can)
         self._following = Following(execution.automaton, self._touched)
         self._folding = Folding()
         self._lives = Lives(self._told)

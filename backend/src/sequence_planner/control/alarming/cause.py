@@ -15,7 +15,7 @@ class Cause:
 
     It is no alarm of its own but a part of another as long as one of those is there that it `follows` from. `past` is
     its `text` once it is over, `past_parts` are its parts then, `of` the resources whose devices fail with it, and
-    `about` the variables of which it is doubted what is believed.
+    `about` the variables of which it is doubted what is believed. A device that `waits` has nothing to do itself.
     """
 
     key: str
@@ -29,6 +29,7 @@ class Cause:
     past_parts: tuple[str, ...] = field(default=(), kw_only=True)
     of: frozenset[str] = field(default=frozenset(), kw_only=True)
     about: frozenset[str] = field(default=frozenset(), kw_only=True)
+    waits: bool = field(default=False, kw_only=True)
 
 
 def urgency(priority: Priority) -> int:

@@ -42,7 +42,7 @@ class Following:
             found = [UNSAFE] if unsafe and not cause.about.isdisjoint(self._touched()) else []
         elif cause.key in _PLANS:
             found = [each.key for each in others] + ([UNSAFE] if unsafe else [])
-        elif cause.key.startswith(LATE):
+        elif cause.waits:
             awaited = frozenset[str]().union(*(self._awaits.get(name, frozenset()) for name in cause.of))
             found = [each.key for each in others if each.of & awaited]
         else:

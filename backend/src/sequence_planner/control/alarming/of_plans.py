@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator
-from math import inf
+from collections.abc import Collection, Iterator
 
 from sequence_planner.automaton.structure import Ability
 from sequence_planner.control.alarm_view import Priority
@@ -27,23 +26,20 @@ from sequence_planner.expressions.syntax import variables
 from sequence_planner.planning.plan import PlanAnswer
 
 _STILL = "still:"
-_HURRY = 5.0  # seconds of patience with a device while the state is unsafe
 START_WITHIN = 5.0  # seconds in which the next start of what was taken begins, or it is said why not
 END_WITHIN = 30.0  # seconds in which it comes to its end once nothing of it is left to be started
 
 
 class PlanAlarms:
-    """Looks at what `execution` does; `feeds` say which resources tell a measured variable.
-
-    Where the state is `unsafe`, a device that is late for it is told soon: it is why.
+    """Looks at what `execution` does, and at which devices are `still`; `feeds` say which resources tell a measured
+    variable.
     """
 
-    def __init__(self, execution: Execution, feeds: Feeds, unsafe: Callable[[], bool], who_can: WhoCan) -> None:
+    def __init__(self, execution: Execution, feeds: Feeds, still: StandingStill, who_can: WhoCan) -> None:
         self._execution = execution
-        self._unsafe = unsafe
         self._told_still: frozenset[str] = frozenset()
         self._consequences = Consequences(execution, who_can)
-        self._still = StandingStill(execution)
+        self._still = still
         self._feeds = feeds
         self._tellers = {
             name: frozenset(feeds.resource_of(topic) for topic in topics) for name, topics in feeds.sources.items()
@@ -79,6 +75,7 @@ class PlanAlarms:
             if late is None or (ability.timeouts.replan and self._execution.conduct.executes_operations):
                 continue
             resource = automaton.resources[ability.resource]
+            others = self._failures(self._still.keeping(ability, monotonic))
             receives = f"Check that {resource} receives its commands and is ready."
             yield Cause(
                 f"{LATE}{ability.name}",
@@ -86,25 +83,25 @@ class PlanAlarms:
                 f"{ability.title} {late}",
                 self._consequences.waiting(self._consequences.held_up({ability.resource}), " until it does"),
                 receives if "begun" in late else f"Look after {resource}.",
-                follows=(*self._silences(ability), f"{_STILL}{ability.resource}"),
+                follows=(*self._silences(ability), f"{_STILL}{ability.resource}", *others),
                 past=f"{ability.title} {in_the_past(late)}",
                 of=frozenset({ability.resource}),
+                waits=not self._still.has_to_act(ability),
             )
 
     def _standing_still(self, monotonic: float) -> Iterator[Cause]:
         """Resources that do not do what they should, though nothing of them is overdue."""
-        automaton, state = self._execution.automaton, self._execution.state
+        automaton = self._execution.automaton
         running = [(step, automaton.abilities[step.ability]) for step in self._execution.plan.order.running]
         late = {ability.resource for step, ability in running if overdue(step, ability, monotonic)}
-        still = self._still.devices(monotonic, _HURRY if self._unsafe() else inf)
+        still = self._still.devices(monotonic)
         # What was told stays the alarm, whatever becomes late with it meanwhile.
         self._told_still = frozenset(name for name in still if name in self._told_still or name not in late)
         for name, unchanged in sorted(still.items()):
             if name not in self._told_still:
                 continue
             resource = automaton.resources[name]
-            known = {each: value for each in sorted(unchanged) if (value := state[each]) is not None}
-            says = listed(value_text(automaton, each, value) for each, value in known.items()) or "nothing"
+            says = self._says(unchanged)
             yield Cause(
                 f"{_STILL}{name}",
                 Priority.MEDIUM,
@@ -114,6 +111,29 @@ class PlanAlarms:
                 past=f"{resource} did not do what it should: it still said {says}",
                 of=frozenset({name}),
             )
+        for name, (unchanged, because) in sorted(self._still.explained(monotonic).items()):
+            resource, says = automaton.resources[name], self._says(unchanged)
+            yield Cause(
+                f"{_STILL}{name}",
+                Priority.MEDIUM,
+                f"{resource} says {says}, which does not go together with it",
+                self._consequences.waiting(self._consequences.held_up({name}), " until it does"),
+                f"Look after {listed(sorted(automaton.resources[each] for each in because))}.",
+                follows=self._failures(because),
+                past=f"{resource} said {says}, which did not go together with it",
+            )
+
+    def _says(self, names: Collection[str]) -> str:
+        """What is said of these variables."""
+        automaton, state = self._execution.automaton, self._execution.state
+        known = {each: value for each in sorted(names) if (value := state[each]) is not None}
+        return listed(value_text(automaton, each, value) for each, value in known.items()) or "nothing"
+
+    def _failures(self, resources: Collection[str]) -> tuple[str, ...]:
+        """The alarms by which it is told that devices of these resources do nothing."""
+        abilities, running = self._execution.automaton.abilities, self._execution.plan.order.running
+        late = [step.ability for step in running if abilities[step.ability].resource in resources]
+        return (*(f"{_STILL}{name}" for name in sorted(resources)), *(f"{LATE}{name}" for name in late))
 
     def _given_up(self) -> Iterator[Cause]:
         """Of each resource one: what it could not do, and is not asked for any more."""

@@ -66,10 +66,12 @@ class Advisor:
         budget = budget or Budget.seconds(request.deadline)
         here = self._situation(request)
         station = self._station(stalls(self._automaton, here.state, request.stalled))
-        consultation = Consultation(station, here, budget.part(_SHARE), request.violated)
+        awaited = written_by(self._automaton, request.stalled - request.explained)
+        consultation = Consultation(station, here, budget.part(_SHARE), request.violated, awaited)
 
         def search() -> Iterator[Offer]:
-            aside = only_written(self._automaton, request.stalled)
+            right = written_by(self._automaton, request.explained) - awaited
+            aside = only_written(self._automaton, request.stalled) | right
             if not here.goals and request.waiting:
                 acts = station.options.acts(here, request.last, request.fixed, aside)
                 begins = [*beginnings(consultation, self._changes, acts, request.waiting, request.impossible)]
@@ -78,8 +80,7 @@ class Advisor:
                     return
             yield from consultation.as_it_is()
             acts = [] if consultation.goes_on else station.options.acts(here, request.last, request.fixed, aside)
-            awaited = written_by(self._automaton, request.stalled)
-            fewest = FewestActs(consultation, self._changes, request.impossible, self._most, awaited)
+            fewest = FewestActs(consultation, self._changes, request.impossible, self._most)
             yield from fewest.likely(acts)
             yield from consultation.without_some()
             yield from consultation.by_errands()

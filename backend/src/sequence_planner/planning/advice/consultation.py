@@ -49,15 +49,24 @@ class Consultation:
     """Looks for offers from the situation `here`. `undecided` says that there may be more than were found.
 
     Goals that were `violated` are none of the situation's: only the reset of their operations makes them so again.
+    `awaited` are the variables that devices should have changed, and have not.
     """
 
-    def __init__(self, station: Station, here: Situation, budget: Budget, violated: Goals = ()) -> None:
+    def __init__(
+        self,
+        station: Station,
+        here: Situation,
+        budget: Budget,
+        violated: Goals = (),
+        awaited: frozenset[str] = frozenset(),
+    ) -> None:
         self.undecided = False
         self.goes_on = False  # as it is, towards all goals
         self.helped = False  # by an offer that reaches all goals, and does more than say so
         self.here = here
         self.prover = station.prover
-        self.making = Making(station.prover, here, violated)
+        self.awaited = awaited
+        self.making = Making(station.prover, here, violated, awaited)
         self._violated = violated
         self.budget = budget
         self._ways = station.ways

@@ -10,7 +10,7 @@ from sequence_planner.immutable import Immutable
 from sequence_planner.planning.advice.changes import MOST_ACTS, Acts, Changes, is_possible, kind_of, returns, sets
 from sequence_planner.planning.advice.consultation import Consultation
 from sequence_planner.planning.advice.offer import Offer, OfferKind
-from sequence_planner.planning.advice.options import LIKELY, Act, ActKind
+from sequence_planner.planning.advice.options import LIKELY, PASSING, Act, ActKind
 from sequence_planner.planning.advice.request import Pairing
 from sequence_planner.planning.advice.situation import Situation
 from sequence_planner.planning.plan import Plan
@@ -41,10 +41,15 @@ def _way(acts: Acts) -> _Way:
     return kind_of(acts), returns(acts)
 
 
+def _passes(acts: Acts) -> bool:
+    return any(act.rank == PASSING for act in acts)
+
+
 class FewestActs:
     """Looks for offers by acts, in the order of their number. Corrections alone, acts at devices alone and both
     together, each with and without a resource that comes back, are looked for until some are found; those that only
-    say that work is done do not count.
+    say that work is done do not count. Where a device does nothing and an act that helps it is enough, only what is
+    plausible is looked for beside it; and what would not stay where nothing else helps.
     """
 
     def __init__(
@@ -53,14 +58,12 @@ class FewestActs:
         changes: Changes,
         impossible: frozenset[Pairing],
         most: int = MOST_OFFERS,
-        awaited: frozenset[str] = frozenset(),
     ) -> None:
-        """`awaited` are the variables that devices should have changed, and have not."""
         self._consultation = consultation
         self._changes = changes
         self._impossible = impossible
         self._most = most
-        self._awaited = awaited
+        self._repaired = False  # by an act, where a device is known to do nothing
         self._enough: set[_Way] = set()
         self._found: list[frozenset[Act]] = []
         self._number: Counter[_Way] = Counter()
@@ -88,6 +91,7 @@ class FewestActs:
         for each in sets(acts, size):
             kind = kind_of(each)
             needless = _way(each) in self._enough or (kind is OfferKind.COMBINED and consultation.helped)
+            needless = needless or (self._repaired and self._is_elsewhere(each)) or self._is_passing(each)
             if needless or any(found.issubset(each) for found in self._found):
                 continue
             consultation.budget.require()
@@ -106,12 +110,12 @@ class FewestActs:
             knowing = prover.counting if self._helps(each) else prover
             if not prover.is_safe(each.after.state) or knowing.is_refuted(task):
                 dead.append(each)
-            elif consultation.here.goals and not task.goals:
+            elif consultation.here.goals and not task.goals and not _passes(each.acts):
                 yield self._offer(each, consultation.find(task).plan)
             else:
                 planned.append(each)
         for each in planned:
-            if each.way in self._enough or self._is_given(each):
+            if each.way in self._enough or self._is_given(each) or self._is_passing(each.acts):
                 continue
             share, last, helped = (_SECOND if late is None else _FIRST), late is None, self._helps(each)
             finding = consultation.find(each.after.production(), share, last=last, helped=helped)
@@ -125,13 +129,21 @@ class FewestActs:
     def _helps(self, each: _Changed) -> bool:
         """Whether a person has done what a device should have done by itself."""
         acts = (act for act in each.acts if act.kind is ActKind.DEVICE)
-        return any(name in self._awaited for act in acts for name, _ in act.values)
+        return any(name in self._consultation.awaited for act in acts for name, _ in act.values)
+
+    def _is_elsewhere(self, acts: Acts) -> bool:
+        return len(acts) > 1 or any(act.kind is ActKind.DEVICE and act.rank > LIKELY for act in acts)
+
+    def _is_passing(self, acts: Acts) -> bool:
+        """Whether it would not stay, and there is something that does."""
+        return _passes(acts) and self._number[_way(acts)] > 0
 
     def _offer(self, each: _Changed, plan: Plan | None) -> Offer:
         self._found.append(frozenset(each.acts))
         offer = self._consultation.making.offer(each.kind, each.after, plan, each.acts)
         if not offer.only_if_checked:
             self._consultation.helped = True
+            self._repaired = self._repaired or self._helps(each)
             self._number[each.way] += 1
             if self._number[each.way] >= self._most:
                 self._enough.add(each.way)

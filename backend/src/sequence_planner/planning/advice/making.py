@@ -26,12 +26,17 @@ from sequence_planner.planning.plan import Goal, Plan, PlanTick
 
 
 class Making:
-    """Makes offers for a station that is in the situation `here`; `violated` goals are reached only after a reset."""
+    """Makes offers for a station that is in the situation `here`; `violated` goals are reached only after a reset, and
+    devices should have changed the variables that are `awaited`.
+    """
 
-    def __init__(self, prover: Prover, here: Situation, violated: Goals = ()) -> None:
+    def __init__(
+        self, prover: Prover, here: Situation, violated: Goals = (), awaited: frozenset[str] = frozenset()
+    ) -> None:
         self._prover = prover
         self._automaton = prover.automaton
         self._here = here
+        self._awaited = awaited
         self._violated = tuple(goal.name for goal in violated)
         self._goals = (*here.goals, *violated)
 
@@ -65,6 +70,7 @@ class Making:
         effort = Effort(
             changes=len(corrections),
             physical=sum(act.kind is ActKind.DEVICE for act in acts),
+            elsewhere=sum(act.kind is ActKind.DEVICE and not self._helps(act) for act in acts),
             returns=sum(act.kind in (ActKind.RETURN, ActKind.SERVICE) for act in acts),
             starts=0 if plan is None else len(plan.starts),
             seconds=expected_seconds(self._automaton, ticks),
@@ -95,6 +101,10 @@ class Making:
             records=self.records(changed),
             into_safe=errand is not None and errand.into_safe,
         )
+
+    def _helps(self, act: Act) -> bool:
+        """Whether it is done where something is wrong, as far as that is known."""
+        return not self._awaited or any(name in self._awaited for name, _ in act.values)
 
     def restarts(self, ticks: Iterable[PlanTick]) -> bool:
         """Whether restart abilities start."""

@@ -16,6 +16,7 @@ from sequence_planner.planning.reasons.diagnosis import Diagnosis
 WEIGHTS = {
     "changes": 30.0,  # an estimate that a person looks up at the station and corrects
     "physical": 60.0,  # something that a person does at a device
+    "elsewhere": 120.0,  # the same, where another device is known to do nothing
     "returns": 90.0,  # a resource that a person brings back, or an ability put back into service
     "starts": 2.0,  # a start in restart mode, which a person has confirmed and watches
     "unsupervised": 60.0,  # starts outside the safe states
@@ -50,6 +51,7 @@ class Effort(Immutable):
 
     changes: int = 0
     physical: int = 0  # what a person does at devices; one such act can change several measured variables
+    elsewhere: int = 0  # of these acts, where another device should be helped
     returns: int = 0
     starts: int = 0  # of the errand
     seconds: float = 0.0

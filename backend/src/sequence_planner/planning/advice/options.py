@@ -1,6 +1,7 @@
 """What a person could change: estimates that are wrong, what stands at a device, and what is out of service.
 
-The more plausible an act is, the lower its `rank`: most of all, what a device should have done by itself.
+The more plausible an act is, the lower its `rank`: most of all, what a device should have done by itself, and least of
+all, what would not stay: that a robot is on its way is nothing to see to, as it arrives by itself then.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from sequence_planner.expressions.types import Value, contains
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.advice.situation import Situation
 
-_HAPPENS, _EXPECTED, _INITIAL, _CAN_BE, _ESTIMATED, _UNLIKELY = range(6)
+_HAPPENS, _EXPECTED, _INITIAL, _CAN_BE, _ESTIMATED, _UNLIKELY, PASSING = range(7)
 LIKELY = _EXPECTED  # acts of this rank, or a lower one, are tried before anything that takes long
 
 
@@ -82,7 +83,18 @@ class Options:
                 alone = frozenset({(name, value)})
                 together.setdefault(alone, _INITIAL if value == declared.initial and not together else _UNLIKELY)
                 for values, rank in together.items():
+                    rank = PASSING if self._passes(dict(values), here.state) else rank
                     yield Act(ActKind.DEVICE, name, tuple(sorted(values, key=str)), rank)
+
+    def _passes(self, values: dict[str, Value], state: State) -> bool:
+        """Whether devices change one of the values by themselves then."""
+        after = {**state, **values}
+        for effect, changed in self._effects:
+            if not effect.fault and not changed.isdisjoint(values):
+                written = effect_writes(effect, after) or {}
+                if any(written.get(name, value) != value for name, value in values.items()):
+                    return True
+        return False
 
     def _touches(self, names: frozenset[str], resources: frozenset[str]) -> bool:
         return any(self._automaton.variables[name].resource in resources for name in names)

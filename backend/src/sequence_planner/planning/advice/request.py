@@ -18,7 +18,8 @@ class AdviceRequest(Immutable):
     """How to get back to work on `goals`, those of the active operations, until `deadline` seconds have passed.
 
     The advisor decides itself where restart abilities may start. Effects that are `stalled` should have happened by
-    now, and are not counted on as long as nothing changes for them. `last` has what unknown measured variables were
+    now, and are not counted on as long as nothing changes for them; those that are `explained` would not have to, had
+    the others. `last` has what unknown measured variables were
     when they were known last. The formulas of `violated` goals were, and their operations must be reset first. No
     correction or physical change makes an `impossible` pair of values, and none is one of a `fixed` variable. `waiting`
     are the goals of operations that become active as soon as their preconditions hold.
@@ -28,6 +29,7 @@ class AdviceRequest(Immutable):
     goals: Goals
     circumstances: Circumstances = ORDINARY
     stalled: frozenset[str] = frozenset()
+    explained: frozenset[str] = frozenset()
     last: Mapping[str, Value] = {}
     impossible: frozenset[Pairing] = frozenset()
     fixed: frozenset[str] = frozenset()

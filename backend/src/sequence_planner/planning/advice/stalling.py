@@ -65,7 +65,9 @@ def only_written(automaton: Automaton, names: frozenset[str]) -> frozenset[str]:
 
 
 def written_by(automaton: Automaton, names: frozenset[str]) -> frozenset[str]:
-    """The variables that these effects should have changed: whoever changes one has helped their device."""
+    """The variables that these effects should have changed: whoever changes one has helped their device, if it is one
+    that is to blame.
+    """
     return frozenset(target(action) for each in automaton.effects if each.name in names for action in each.actions)
 
 
