@@ -42,6 +42,12 @@ def possible(given_: Problem) -> bool:
     return not goals or can_reach(given_.automaton, given_.supervisor, [given_.state], goals, given_.circumstances)
 
 
+def restates(given_: Problem, changes: frozenset[Change]) -> bool:
+    """Whether the changes only say that the goals are reached."""
+    after = changed(given_, tuple(changes))
+    return not missing(after.goals, after.state)
+
+
 def by_trying(given_: Problem, size: int) -> set[frozenset[Change]]:
     """All sets of so many changes after which there is a plan."""
     options: list[list[Change]] = [[Change(resource, None)] for resource in sorted(given_.circumstances.offline)]
@@ -58,10 +64,10 @@ def corrects(given_: Problem) -> None:
     """All corrections of the fewest changes are found, with plans that replay."""
     task = Task(given_.state, given_.goals, given_.circumstances)
     found = corrections(given_.automaton, given_.supervisor, task, Budget.seconds(60), most_changes=2, most_found=1000)
-    expected = by_trying(given_, 1) or by_trying(given_, 2)
+    every = [by_trying(given_, size) for size in (1, 2)]
+    helping = [{each for each in some if not restates(given_, each)} for some in every]
+    expected = helping[0] or helping[1] or every[0] or every[1]
     assert {frozenset(each.changes) for each in found} == expected
-    at_once = [not each.plan.ticks for each in found]
-    assert at_once == sorted(at_once)  # what only restates the goals comes last
     for each in found:
         after = changed(given_, each.changes)
         replay = Replay(after.automaton, after.supervisor, after.circumstances)

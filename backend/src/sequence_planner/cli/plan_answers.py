@@ -68,8 +68,10 @@ def because(diagnosis: Diagnosis | None) -> Iterator[str]:
     if reason is None:
         yield "why could not be found in time: allow more with --deadline"
         return
-    yield "as long as all of these stay as they are" if reason.minimal else "as long as these stay as they are"
+    yield "as long as all of these stay as they are"
     yield from (f"      {member_text(member)}" for member in reason.members)
+    if not reason.minimal:
+        yield "some of them may be needless: which was not found out in time; allow more with --deadline"
     if diagnosis.corrections:
         yield "there would be a plan again with"
         yield from (f"      {correction_text(correction)}" for correction in diagnosis.corrections)

@@ -1,4 +1,8 @@
-"""The name most like a word: what `difflib.get_close_matches` finds, in less time among thousands of names."""
+"""The name most like a word: what `difflib.get_close_matches` finds, in less time among thousands of names.
+
+Whoever writes `tighten_bolt_pair` leaves out which pair, and whoever writes `pose` of what. So a word is compared with
+a name as a whole and, where it has no parameter or owner itself, with the name without these.
+"""
 
 from __future__ import annotations
 
@@ -9,15 +13,46 @@ from difflib import SequenceMatcher
 from functools import lru_cache
 
 # What is known of a list of names is kept for the next questions about it; a list is that of a station.
+_OWNERS, _PARAMETERS = "./", "(["  # what stands behind an owner, and before a parameter
 _LISTS = 4
 _WORDS = 64
 
 
 def nearest(word: str, candidates: Iterable[str], cutoff: float) -> tuple[float, str] | None:
     """The one of `candidates` most like `word`, with how like it is, from `cutoff` to 1."""
+    names = list(dict.fromkeys(candidates))
+    whole = _most_like(word, names, cutoff)
+    parts: dict[str, str] = {}  # each with the first name that it is a part of
+    for name in names:
+        for each in _parts(word, name):
+            parts.setdefault(each, name)
+    part = _most_like(word, parts, cutoff if whole is None else whole[0])
+    if part is None or (whole is not None and whole[0] >= part[0]):
+        return whole
+    return part[0], parts[part[1]]
+
+
+def _parts(word: str, name: str) -> list[str]:
+    """What the name is without the parameters, and without the owner, that the word does not have either."""
+    head = name if any(each in word for each in _PARAMETERS) else name[: _first(name, _PARAMETERS)]
+    bare = head if any(each in word for each in _OWNERS) else head[_last(head, _OWNERS) + 1 :]
+    return [part for part in (head, bare) if part and part != name]
+
+
+def _first(name: str, marks: str) -> int:
+    return min((at for mark in marks if (at := name.find(mark)) > 0), default=len(name))
+
+
+def _last(name: str, marks: str) -> int:
+    """Of what stands before parameters: those may be values with owners of their own."""
+    end = _first(name, _PARAMETERS)
+    return max(name.rfind(mark, 0, end) for mark in marks)
+
+
+def _most_like(word: str, candidates: Iterable[str], cutoff: float) -> tuple[float, str] | None:
     letters = list(Counter(word).items())
     bounds: list[tuple[float, str]] = []
-    for candidate in dict.fromkeys(candidates):
+    for candidate in candidates:
         total = len(word) + len(candidate)
         if not total or 2.0 * min(len(word), len(candidate)) / total < cutoff:
             continue

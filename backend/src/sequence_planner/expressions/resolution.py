@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
+from operator import itemgetter
 
 from sequence_planner.expressions.lexer import KEYWORDS, PREFIX_LETTERS
 from sequence_planner.expressions.likeness import beginning_with, nearest, nearest_of
@@ -145,8 +146,9 @@ def suggestion(word: str, candidates: Iterable[str], likeness: float = 0.5) -> s
 
 
 def _said(*near: tuple[float, str] | None) -> str:
+    """The one that is most like it, the first of those that are equally."""
     found = [each for each in near if each is not None]
-    return f"; did you mean `{max(found)[1]}`?" if found else ""
+    return f"; did you mean `{max(found, key=itemgetter(0))[1]}`?" if found else ""
 
 
 def _truth(expression: Expression, scope: Scope) -> Expression:

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
-import difflib
 from collections.abc import Iterable
 from pathlib import Path
+
+from sequence_planner.expressions import likeness
+
+_LIKENESS = 0.6
 
 
 class MessageDefinitionError(Exception):
@@ -56,9 +59,8 @@ class MalformedMessageError(ValueError):
 def nearest(name: str, known: Iterable[str]) -> str | None:
     """Return the name of `known` closest to `name`, or None when none is close."""
     candidates = sorted(known)
-    matches = difflib.get_close_matches(name, candidates, n=1)
-    if matches:
-        return matches[0]
+    if (found := likeness.nearest(name, candidates, _LIKENESS)) is not None:
+        return found[1]
     # `String`, `std_msgs/String` and `std_msg/msg/String` all mean the same to their author.
     tail = name.rsplit("/", 1)[-1]
     same_tail = [candidate for candidate in candidates if candidate.rsplit("/", 1)[-1] == tail]

@@ -48,8 +48,8 @@ def _passes(acts: Acts) -> bool:
 class FewestActs:
     """Looks for offers by acts, in the order of their number. Corrections alone, acts at devices alone and both
     together, each with and without a resource that comes back, are looked for until some are found; those that only
-    say that work is done do not count. Where a device does nothing and an act that helps it is enough, only what is
-    plausible is looked for beside it; and what would not stay where nothing else helps.
+    say that work is done do not count. Where it is enough to help a device that does nothing, or to bring a resource
+    back, only what is plausible is looked for at other devices; and what would not stay where nothing else helps.
     """
 
     def __init__(
@@ -63,7 +63,7 @@ class FewestActs:
         self._changes = changes
         self._impossible = impossible
         self._most = most
-        self._repaired = False  # by an act, where a device is known to do nothing
+        self._repaired = False  # what is known to be wrong, by one of the acts that were offered
         self._enough: set[_Way] = set()
         self._found: list[frozenset[Act]] = []
         self._number: Counter[_Way] = Counter()
@@ -132,7 +132,8 @@ class FewestActs:
         return any(name in self._consultation.awaited for act in acts for name, _ in act.values)
 
     def _is_elsewhere(self, acts: Acts) -> bool:
-        return len(acts) > 1 or any(act.kind is ActKind.DEVICE and act.rank > LIKELY for act in acts)
+        """Whether it is done at devices of which nothing is known to be wrong, nor about to happen."""
+        return any(act.kind is ActKind.DEVICE and (act.rank > LIKELY or len(acts) > 1) for act in acts)
 
     def _is_passing(self, acts: Acts) -> bool:
         """Whether it would not stay, and there is something that does."""
@@ -143,7 +144,7 @@ class FewestActs:
         offer = self._consultation.making.offer(each.kind, each.after, plan, each.acts)
         if not offer.only_if_checked:
             self._consultation.helped = True
-            self._repaired = self._repaired or self._helps(each)
+            self._repaired = self._repaired or self._helps(each) or returns(each.acts)
             self._number[each.way] += 1
             if self._number[each.way] >= self._most:
                 self._enough.add(each.way)

@@ -5,6 +5,7 @@ need be different.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from contextlib import suppress
 from itertools import combinations, product
 
 from sequence_planner.automaton.state_set import Supervisor
@@ -24,6 +25,7 @@ from sequence_planner.planning.replaying.tightening import tightened
 
 MOST_CHANGES = 2
 MOST_FOUND = 5
+_NOTHING_TO_DO = Plan((), minimal_ticks=True, minimal_starts=True)
 
 
 class Change(Immutable):
@@ -40,7 +42,7 @@ class Change(Immutable):
 class Correction(Immutable):
     """With these changes there is a plan from a safe state, such as `plan`, which need not be the shortest.
 
-    It has no ticks where the changes alone are what the goals ask for.
+    It has no ticks where the changes alone say that the goals are reached.
     """
 
     changes: tuple[Change, ...]
@@ -57,8 +59,9 @@ def corrections(
 ) -> tuple[Correction, ...]:
     """Corrections of the fewest changes, of which there are at most `most_changes`, and up to `most_found` of these.
 
-    It is proven that no fewer changes bring a plan back. Those that do what the goals ask for by themselves come last.
-    What is unknown stays unknown. When the budget is spent, what has been found of the fewest changes.
+    It is proven that no fewer changes bring a plan back. Those that only say that the goals are reached are left out,
+    unless there is no other. What is unknown stays unknown. When the budget is spent, what has been found of the fewest
+    changes.
     """
     return tuple(_Corrections(automaton, supervisor, task, budget, most_changes).found(most_found))
 
@@ -79,35 +82,31 @@ class _Corrections:
 
     def found(self, most: int) -> Iterator[Correction]:
         """Those of the fewest changes."""
-        try:
+        restating: list[tuple[Change, ...]] = []
+        number = 0
+        with suppress(SpentError):
             for size in range(1, self._most_changes + 1):
-                some = False
-                for changes, task in self._in_order(size):
-                    if (plan := self._plan(task)) is not None:
-                        some = True
+                for changes, task in self._safe(size):
+                    if not task.goals:
+                        restating.append(changes)
+                    elif (plan := self._plan(task)) is not None:
                         yield Correction(changes, plan)
-                        most -= 1
-                        if most == 0:
+                        number += 1
+                        if number == most:
                             return
-                if some:
+                if number:
                     return
-        except SpentError:
-            return
+        if not number:
+            fewest = [each for each in restating if len(each) == len(restating[0])]
+            yield from (Correction(changes, _NOTHING_TO_DO) for changes in fewest[:most])
 
-    def _in_order(self, size: int) -> Iterator[tuple[tuple[Change, ...], Task]]:
-        """All sets of so many changes that lead into a safe state, with what is to be done then: at last those that
-        say no more than the goals do, after which there is nothing to do. Raises `SpentError`.
-        """
-        restating: list[tuple[tuple[Change, ...], Task]] = []
+    def _safe(self, size: int) -> Iterator[tuple[tuple[Change, ...], Task]]:
+        """All sets of so many changes that lead into a safe state, with what is left to do. Raises `SpentError`."""
         for changes in self._candidates(size):
             self._budget.require()
             task = self._changed(changes)
             if self._supervisor.safe.includes(task.state):
-                if task.goals:
-                    yield changes, task
-                else:
-                    restating.append((changes, task))
-        yield from restating
+                yield changes, task
 
     def _candidates(self, size: int) -> Iterator[tuple[Change, ...]]:
         """All sets of so many changes."""
@@ -130,8 +129,6 @@ class _Corrections:
 
     def _plan(self, task: Task) -> Plan | None:
         """A plan, if there is one. Raises `SpentError`."""
-        if not task.goals:
-            return Plan((), minimal_ticks=True, minimal_starts=True)
         if any(_covers(refuted, proof, task) for refuted, proof in self._refuted):
             return None
         finding = self._ready.answer(task, self._budget)

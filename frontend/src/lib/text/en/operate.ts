@@ -61,6 +61,7 @@ export const operate = {
 		answeredBy: (time: string, engine: string): string => `answered in ${time} by ${engine}`,
 		noneWhile: (several: boolean): string =>
 			`No plan as long as ${several ? 'all of these stay as they are' : 'this stays as it is'}:`,
+		perhapsNeedless: 'Some of it may be needless: there was no time to find out.',
 		thereWouldBe: (several: boolean): string =>
 			`There would be a plan again with ${several ? 'one of these' : 'this'}:`
 	},

@@ -61,6 +61,7 @@ export const operate: Text['operate'] = {
 		answered: (time) => `svar på ${time}`,
 		answeredBy: (time, engine) => `svar på ${time} av ${engine}`,
 		noneWhile: (several) => `Ingen plan så länge ${several ? 'allt detta förblir' : 'detta förblir'} som det är:`,
+		perhapsNeedless: 'En del av det kan vara onödigt: det fanns inte tid att ta reda på det.',
 		thereWouldBe: (several) => `Det skulle finnas en plan igen med ${several ? 'något av detta' : 'detta'}:`
 	},
 	why: {
