@@ -12,7 +12,8 @@ from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.standing_still import StandingStill
 from sequence_planner.control.who_can import WhoCan
-from sequence_planner.expressions.types import EnumerationType, Value
+from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
+from sequence_planner.immutable import replace
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervision import synthesise
 
@@ -83,3 +84,71 @@ def test_what_is_not_heard_or_was_told_nothing_yet_is_not_waited_for() -> None:
     tick(execution, "between", 100.0)
     assert still.late(104.9) == {}
     assert still.late(105.1).keys() == {"go.arrives"}
+
+
+def shared() -> tuple[Execution, StandingStill]:
+    """A cart that has a minute for its way, and a gripper with five seconds, which feels what is where the cart is."""
+    cart = automaton(
+        {
+            "go": Does(("target := work",), "at == home", executing="at != target", finish="at == work"),
+            "grip": Does(("closed := true",), "felt", executing="closed and not shut", finish="closed and shut"),
+        },
+        measured={"at": (PLACES, "home"), "felt": (BOOLEAN, False), "shut": (BOOLEAN, False)},
+        output={"target": (PLACES, "home"), "closed": (BOOLEAN, False)},
+        effects={
+            "arrives": ("at != target", ("at := target",)),
+            "feels": ("at == work and not felt", ("felt := true",)),
+            "loses": ("at != work and felt", ("felt := false",)),
+            "shuts": ("closed and not shut", ("shut := true",)),
+        },
+    )
+    of = {"go": "cart", "arrives": "cart", "at": "cart"}
+    limits = {"go": Timeouts(finish=60), "grip": Timeouts(finish=5)}
+    abilities = {
+        name: replace(each, resource=of.get(name, "gripper"), timeouts=limits[name])
+        for name, each in cart.abilities.items()
+    }
+    cart = replace(
+        cart,
+        resources={"cart": "Cart", "gripper": "Gripper"},
+        abilities=abilities,
+        effects=tuple(replace(each, resource=of.get(each.name, "gripper")) for each in cart.effects),
+        variables={n: replace(each, resource=of.get(n, "gripper")) for n, each in cart.variables.items()},
+    )
+    execution = Execution(cart, synthesise(cart))
+    return execution, StandingStill(execution)
+
+
+def shared_tick(execution: Execution, at: Value, felt: bool, seconds: float) -> None:
+    execution.tick({"at": at, "felt": felt, "shut": False}, Moment(1000.0 + seconds, seconds))
+
+
+def test_the_device_is_to_blame_that_should_have_moved_first_however_much_time_it_had() -> None:
+    """The cart says for ever that it is on its way; the gripper feels already what is at work."""
+    execution, still = shared()
+    execution.start_production()
+    shared_tick(execution, "home", False, 0.0)
+    execution.state = {**execution.state, "target": "work"}
+    shared_tick(execution, "between", False, 1.0)
+    shared_tick(execution, "between", True, 3.0)
+    shared_tick(execution, "between", True, 7.9)
+    assert still.late(7.9) == {}
+    shared_tick(execution, "between", True, 8.1)
+    assert still.late(8.1) == {"arrives": {"loses"}}
+    assert still.stalled(8.1) == {"arrives", "loses"}
+    assert still.explained_effects(8.1) == {"loses"}
+    assert still.devices(8.1) == {"cart": {"at"}}
+    assert still.explained(8.1) == {"gripper": (frozenset({"felt"}), frozenset({"cart"}))}
+
+
+def test_a_device_that_is_late_by_itself_is_to_blame_itself() -> None:
+    """The cart has arrived, and the gripper feels nothing; then the cart is sent away again, and is soon late too."""
+    execution, still = shared()
+    execution.start_production()
+    execution.state = {**execution.state, "target": "work"}
+    shared_tick(execution, "work", False, 0.0)
+    shared_tick(execution, "work", False, 4.0)
+    execution.state = {**execution.state, "target": "home"}
+    shared_tick(execution, "work", False, 4.5)
+    assert still.late(6.0) == {"feels": frozenset()}
+    assert still.devices(6.0) == {"gripper": {"felt"}}

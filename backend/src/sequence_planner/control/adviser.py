@@ -38,6 +38,10 @@ class Adviser:
         """How often the process was replaced."""
         return self._process.replaced
 
+    def expect(self) -> None:
+        """Get ready: something has happened about which people will ask soon."""
+        self._process.begin()
+
     def close(self) -> None:
         """End the process."""
         self._process.close()

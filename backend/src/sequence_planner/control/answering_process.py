@@ -104,6 +104,11 @@ class AnsweringProcess(Generic[Model, Request, Answer]):
         if self._ready:
             self._limit(request.deadline + GRACE)
 
+    def begin(self) -> None:
+        """Begin the process, as it will be asked soon. It rests again where it is not."""
+        if self._rests:
+            self._start()
+
     def call_off(self) -> None:
         """Nobody waits for an answer any more: none is heard, and the next question may be asked at once."""
         if self._asked is None:

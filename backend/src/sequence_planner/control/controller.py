@@ -21,6 +21,7 @@ from pydantic import JsonValue
 from sequence_planner.analysis.document import AnalysisDocument
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.control.adviser import Adviser
+from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.alarming.alarms import Alarms
 from sequence_planner.control.alarming.keeping import KIND as ASIDE
 from sequence_planner.control.alarming.keeping import aside_again
@@ -299,6 +300,8 @@ class Controller:
             self._wake.set()
 
     def _note(self, kind: str, content: Mapping[str, JsonValue]) -> None:
+        if kind == "alarm" and content["event"] == "came" and content["priority"] != Priority.LOW:
+            self._adviser.expect()
         self._recorder.note(kind, time.time(), content, lasts=kind in (ASIDE, BELIEFS))
 
     def _unjournalled(self) -> str | None:

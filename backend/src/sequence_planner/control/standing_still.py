@@ -119,7 +119,7 @@ class StandingStill:
 
     def _slow(self, monotonic: float) -> frozenset[str]:
         """The effects that take longer than they ever do."""
-        return self._for_longer(monotonic, lambda effect: 2 * effect.longest + _SAYS_WITHIN)
+        return self._for_longer(monotonic, lambda effect: effect.longest + _SAYS_WITHIN)
 
     def _resource(self, name: str) -> str:
         return self._effects[name].resource

@@ -24,6 +24,7 @@ from sequence_planner.planning.way_back import WaysBack
 
 # Of the time that is left, for one plan, for one without some goals, and for one way into the safe states.
 _PLAN, _PART, _WAY = 0.3, 0.15, 0.4
+_BESIDE = 0.3  # of what is left once something helps, for all that may be offered beside it
 
 
 class Station(Immutable):
@@ -70,9 +71,15 @@ class Consultation:
         self._violated = violated
         self.budget = budget
         self._ways = station.ways
-        self._errands = Errands(station.prover, station.ways, self.find, budget)
+        self._errands = Errands(station.prover, station.ways, self.find, lambda: self.budget)
         self._dead_ends: list[_DeadEnd] = []
         self._operations = station.prover.automaton.operations
+
+    def has_helped(self) -> None:
+        """Take note of an offer that reaches all goals, and does more than say so: who waits for it is told soon."""
+        if not self.helped:
+            self.helped = True
+            self.budget = self.budget.part(_BESIDE)
 
     def find(self, task: Task, share: float = _PLAN, *, last: bool = True, helped: bool = False) -> Finding:
         """A plan. What is not decided is asked again, unless this is the `last` time.
@@ -94,7 +101,8 @@ class Consultation:
             return
         plan = self.find(here.production()).plan
         if plan is not None:
-            self.goes_on = self.helped = True
+            self.goes_on = True
+            self.has_helped()
             yield self.making.offer(OfferKind.REPLAN, here, plan)
 
     def without_some(self) -> Iterator[Offer]:
@@ -156,7 +164,7 @@ class Consultation:
                 if then is None:
                     self._dead_ends.append(_DeadEnd(kind, errand.end, acts, errand, operation))
                 else:
-                    self.helped = True
+                    self.has_helped()
                     yield self.making.offer(kind, errand.end, then, acts, errand, operation)
 
     def without_goals(self) -> Iterator[Offer]:

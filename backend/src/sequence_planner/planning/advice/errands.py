@@ -42,9 +42,9 @@ class Errand(Immutable):
 
 
 class Errands:
-    """Makes errands by plans that `find` finds, and ways into the safe states."""
+    """Makes errands by plans that `find` finds, and ways into the safe states, within what `budget` is by then."""
 
-    def __init__(self, prover: Prover, ways: WaysBack, find: Find, budget: Budget) -> None:
+    def __init__(self, prover: Prover, ways: WaysBack, find: Find, budget: Callable[[], Budget]) -> None:
         self._prover = prover
         self._ways = ways
         self._find = find
@@ -99,7 +99,7 @@ class Errands:
 
     def into_safe(self, here: Situation, share: float) -> Errand | None:
         """The shortest way into the safe states, by written guards. Raises `SearchTimeoutError`."""
-        way = self._ways.way(here.state, here.circumstances, min(here.longest, DEPTH), self._budget.part(share))
+        way = self._ways.way(here.state, here.circumstances, min(here.longest, DEPTH), self._budget().part(share))
         if way is None:
             return None
         # The goal of an errand is looked at after step 3.
@@ -114,7 +114,7 @@ class Errands:
 
     def _early(self, task: Task, plan: Plan) -> Plan:
         """Somebody watches an errand, and waits for it."""
-        return self._prover.tightened(task, plan, self._budget.part(_TIGHTENING)) if plan.starts else plan
+        return self._prover.tightened(task, plan, self._budget().part(_TIGHTENING)) if plan.starts else plan
 
     def _errand(self, here: Situation, ticks: tuple[PlanTick, ...], goal: Expression) -> Errand | None:
         if not ticks:

@@ -104,7 +104,8 @@ class Making:
 
     def _helps(self, act: Act) -> bool:
         """Whether it is done where something is wrong, as far as that is known."""
-        return not self._awaited or any(name in self._awaited for name, _ in act.values)
+        away = self._here.circumstances.offline
+        return not (self._awaited or away) or any(name in self._awaited for name, _ in act.values)
 
     def restarts(self, ticks: Iterable[PlanTick]) -> bool:
         """Whether restart abilities start."""

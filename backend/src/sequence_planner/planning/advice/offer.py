@@ -16,7 +16,6 @@ from sequence_planner.planning.reasons.diagnosis import Diagnosis
 WEIGHTS = {
     "changes": 30.0,  # an estimate that a person looks up at the station and corrects
     "physical": 60.0,  # something that a person does at a device
-    "elsewhere": 120.0,  # the same, where another device is known to do nothing
     "returns": 90.0,  # a resource that a person brings back, or an ability put back into service
     "starts": 2.0,  # a start in restart mode, which a person has confirmed and watches
     "unsupervised": 60.0,  # starts outside the safe states
@@ -51,7 +50,7 @@ class Effort(Immutable):
 
     changes: int = 0
     physical: int = 0  # what a person does at devices; one such act can change several measured variables
-    elsewhere: int = 0  # of these acts, where another device should be helped
+    elsewhere: int = 0  # of these acts, where another device is to be helped, or to come back
     returns: int = 0
     starts: int = 0  # of the errand
     seconds: float = 0.0
@@ -108,14 +107,15 @@ class Offer(Immutable):
         return bool(self.claims)
 
     @property
-    def rank(self) -> tuple[bool, int, float]:
-        """What comes first is least: what devices or people do before what is only said, then what takes less.
+    def rank(self) -> tuple[bool, int, bool, float]:
+        """What comes first is least: what devices or people do before what is only said, what is done where something
+        is wrong before what is done elsewhere, then what takes less.
 
         What says that work is done comes last, whatever it takes.
         """
         acts = bool(self.errand or self.physical or self.online or self.in_service)
         said = 0 if not self.corrections else 1 if acts else 2
-        return self.only_if_checked, said, self.effort.cost
+        return self.only_if_checked, said, self.effort.elsewhere > 0, self.effort.cost
 
 
 class Advice(Immutable):
