@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from running.stations import finished
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.parser import parse, parse_assignment, parse_formula
 from sequence_planner.expressions.resolution import Scope, resolve_assignment, resolve_formula, resolve_predicate
@@ -62,6 +63,12 @@ def test_there_is_something_to_try() -> None:
 def test_the_station_of_the_page_works(automaton: Automaton) -> None:
     assert set(automaton.operations) == {"clamp_part", "inspect_side(left)", "inspect_side(right)", "release_part"}
     assert set(synthesise(automaton).guards) == {"clamp.close", "operator.load"}
+
+
+def test_nothing_is_to_be_said_against_it(station: Path) -> None:
+    found = finished("check", str(station))
+    assert found.returncode == 0
+    assert "warning" not in found.stdout + found.stderr
 
 
 def scope_of(automaton: Automaton) -> Scope:

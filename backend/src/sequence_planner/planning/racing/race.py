@@ -141,9 +141,9 @@ class _Runner:
 
     def _replace(self, why: str) -> None:
         """Have another process take over, later each time one ends without having come back from a task."""
-        LOG.warning("the lane %s %s and is started again", self.name, why)
+        LOG.warning("the planner's process for %s %s and is started again; others plan meanwhile", self.name, why)
         if self._back < self._asked:
-            self._tell(_Heard(self.name, self._asked, Report(f"lane {self.name}", Finding(), why)))
+            self._tell(_Heard(self.name, self._asked, Report(f"process for {self.name}", Finding(), why)))
             self._tell(_Heard(self.name, self._asked))
         self._generation += 1
         self._ready = False
