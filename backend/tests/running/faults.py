@@ -144,7 +144,8 @@ def judged(seen: Seen, state: dict[str, Any]) -> Counter[str]:
         return Counter({f"{seen.fault}: nobody is told, the work goes on or waits for a person": 1})
     offers = seen.advice["offers"]
     told = f"{seen.fault}: “{seen.alarm}” after {seen.told:.1f} s"
-    assert seen.proposed <= PROPOSED_WITHIN, f"{told}; proposals after {seen.proposed:.1f} s"
+    searched = f"{seen.advice['seconds']:.1f} s of them looked for"
+    assert seen.proposed <= PROPOSED_WITHIN, f"{told}; proposals after {seen.proposed:.1f} s, {searched}"
     titles = [offer["title"] for offer in offers]
     assert offers or seen.advice["if_checked"] or seen.advice["reasons"], f"{told}: nothing is proposed, and not why"
     passing = [offer["title"] for offer in offers if _passes(offer, state)]

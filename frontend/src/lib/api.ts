@@ -1550,7 +1550,7 @@ export interface paths {
         /**
          * What If
          * @description How the station would go on with the draft, from its present state or from a past record; nothing of it reaches
-         *     the station.
+         *     the station. It ends when who asked leaves.
          */
         post: operations["what_if"];
         delete?: never;

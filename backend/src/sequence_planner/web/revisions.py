@@ -22,6 +22,7 @@ from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
 from sequence_planner.web.found import found
 from sequence_planner.web.history import looked_back
+from sequence_planner.web.leaving import while_waited_for
 from sequence_planner.web.model import TheWorkshop, refusal
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, LiveView, controller, live_view
@@ -136,11 +137,12 @@ async def transfer(
 @router.post("/what-if", dependencies=[ENGINEER, JSON_ONLY], response_model=WhatIfView, responses=refused(404))
 async def what_if(body: WhatIfBody, shop: TheWorkshop, request: Request) -> Response:
     """How the station would go on with the draft, from its present state or from a past record; nothing of it reaches
-    the station.
+    the station. It ends when who asked leaves.
     """
     draft = await shop.open()
     present = await _present(request) if body.number is None else await _past(request, body.number)
-    return await _found("simulated", draft.files, shop.folder, present, body.seconds, SIMULATING)
+    simulated = _found("simulated", draft.files, shop.folder, present, body.seconds, SIMULATING)
+    return await while_waited_for(request, simulated) or Response(status_code=204)  # which nobody reads
 
 
 @router.post("/deployments", status_code=204, dependencies=[ENGINEER, JSON_ONLY], responses=refused(404, 422, 504))

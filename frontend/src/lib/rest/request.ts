@@ -17,6 +17,8 @@ export interface Rest {
 	readonly idempotencyKey?: string;
 	/** Milliseconds after which an answer is no longer waited for. */
 	readonly patience?: number;
+	/** Aborted when somebody does not want the answer any more. */
+	readonly stop?: AbortSignal;
 }
 
 export type Answer<Value> =
@@ -50,14 +52,15 @@ export function aheadOf(header: string | null, now: number): number {
 export async function request<Value = undefined>(
 	method: Method,
 	path: string,
-	{ body, ifMatch, idempotencyKey, patience = PATIENCE }: Rest = {}
+	{ body, ifMatch, idempotencyKey, patience = PATIENCE, stop }: Rest = {}
 ): Promise<Answer<Value>> {
 	const headers: Record<string, string> = {};
 	if (body !== undefined) headers['Content-Type'] = 'application/json';
 	if (ifMatch !== undefined) headers['If-Match'] = ifMatch;
 	if (idempotencyKey !== undefined) headers['Idempotency-Key'] = idempotencyKey;
 	try {
-		const signal = AbortSignal.timeout(patience);
+		const late = AbortSignal.timeout(patience);
+		const signal = stop === undefined ? late : AbortSignal.any([late, stop]);
 		const sent = body === undefined ? {} : { body: JSON.stringify(body) };
 		const answer = await fetch(path, { method, headers, signal, ...sent });
 		const text = await answer.text();

@@ -12,6 +12,9 @@ export const whatIf = {
 	seconds: 'For how many seconds',
 	go: 'Simulate',
 	going: 'Simulating …',
+	stop: 'Stop it',
+	working: (passed: number, most: number): string =>
+		`It has worked for ${count(passed, 'second', 'seconds')}. First it prepares the model; what it has simulated within ${most} s then is shown.`,
 	result: 'What would happen',
 	obstacle: (why: string): string => `Nothing could be simulated: ${why}`,
 	done: (seconds: number, runs: number, operations: number): string =>

@@ -12,6 +12,9 @@ export const whatIf = {
 	seconds: 'I hur många sekunder',
 	go: 'Simulera',
 	going: 'Simulerar …',
+	stop: 'Avbryt',
+	working: (passed: number, most: number): string =>
+		`Det har arbetat i ${count(passed, 'sekund', 'sekunder')}. Först förbereds modellen; vad som sedan har simulerats inom ${most} s visas.`,
 	result: 'Vad som skulle hända',
 	obstacle: (why: string): string => `Inget kunde simuleras: ${why}`,
 	done: (seconds: number, runs: number, operations: number): string =>
