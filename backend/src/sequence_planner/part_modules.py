@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
+LOGS: Final = ("sequence_planner.lean_structlog",)
 STATION: Final = ("sequence_planner.station",)
 EMULATOR: Final = ("sequence_planner.cli.emulating",)
 CONTROLLER: Final = ("sequence_planner.cli.controlling",)
@@ -25,4 +26,4 @@ OTHERS: Final = tuple(
         "workshop.pipelines.worker",
     )
 )
-ALL: Final = (*STATION, *EMULATOR, *CONTROLLER, *SERVER, *OTHERS)
+ALL: Final = (*LOGS, *STATION, *EMULATOR, *CONTROLLER, *SERVER, *OTHERS)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from pydantic import AfterValidator, BaseModel, Field
 
 from sequence_planner.identity.openid.flow import FLOW_LIFE
@@ -19,6 +19,7 @@ from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
 from sequence_planner.web.cookies import credentials, flow_token, forget_flow, keep_flow
 from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Address, Agent, Identity
 from sequence_planner.web.session_answer import SessionAnswer, begin_session
@@ -28,7 +29,7 @@ BACK = "/sign-in/provider"  # the page to which the provider sends the browser b
 HOME = "/"
 LONGEST_PAGE = 2000  # characters
 
-router = APIRouter(prefix="/session/provider", tags=["session"], dependencies=[allowed(None), JSON_ONLY])
+router = interface("/session/provider", tags=["session"], dependencies=[allowed(None), JSON_ONLY])
 
 
 def own_page(text: str) -> str:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import partial
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import Depends, Query, Request, Response
 from pydantic import BaseModel, Field, StrictInt
 
 from sequence_planner.identity.roles import Role, Scope
@@ -20,12 +20,13 @@ from sequence_planner.mes.webhooks.webhook import Webhook
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.web.body import Body, Identifier, Name
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR, scope=Scope.WEBHOOKS)
-bodiless = APIRouter(prefix="/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR])
-router = APIRouter(prefix="/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR, JSON_ONLY])
+bodiless = interface("/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR])
+router = interface("/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR, JSON_ONLY])
 
 MADE: dict[str, Any] = {
     "headers": {
