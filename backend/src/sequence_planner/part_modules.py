@@ -1,13 +1,17 @@
-"""What the processes of a station import: the fork server does so once for all of them, while the launcher starts."""
+"""What the processes of a station import: the fork server does so once for all of them, while the launcher starts.
+
+What is needed first stands first: a process is forked as soon as all is imported that it needs.
+"""
 
 from __future__ import annotations
 
 from typing import Final
 
 LOGS: Final = ("sequence_planner.lean_structlog",)
-STATION: Final = ("sequence_planner.station",)
+BEGINNING: Final = ("sequence_planner.first_things", "sequence_planner.ros.standard_types_ready")
 EMULATOR: Final = ("sequence_planner.cli.emulating",)
 CONTROLLER: Final = ("sequence_planner.cli.controlling",)
+NETWORK: Final = ("sequence_planner.ros.cyclone",)  # of who joins it by that
 SERVER: Final = ("sequence_planner.cli.serving",)
 OTHERS: Final = tuple(
     f"sequence_planner.{each}"
@@ -26,4 +30,4 @@ OTHERS: Final = tuple(
         "workshop.pipelines.worker",
     )
 )
-ALL: Final = (*LOGS, *STATION, *EMULATOR, *CONTROLLER, *SERVER, *OTHERS)
+ALL: Final = (*LOGS, *BEGINNING, *CONTROLLER, *EMULATOR, *SERVER, *OTHERS)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from multiprocessing.connection import Connection
 from pathlib import Path
 
 from sequence_planner.automaton.grounding.abilities import GroundBefore
@@ -104,16 +103,6 @@ def prepare_station(folder: Path) -> ReadyStation:
     )
     goes_on = station.station.takeover == "automatic"
     return ReadyStation(automaton, pipelines, registry, _of_ros_1(station), examples, goes_on)
-
-
-def tell_whether_usable(to: Connection, folder: Path) -> None:
-    """Send why the station in a folder cannot be used; None if it can."""
-    try:
-        prepare_station(folder)
-    except ModelError as error:
-        to.send(str(error))
-    else:
-        to.send(None)
 
 
 def _examples(station: Station) -> Iterator[tuple[str, list[ExampleDocument]]]:

@@ -29,6 +29,7 @@ from sequence_planner.forking.request import Request, read_request, send_begun, 
 
 _STANDARD_INPUT: Final = 0
 _LEAVING: Final = 0.5  # seconds after which one that was hung up is ended, unless that was the end of the launcher
+_QUIET: Final = 3.0  # seconds in which nobody wants anything, after all imports
 ABOVE: Final = 300  # no place has such a number
 _PATIENCE: Final = 5.0  # seconds for the whole of a request: its parts are sent one right after the other
 _OWN = "sequence_planner."  # what is imported here; anything else is imported by the process that needs it
@@ -67,11 +68,15 @@ class ForkServer:
 
     def serve(self) -> Life | None:
         """Serve; returns in each process that was forked, with its life, and without one in the end."""
-        importing = True
+        importing, untidy = True, True
         while True:
-            events = self._selector.select(0 if importing else _LEAVING if self._unwanted else None)
+            wait = 0 if importing else _LEAVING if self._unwanted else _QUIET if untidy else None
+            events = self._selector.select(wait)
             if not events and importing:
                 importing = self._import_next()
+            elif not events and wait == _QUIET:
+                gc.collect()  # what imports have left behind: it takes a while, for which nothing is forked
+                untidy = False
             self._end_unwanted()
             for key, _ in events:
                 if key.fileobj == _STANDARD_INPUT:
@@ -93,7 +98,6 @@ class ForkServer:
         for module in self._modules:
             _import(module)
             return True
-        gc.collect()
         return False
 
     def _accept(self) -> Life | None:
