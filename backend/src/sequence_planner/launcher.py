@@ -185,10 +185,10 @@ class _Launcher:
         """Start everything and watch over it."""
         reap_orphans()
         try:
+            self._server.spawn()  # which has most to import that nobody else needs
             if self._request.emulator:
                 self._emulator.spawn()
             self._controller.spawn(*(["--start"] if self._request.start else []))
-            self._server.spawn()
             threading.Thread(target=self._announce, daemon=True).start()
             told: dict[str, int] = {}
             while not self._stop.wait(0.2):

@@ -1,6 +1,7 @@
 """What the processes of a station import: the fork server does so once for all of them, while the launcher starts.
 
-What is needed first stands first: a process is forked as soon as all is imported that it needs.
+What is needed first stands first: a process is forked as soon as all is imported that it needs. What a station needs
+only when it runs is imported `LATER`.
 """
 
 from __future__ import annotations
@@ -8,12 +9,12 @@ from __future__ import annotations
 from typing import Final
 
 LOGS: Final = ("sequence_planner.lean_structlog",)
-BEGINNING: Final = ("sequence_planner.first_things", "sequence_planner.ros.standard_types_ready")
+BEGINNING: Final = ("sequence_planner.ros.standard_types_ready", "sequence_planner.first_things")
 EMULATOR: Final = ("sequence_planner.cli.emulating",)
 CONTROLLER: Final = ("sequence_planner.cli.controlling",)
 NETWORK: Final = ("sequence_planner.ros.cyclone",)  # of who joins it by that
 SERVER: Final = ("sequence_planner.cli.serving",)
-OTHERS: Final = tuple(
+LATER: Final = tuple(
     f"sequence_planner.{each}"
     for each in (
         "planning.worker",
@@ -30,4 +31,4 @@ OTHERS: Final = tuple(
         "workshop.pipelines.worker",
     )
 )
-ALL: Final = (*LOGS, *BEGINNING, *CONTROLLER, *EMULATOR, *SERVER, *OTHERS)
+NOW: Final = (*LOGS, *BEGINNING, *CONTROLLER, *EMULATOR, *SERVER)

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from sequence_planner.analysis.read_before import STATION, content_key, keep, read_before
 from sequence_planner.automaton.grounding.abilities import GroundBefore
 from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.station import ground
@@ -90,10 +91,30 @@ def read_station(folder: Path, before: Before | None = None) -> MeantStation:
     return MeantStation(station, registry, automaton)
 
 
+@dataclass(frozen=True)
+class _Kept:
+    """What is kept of a station that was read: message types are classes, and made anew."""
+
+    station: Station
+    automaton: Automaton
+
+
+def _read_or_kept(folder: Path) -> MeantStation:
+    """What the files of a station mean: each of its processes needs that, and they have mostly been read before."""
+    content = content_key(folder)
+    known = None if content is None else read_before(STATION, content)
+    if isinstance(known, _Kept):
+        return MeantStation(known.station, load_messages(known.station), known.automaton)
+    meant = read_station(folder)
+    if content is not None and content == content_key(folder):  # nobody has changed it meanwhile
+        keep(STATION, content, _Kept(meant.station, meant.automaton))
+    return meant
+
+
 @collection_put_off()
 def prepare_station(folder: Path) -> ReadyStation:
     """Load and check a station's folder. Raises `ModelError` with the findings."""
-    meant = read_station(folder)
+    meant = _read_or_kept(folder)
     station, registry, automaton = meant.station, meant.registry, meant.automaton
     pipelines = build_pipelines(station, automaton, registry)
     examples = tuple(

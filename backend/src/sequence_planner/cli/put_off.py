@@ -37,7 +37,7 @@ class PutOff(TyperCommand):
         """Read a command line as the command itself does; its context is one of that command."""
         if self._forks and "--help" not in sys.argv:
             from sequence_planner.forking.starting import OWN  # noqa: PLC0415
-            from sequence_planner.part_modules import ALL  # noqa: PLC0415
+            from sequence_planner.part_modules import LATER, NOW  # noqa: PLC0415
 
-            OWN.prepare(*ALL)
+            OWN.prepare(NOW, LATER)
         return self.command().make_context(*arguments, **settings)
