@@ -26,6 +26,7 @@ from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.lines import read_lines
 from sequence_planner.control.link_messages import (
     LONGEST_COMMAND,
+    AliveMessage,
     AnswerMessage,
     AskMessage,
     CommandMessage,
@@ -105,6 +106,10 @@ class ControllerLink:
     def publish(self, view: StationView) -> None:
         """Make `view` the one that is shown. Never blocks, whatever the peers do."""
         self._publish("view", ViewMessage(view=view))
+
+    def publish_alive(self, time: float) -> None:
+        """Nothing has happened since `publish`; see there."""
+        self._publish("alive", AliveMessage(time=time))
 
     def publish_network(self, network: NetworkView) -> None:
         """Make `network` the one that is shown; see `publish`."""

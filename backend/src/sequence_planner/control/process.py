@@ -47,7 +47,8 @@ LOG = structlog.get_logger(__name__)
 
 SETTLED_WITHIN = 10.0  # seconds in which a process beside one that has died says that all of its is recorded
 SHOW_EVERY = 0.1  # seconds between two views, at least
-SHOW_AT_REST = 0.5  # while nothing happens: only times and numbers change
+SAY_ALIVE = 0.5  # while nothing happens
+SHOW_AT_REST = 1.0  # then: only times and numbers change
 WISH_LASTS = 60.0  # seconds for which a station that stands by minds that somebody wanted to stop it
 RECORD_AGAIN = 5.0  # seconds
 NODE = "sequence_planner"
@@ -339,9 +340,9 @@ class _Life:
                 if failed != (failed := repr(error)):
                     LOG.exception("the station cannot be shown")
             await asyncio.sleep(SHOW_EVERY)
-            with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(SHOW_AT_REST - SHOW_EVERY):
-                    await controller.changed.wait()
+            if not await _within(SAY_ALIVE - SHOW_EVERY, controller.changed):
+                self._link.publish_alive(time.time())
+                await _within(SHOW_AT_REST - SAY_ALIVE, controller.changed)
 
     async def _show_preparing(self) -> None:
         identity, began, known = _identity(self._running, ""), time.time(), self._preparation
@@ -381,6 +382,14 @@ async def _beside(life: Coroutine[None, None, None]) -> AsyncIterator[None]:
         task.cancel()
         await asyncio.wait({task})
         life.close()  # which has never begun where the block was over at once
+
+
+async def _within(seconds: float, event: asyncio.Event) -> bool:
+    """Wait for so long, or until it happens: whether it has."""
+    with contextlib.suppress(TimeoutError):
+        async with asyncio.timeout(seconds):
+            await event.wait()
+    return event.is_set()
 
 
 async def _prepared(preparation: Preparation) -> Supervisor | None:

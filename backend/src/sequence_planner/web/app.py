@@ -205,7 +205,9 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
         app.state.backups = backup_desk = _backup_desk(office, settings, controller)
         app.state.retention = retention_desk = _retention_desk(office, settings, controller)
-        deliverer = Deliverer(office.database, Sender(settings.webhooks), stands_by=lambda: controller.stands_by)
+        app.state.deliverer = deliverer = Deliverer(
+            office.database, Sender(settings.webhooks), stands_by=lambda: controller.stands_by
+        )
         parts = (controller, flows, Sweeper(office, controller), desk, sequencing, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
         running += [asyncio.create_task(each.run()) for each in (backup_desk, retention_desk) if each is not None]

@@ -12,6 +12,7 @@ from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.webhooks import deliveries
 from sequence_planner.mes.webhooks import webhook as webhooks
+from sequence_planner.mes.webhooks.deliverer import Deliverer
 from sequence_planner.mes.webhooks.deliveries import DeadLetter
 from sequence_planner.mes.webhooks.sealing import Seal, key_file
 from sequence_planner.mes.webhooks.sending import resolved
@@ -136,6 +137,8 @@ async def make_webhook(
         lambda connection: webhooks.make(connection, seal, body.title, body.url, body.kinds, body.after, actor, now),
         by=actor,
     )
+    deliverer: Deliverer = request.app.state.deliverer
+    deliverer.look()
     response.headers["Location"] = request.url_for("read_webhook", webhook=webhook.id).path
     return NewWebhookAnswer(webhook=webhook, secret=secret)
 
