@@ -9,9 +9,10 @@ from __future__ import annotations
 from typing import Final
 
 LOGS: Final = ("sequence_planner.lean_structlog",)
-BEGINNING: Final = ("sequence_planner.ros.standard_types_ready", "sequence_planner.first_things")
-EMULATOR: Final = ("sequence_planner.cli.emulating",)
-CONTROLLER: Final = ("sequence_planner.cli.controlling",)
+BEGINNING: Final = ("sequence_planner.first_things",)
+MESSAGES: Final = ("sequence_planner.ros.codec_ready",)
+CONTROLLER: Final = (*MESSAGES, "sequence_planner.cli.controlling")
+EMULATOR: Final = (*MESSAGES, "sequence_planner.cli.emulating")
 NETWORK: Final = ("sequence_planner.ros.cyclone",)  # of who joins it by that
 SERVER: Final = ("sequence_planner.cli.serving",)
 LATER: Final = tuple(
