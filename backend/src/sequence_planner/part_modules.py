@@ -9,8 +9,8 @@ from __future__ import annotations
 from typing import Final
 
 LOGS: Final = ("sequence_planner.lean_structlog",)
-BEGINNING: Final = ("sequence_planner.first_things",)
 MESSAGES: Final = ("sequence_planner.ros.codec_ready",)
+BEGINNING: Final = (*MESSAGES, "sequence_planner.first_things")
 CONTROLLER: Final = (*MESSAGES, "sequence_planner.cli.controlling")
 EMULATOR: Final = (*MESSAGES, "sequence_planner.cli.emulating")
 NETWORK: Final = ("sequence_planner.ros.cyclone",)  # of who joins it by that
