@@ -30,6 +30,7 @@ from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.preparation import PREPARING, Preparation, Unusable, analyse, preparing_view
 from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.recording import Recording
+from sequence_planner.control.shown import Shown
 from sequence_planner.control.starting import go_on, start_when_alone
 from sequence_planner.control.view import Mode, StationIdentity, StationView
 from sequence_planner.control.view_part import View
@@ -47,8 +48,7 @@ LOG = structlog.get_logger(__name__)
 
 SETTLED_WITHIN = 10.0  # seconds in which a process beside one that has died says that all of its is recorded
 SHOW_EVERY = 0.1  # seconds between two views, at least
-SAY_ALIVE = 0.5  # while nothing happens
-SHOW_AT_REST = 1.0  # then: only times and numbers change
+SHOW_AT_REST = 0.5  # while nothing happens: only times and numbers change
 WISH_LASTS = 60.0  # seconds for which a station that stands by minds that somebody wanted to stop it
 RECORD_AGAIN = 5.0  # seconds
 NODE = "sequence_planner"
@@ -151,6 +151,7 @@ class _Life:
         self._deployment = LastDeployment(running.socket)
         self._begins_in = begins_in
         self._at_rest_until = 0.0  # on the clock of `time.monotonic`: somebody wanted it before it could be done
+        self._shown = Shown()
         self._link = ControllerLink(running.socket, self._handle, self._answer)
 
     async def run(self, living: asyncio.TaskGroup) -> None:
@@ -299,7 +300,9 @@ class _Life:
         audited = await self._recording.carry_out(command, self._preparation.tasks, self._act)
         if controller is None:
             return True
-        self._link.publish(self._seen(controller))
+        view = self._seen(controller)
+        self._shown.note(view)
+        self._link.publish(view)
         return await self._lasting.settle(command, controller, before, audited)
 
     async def _answer(self, ask: Ask) -> View:
@@ -335,14 +338,18 @@ class _Life:
         while True:
             controller.changed.clear()
             try:
-                self._link.publish(self._seen(controller))
+                view = self._seen(controller)
+                if self._shown.is_news(view):
+                    self._link.publish(view)
+                else:
+                    self._link.publish_alive(view.time)
             except Exception as error:  # who looks on is told that nothing is heard; the station goes on
                 if failed != (failed := repr(error)):
                     LOG.exception("the station cannot be shown")
             await asyncio.sleep(SHOW_EVERY)
-            if not await _within(SAY_ALIVE - SHOW_EVERY, controller.changed):
-                self._link.publish_alive(time.time())
-                await _within(SHOW_AT_REST - SAY_ALIVE, controller.changed)
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(SHOW_AT_REST - SHOW_EVERY):
+                    await controller.changed.wait()
 
     async def _show_preparing(self) -> None:
         identity, began, known = _identity(self._running, ""), time.time(), self._preparation
@@ -382,14 +389,6 @@ async def _beside(life: Coroutine[None, None, None]) -> AsyncIterator[None]:
         task.cancel()
         await asyncio.wait({task})
         life.close()  # which has never begun where the block was over at once
-
-
-async def _within(seconds: float, event: asyncio.Event) -> bool:
-    """Wait for so long, or until it happens: whether it has."""
-    with contextlib.suppress(TimeoutError):
-        async with asyncio.timeout(seconds):
-            await event.wait()
-    return event.is_set()
 
 
 async def _prepared(preparation: Preparation) -> Supervisor | None:
