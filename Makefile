@@ -15,7 +15,7 @@ LOCK := uv pip compile --quiet --universal --python-version 3.11 --generate-hash
 # Where it is set, each process compiles all of the program anew, which takes longer than most tests do.
 unexport PYTHONDONTWRITEBYTECODE
 
-# A Node of our own, where the machine has none that is recent enough.
+# A Node of our own, where the machine has none that is recent enough: one that runs TypeScript as it is (22.18).
 export PATH := $(CURDIR)/.node/bin:$(PATH)
 ifndef SIDE_BY_SIDE
 .NOTPARALLEL:
@@ -141,7 +141,7 @@ $(VENV)/installed-bench.stamp: $(VENV)/installed-test.stamp backend/requirements
 
 .node/done.stamp: backend/requirements-node.lock
 	@rm -rf .node && mkdir .node
-	@node -e 'process.exit(+(process.versions.node.split(".")[0] < 22))' 2>/dev/null && npm --version >/dev/null 2>&1 || $(MAKE) --no-print-directory node
+	@node -e 'process.exit(+!process.features.typescript)' 2>/dev/null && npm --version >/dev/null 2>&1 || $(MAKE) --no-print-directory node
 	@touch $@
 
 node:

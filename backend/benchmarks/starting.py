@@ -1,13 +1,16 @@
 """What it takes to start a station, and to have one: seconds, processor time, memory, processes; and small commands.
 
-Run with `make bench`. Each station runs as its users run it, as a demonstration with emulated devices. It is ready when
-its server hears its controller: with nothing known of its model, and with all that an earlier run has found. How much
-of a core it takes at rest is measured before production is started, once nothing is looked for any more. Commands are
-measured as whole processes, the first time on a model and again.
+Run with `make bench`. Each station runs as its users run it, as a demonstration with emulated devices. It is heard when
+its page is open and shows what its controller says, and ready when its safe states are known, too, and it may command
+its devices (`/readyz`), for which it listens for 1.5 s whether somebody else does: with nothing known of its model, and
+with all that an earlier run has found. How much of a core it takes at rest is measured before production is started,
+once nothing is looked for any more. Commands are measured as whole processes, the first time on a model and again.
 """
 
 from __future__ import annotations
 
+import contextlib
+import http.client
 import os
 import resource
 import shutil
@@ -19,9 +22,9 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
-import httpx
 from stations.processes import Process, station_processes
 
 STATIONS = Path(__file__).parents[2] / "models"
@@ -32,6 +35,8 @@ STARTS = 5
 AT_REST = 5  # processes, of a station of which all is known and nobody asks anything
 LONGEST = 400.0  # seconds until it is at rest
 LOOK = 30.0  # seconds for which it is looked what it takes
+ASK_EVERY = 0.02  # seconds: who asks all the time takes a core from it
+PROGRAM = Path(sys.executable).with_name("sequence-planner")
 PATIENCE = 60.0
 
 
@@ -52,9 +57,9 @@ def station(name: str, cache: Path) -> None:
     cold = []
     for _ in range(STARTS):
         shutil.rmtree(cache, ignore_errors=True)
-        with started(name, cache) as (launcher, seconds):
-            cold.append((seconds, used(launcher)))
-    print(f"  ready after {said(cold)}, with nothing known")
+        with started(name, cache) as (_, start):
+            cold.append(start)
+    print(f"  {told(cold)}, with nothing known")
     shutil.rmtree(cache, ignore_errors=True)
     with started(name, cache) as (launcher, _):
         before = time.monotonic()
@@ -65,9 +70,22 @@ def station(name: str, cache: Path) -> None:
         look(launcher)
     known = []
     for _ in range(STARTS):
-        with started(name, cache) as (launcher, seconds):
-            known.append((seconds, used(launcher)))
-    print(f"  ready after {said(known)}, with all known", flush=True)
+        with started(name, cache) as (_, start):
+            known.append(start)
+    print(f"  {told(known)}, with all known", flush=True)
+
+
+@dataclass(frozen=True)
+class Start:
+    """How many seconds it took on the wall and of a processor until a station was heard, and until it was ready."""
+
+    heard: tuple[float, float]
+    ready: tuple[float, float]
+
+
+def told(starts: list[Start]) -> str:
+    """Medians of what starts took."""
+    return f"heard after {said([each.heard for each in starts])}, ready after {said([each.ready for each in starts])}"
 
 
 def said(starts: list[tuple[float, float]]) -> str:
@@ -124,7 +142,7 @@ def taken(command: str, cache: Path) -> tuple[float, float]:
     """Seconds on the wall and of a processor."""
     began, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
     subprocess.run(
-        [sys.executable, "-m", "sequence_planner.cli", command, str(STATIONS / SMALL)],
+        [PROGRAM, command, str(STATIONS / SMALL)],
         env={**os.environ, "XDG_CACHE_HOME": str(cache)},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
@@ -136,36 +154,39 @@ def taken(command: str, cache: Path) -> tuple[float, float]:
 
 
 @contextmanager
-def started(name: str, cache: Path) -> Iterator[tuple[int, float]]:
-    """A station, and how many seconds it took until it was ready: the number of its launcher comes first."""
+def started(name: str, cache: Path) -> Iterator[tuple[int, Start]]:
+    """A station that is ready: the number of its launcher, and what it took."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    command = [sys.executable, "-m", "sequence_planner.cli", "run", str(STATIONS / name), "--port", str(port)]
-    options = ["--emulator", "--demonstration"]
+    command = [PROGRAM, "run", str(STATIONS / name), "--port", str(port), "--emulator", "--demonstration"]
     began = time.perf_counter()
     environment = {**os.environ, "XDG_CACHE_HOME": str(cache)}
-    launcher = subprocess.Popen(
-        [*command, *options], env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
-    )
-    try:
-        while not is_ready(port):
+    launcher = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+    def when(path: str) -> tuple[float, float]:
+        while not is_fine(port, path):
             if time.perf_counter() - began > PATIENCE:
-                raise TimeoutError(f"{name} was not ready within {PATIENCE:g} s")
-            time.sleep(0.01)
-        yield launcher.pid, time.perf_counter() - began
+                raise TimeoutError(f"{name} did not answer {path} within {PATIENCE:g} s")
+            time.sleep(ASK_EVERY)
+        return time.perf_counter() - began, used(launcher.pid)
+
+    try:
+        yield launcher.pid, Start(heard=when("/healthz"), ready=when("/readyz"))
     finally:
         launcher.terminate()
         launcher.wait(PATIENCE)
 
 
-def is_ready(port: int) -> bool:
-    """Whether the server of a station answers that it hears its controller."""
-    try:
-        answer = httpx.get(f"http://127.0.0.1:{port}/healthz", timeout=1.0)
-    except httpx.HTTPError:
-        return False
-    return answer.is_success and answer.json()["controller"] == "heard"
+def is_fine(port: int, path: str) -> bool:
+    """Whether the server of a station answers there that all is well."""
+    asking = http.client.HTTPConnection("127.0.0.1", port, timeout=1.0)
+    with contextlib.closing(asking):
+        try:
+            asking.request("GET", path)
+            return asking.getresponse().status == 200
+        except (OSError, http.client.HTTPException):
+            return False
 
 
 def used(launcher: int) -> float:

@@ -146,3 +146,13 @@ def test_a_fault_in_json_does_not_tell_what_people_sent() -> None:
 def test_what_ends_a_process_is_an_event_too() -> None:
     (line,) = logged(ENDING, "json", code=1).splitlines()
     assert json.loads(line)["level"] == "critical"
+
+
+def test_nothing_is_imported_to_write_more_beautifully() -> None:
+    code = (
+        "import sys; import sequence_planner.logs\n"
+        "print(*({each.partition('.')[0] for each in sys.modules} & {'rich', 'twisted', 'attr'}))\n"
+        "import rich.console, twisted.python.log"
+    )
+    printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert printed.split() == []

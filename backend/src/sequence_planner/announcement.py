@@ -1,16 +1,11 @@
-"""What a person who starts a station is told: where it is opened, and how the first administrator gets in."""
+"""What a person who starts a station is told first: where it is opened, as soon as somebody answers there."""
 
 from __future__ import annotations
 
 import contextlib
 import http.client
-import sys
-import time
 from pathlib import Path
 
-from sequence_planner.identity.first_start import new_link_token
-from sequence_planner.identity.people import administrator_exists
-from sequence_planner.storage.database import Database, StorageError
 from sequence_planner.web.certificate import trusting_context
 from sequence_planner.web.settings import Endpoint, address_of
 
@@ -44,25 +39,3 @@ def health(endpoint: Endpoint) -> int | None:
 def announced(endpoint: Endpoint, model: Path) -> str:
     """Where the station in the folder `model` is opened."""
     return f"{model} runs: open {endpoint.address} (operator's watch: {endpoint.address}/watch)"
-
-
-def first_start(database: str, endpoint: Endpoint, model: Path) -> str | None:
-    """How the first administrator gets in, None when there is one already.
-
-    The link is a secret for whoever sits at the terminal; where there is none the output is kept somewhere, such as in
-    a journal that others read, and then it is only said how to get it.
-    """
-    try:
-        with contextlib.closing(Database.open(database)) as opened, opened.writing() as connection:
-            if administrator_exists(connection):
-                return None
-            token = new_link_token(connection, time.time()) if sys.stdout.isatty() else None
-    except StorageError as error:
-        return str(error)
-    if token is None:
-        how = f"sequence-planner people link {model} --url {endpoint.address}"
-        return (
-            f"nobody can sign in yet: in a terminal, with the same database, `{how}` prints the link for the first "
-            "administrator"
-        )
-    return f"the first administrator opens, once and within 15 minutes: {endpoint.address}/first-start#{token}"

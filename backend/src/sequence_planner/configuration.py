@@ -18,7 +18,6 @@ from pathlib import Path
 from typing import Annotated, Final
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
-from sqlalchemy.exc import ArgumentError
 
 from sequence_planner.complaints import complained
 from sequence_planner.expressions.resolution import suggestion
@@ -108,6 +107,8 @@ class Told:
         """Its value for people: without the password that a URL may hold."""
         if self.name != _SECRET:
             return json.dumps(self.value, ensure_ascii=False)
+        from sqlalchemy.exc import ArgumentError  # noqa: PLC0415 - few stations are told of a database here
+
         try:
             return json.dumps(read_url(str(self.value)).render_as_string(hide_password=True))
         except (ArgumentError, ValueError):
@@ -152,6 +153,8 @@ def as_told(text: str, called: Mapping[str, str]) -> str:
 
 def has_password(url: str) -> bool:
     """Whether a URL of a database holds one; one that cannot be read is for others to refuse."""
+    from sqlalchemy.exc import ArgumentError  # noqa: PLC0415 - as above
+
     try:
         return read_url(url).password is not None
     except (ArgumentError, ValueError):
@@ -177,7 +180,7 @@ def _in_file(file: Path) -> Iterator[Told | str]:
     lines = {name: f"{file}:{_line(text, name)}" for name in document}
     wrong = sorted(_wrong(document, strict=True), key=lambda each: _line(text, each[0]))
     yield from (f"{lines[name]}: {why}" for name, why in wrong)
-    if has_password(str(document.get(_SECRET, ""))) and stat.S_IMODE(file.stat().st_mode) & 0o077:
+    if _SECRET in document and has_password(str(document[_SECRET])) and stat.S_IMODE(file.stat().st_mode) & 0o077:
         yield f"{lines[_SECRET]}: others may read this file, and there is a password in it: chmod 600 {file}"
     for name, value in document.items():
         if name in Configuration.model_fields and name not in dict(wrong):

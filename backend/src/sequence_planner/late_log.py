@@ -20,7 +20,7 @@ class LateLog:
         self._say("warning", event, values)
 
     def _say(self, level: str, event: str, values: dict[str, object]) -> None:
-        import structlog  # noqa: PLC0415
+        from sequence_planner.lean_structlog import structlog  # noqa: PLC0415
 
         if not structlog.is_configured():  # by a process with a log: what a command answers is on standard output
             structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))

@@ -15,17 +15,18 @@ import contextlib
 import fcntl
 import os
 import signal
+import sys
 import tempfile
 import threading
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from datetime import UTC, datetime
 from pathlib import Path
 from socket import socket as ListeningSocket  # noqa: N812 - `socket` is the path of another one
 from typing import Final
 
-from sequence_planner.announcement import UNWELL, announced, first_start, health
+from sequence_planner.announcement import UNWELL, announced, health
 from sequence_planner.backup.settings import Keeping
+from sequence_planner.beginning import Beginning, begin, first_start
 from sequence_planner.control.unix_socket import LONGEST_PATH
 from sequence_planner.deployment_folder import DeploymentFolder, DeploymentNote
 from sequence_planner.deployment_under_way import UnderWay
@@ -33,21 +34,17 @@ from sequence_planner.emulation.standing import standing_file
 from sequence_planner.forking.orphans import reap_orphans
 from sequence_planner.forking.starting import OWN
 from sequence_planner.identity.openid.options import ProviderOptions
-from sequence_planner.journal.last_word import set_aside
 from sequence_planner.lifeline import DEMONSTRATION_DATABASE, LAST_WORDS_SUFFIX, NOT_EMULATED
 from sequence_planner.logs import FORMAT, LogFormat, configure_logs, say
 from sequence_planner.memory_limit import USUAL, VARIABLE
 from sequence_planner.mes.webhooks.targets import Targets
 from sequence_planner.part import UNUSABLE, Forked, Part
-from sequence_planner.part_modules import CONTROLLER, EMULATOR, SERVER
+from sequence_planner.part_modules import CONTROLLER, EMULATOR, NETWORK, SERVER
 from sequence_planner.parts_file import write_restarts
 from sequence_planner.retention.settings import Retention
 from sequence_planner.secret_variables import CLIENT_SECRET, PASSWORD, environment
 from sequence_planner.service_manager import ServiceManager
-from sequence_planner.storage.address import PostgresqlServer
-from sequence_planner.storage.database import Database
 from sequence_planner.storage.environment import DATABASE
-from sequence_planner.storage.error import StorageError
 from sequence_planner.web.binding import bind, check_demonstration, check_endpoint
 from sequence_planner.web.settings import Endpoint, SettingsError
 
@@ -83,15 +80,14 @@ class Launch:
     retention: Retention = field(default_factory=Retention)
     new: bool = False
     memory: float = USUAL  # GB, for each process that checks a model
-    unusable: str | None = None
     cut_off: DeploymentNote | None = None
 
 
 def launch(request: Launch) -> int:
     """Run all processes until SIGTERM, SIGINT or SIGHUP; returns the exit code.
 
-    Raises `SettingsError` when host, port or certificate cannot be used, the model cannot and has no draft, or the
-    folder for temporary files has too long a name, and `StorageError` when the database cannot be used.
+    Raises `SettingsError` when host, port, certificate or database cannot be used, when the model cannot and has no
+    draft, and when the folder for temporary files has too long a name.
     """
     # Of all parts, and what these start.
     with _variables({FORMAT: request.log_format.value, VARIABLE: str(request.memory)}):
@@ -109,18 +105,11 @@ def launch(request: Launch) -> int:
             if len(str(socket).encode()) > LONGEST_PATH:
                 raise SettingsError(f"the path of {socket} is too long for a socket; set TMPDIR to a shorter folder")
             url = request.database or f"sqlite:///{socket.parent / DEMONSTRATION_DATABASE}"
-            if request.unusable is not None:
-                if not _has_draft(url):
-                    raise SettingsError(request.unusable)
-                say(f"{request.unusable}\nthe model cannot be used: change its draft on its page, and deploy that")
-            with contextlib.closing(Database.open(url, new=request.new)) as database:
-                if request.hot_standby is not None and not isinstance(database.place, PostgresqlServer):
-                    text = f"several stations cannot share {database.place}: --hot-standby takes PostgreSQL"
-                    raise SettingsError(text)
-                if request.new and database.is_empty:
-                    for path, kept in set_aside(database.place, datetime.now(UTC)):
-                        say(f"a new station begins: the last word of another one, {path}, is kept as {kept}")
-                database.upgrade(new=request.new)
+            begun = begin(Beginning(request.model, url, request.new, shared=request.hot_standby is not None))
+            for each in begun.said:
+                say(each)
+            if begun.refused is not None:
+                raise SettingsError(begun.refused)
             if request.cut_off is not None:
                 DeploymentFolder(socket.parent).begin_undone(request.cut_off)
             with contextlib.closing(bind(request.endpoint)) as listener:
@@ -153,6 +142,7 @@ class _Launcher:
         self._manager = ServiceManager()  # before there are parts, which are not to inherit what it goes by
         model, transport = str(request.model), ["--transport", request.transport]
         transport += ["--rosbridge", request.rosbridge] if request.rosbridge else []
+        network = NETWORK if request.transport == "cyclonedds" else ()  # nothing of another ROS 2 is to be there
         controller = [model, "--socket", str(socket), *transport]
         controller += ["--emulated"] if request.emulator else []
         controller += ["--hot-standby", request.hot_standby] if request.hot_standby is not None else []
@@ -162,7 +152,7 @@ class _Launcher:
         of_server = {**environment(PASSWORD, CLIENT_SECRET), DATABASE: url}
         self._controller = Part(
             "controller",
-            Forked(["controller", *controller], CONTROLLER),
+            Forked(["controller", *controller], (*CONTROLLER, *network)),
             of_controller,
             again=("--again",),
             last_words=self._folder / f"controller{LAST_WORDS_SUFFIX}",
@@ -183,7 +173,9 @@ class _Launcher:
         kept = (listening,)
         self._server = Part("server", Forked(["server", *server], SERVER, inherited=kept), of_server)
         self._standing = standing_file(self._folder)
-        emulator = Forked(["emulate", model, *speed, *transport, "--keep-in", str(self._standing)], EMULATOR)
+        emulator = Forked(
+            ["emulate", model, *speed, *transport, "--keep-in", str(self._standing)], (*EMULATOR, *network)
+        )
         self._emulator = Part("emulated devices", emulator, last_words=self._folder / f"emulator{LAST_WORDS_SUFFIX}")
         self._deployment = UnderWay(
             request.model, self._folder, self._controller, self._emulator if request.emulator else None
@@ -193,10 +185,10 @@ class _Launcher:
         """Start everything and watch over it."""
         reap_orphans()
         try:
+            self._server.spawn()  # which has most to import that nobody else needs
             if self._request.emulator:
                 self._emulator.spawn()
             self._controller.spawn(*(["--start"] if self._request.start else []))
-            self._server.spawn()
             threading.Thread(target=self._announce, daemon=True).start()
             told: dict[str, int] = {}
             while not self._stop.wait(0.2):
@@ -243,9 +235,18 @@ class _Launcher:
                 return
         self._manager.ready()
         say(announced(endpoint, model))
-        if self._request.database is not None and (how := first_start(self._url, endpoint, model)):
-            say(how)
+        if self._request.database is not None:
+            self._tell_first_start()
         self._watch()
+
+    def _tell_first_start(self) -> None:
+        endpoint, model = self._request.endpoint, self._request.model
+        try:
+            how = first_start(model, self._url, endpoint, at_terminal=sys.stdout.isatty())
+        except (SettingsError, OSError) as error:  # it can still be asked for with `people link`
+            how = str(error)
+        if how is not None:
+            say(how)
 
     def _watch(self) -> None:
         """Tell whoever watches over this that the station is alive, as long as it is.
@@ -256,19 +257,6 @@ class _Launcher:
         while patience is not None and not self._stop.wait(patience / 4):
             if health(self._request.endpoint) not in (None, UNWELL):
                 self._manager.alive()
-
-
-def _has_draft(url: str) -> bool:
-    """Whether somebody has edited the model in the browser, so that it can be repaired there. No database is made."""
-    from sequence_planner.workshop import draft as drafts  # noqa: PLC0415
-
-    try:
-        with contextlib.closing(Database.open(url, create=False)) as database:
-            database.upgrade()
-            with database.reading() as connection:
-                return drafts.read(connection).number > 0
-    except StorageError:
-        return False
 
 
 def _options(endpoint: Endpoint) -> list[str]:

@@ -17,12 +17,13 @@ import threading
 from enum import StrEnum
 from queue import Full, Queue
 from types import TracebackType
-from typing import TextIO, cast
-
-import structlog
-from structlog.typing import EventDict, ExcInfo, Processor
+from typing import TYPE_CHECKING, TextIO, cast
 
 from sequence_planner.counting import counted
+from sequence_planner.lean_structlog import structlog
+
+if TYPE_CHECKING:
+    from structlog.typing import EventDict, ExcInfo, Processor
 
 FORMAT = "SEQUENCE_PLANNER_LOG_FORMAT"  # the variable of the environment that names the format, for all processes
 STANDARD_ERROR = 2

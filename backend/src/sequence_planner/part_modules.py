@@ -1,14 +1,21 @@
-"""What the processes of a station import: the fork server does so once for all of them, while the launcher starts."""
+"""What the processes of a station import: the fork server does so once for all of them, while the launcher starts.
+
+What is needed first stands first: a process is forked as soon as all is imported that it needs. What a station needs
+only when it runs is imported `LATER`.
+"""
 
 from __future__ import annotations
 
 from typing import Final
 
-STATION: Final = ("sequence_planner.station",)
-EMULATOR: Final = ("sequence_planner.cli.emulating",)
-CONTROLLER: Final = ("sequence_planner.cli.controlling",)
+LOGS: Final = ("sequence_planner.lean_structlog",)
+MESSAGES: Final = ("sequence_planner.ros.codec_ready",)
+BEGINNING: Final = (*MESSAGES, "sequence_planner.first_things")
+CONTROLLER: Final = (*MESSAGES, "sequence_planner.cli.controlling")
+EMULATOR: Final = (*MESSAGES, "sequence_planner.cli.emulating")
+NETWORK: Final = ("sequence_planner.ros.cyclone",)  # of who joins it by that
 SERVER: Final = ("sequence_planner.cli.serving",)
-OTHERS: Final = tuple(
+LATER: Final = tuple(
     f"sequence_planner.{each}"
     for each in (
         "planning.worker",
@@ -25,4 +32,4 @@ OTHERS: Final = tuple(
         "workshop.pipelines.worker",
     )
 )
-ALL: Final = (*STATION, *EMULATOR, *CONTROLLER, *SERVER, *OTHERS)
+NOW: Final = (*LOGS, *BEGINNING, *CONTROLLER, *EMULATOR, *SERVER)

@@ -1,14 +1,22 @@
 """The program `sequence-planner`.
 
 Python runs the script of a program again in each process that it spawns, and so all that the script imports. This
-module imports nothing before it is asked to.
+module imports nothing before it is asked to. What a station needs is imported by its fork server: `run` starts that
+before all else, even before its own command line is read.
 """
 
 from __future__ import annotations
 
+import sys
+
 
 def main() -> None:
     """Run the command line."""
+    if sys.argv[1:2] == ["run"] and "--help" not in sys.argv:
+        from sequence_planner.forking.starting import OWN  # noqa: PLC0415
+        from sequence_planner.part_modules import LATER, NOW  # noqa: PLC0415
+
+        OWN.prepare(NOW, LATER)
     from sequence_planner.cli import main as run  # noqa: PLC0415
 
     run()

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from multiprocessing.connection import Connection
 from pathlib import Path
 
+from sequence_planner.analysis.read_before import STATION, content_key, keep, read_before
 from sequence_planner.automaton.grounding.abilities import GroundBefore
 from sequence_planner.automaton.grounding.declarations import OPERATION
 from sequence_planner.automaton.grounding.station import ground
@@ -91,10 +91,30 @@ def read_station(folder: Path, before: Before | None = None) -> MeantStation:
     return MeantStation(station, registry, automaton)
 
 
+@dataclass(frozen=True)
+class _Kept:
+    """What is kept of a station that was read: message types are classes, and made anew."""
+
+    station: Station
+    automaton: Automaton
+
+
+def _read_or_kept(folder: Path) -> MeantStation:
+    """What the files of a station mean: each of its processes needs that, and they have mostly been read before."""
+    content = content_key(folder)
+    known = None if content is None else read_before(STATION, content)
+    if isinstance(known, _Kept):
+        return MeantStation(known.station, load_messages(known.station), known.automaton)
+    meant = read_station(folder)
+    if content is not None and content == content_key(folder):  # nobody has changed it meanwhile
+        keep(STATION, content, _Kept(meant.station, meant.automaton))
+    return meant
+
+
 @collection_put_off()
 def prepare_station(folder: Path) -> ReadyStation:
     """Load and check a station's folder. Raises `ModelError` with the findings."""
-    meant = read_station(folder)
+    meant = _read_or_kept(folder)
     station, registry, automaton = meant.station, meant.registry, meant.automaton
     pipelines = build_pipelines(station, automaton, registry)
     examples = tuple(
@@ -104,16 +124,6 @@ def prepare_station(folder: Path) -> ReadyStation:
     )
     goes_on = station.station.takeover == "automatic"
     return ReadyStation(automaton, pipelines, registry, _of_ros_1(station), examples, goes_on)
-
-
-def tell_whether_usable(to: Connection, folder: Path) -> None:
-    """Send why the station in a folder cannot be used; None if it can."""
-    try:
-        prepare_station(folder)
-    except ModelError as error:
-        to.send(str(error))
-    else:
-        to.send(None)
 
 
 def _examples(station: Station) -> Iterator[tuple[str, list[ExampleDocument]]]:

@@ -114,6 +114,33 @@ def test_who_connects_late_gets_the_newest_view(path: Path) -> None:
     asyncio.run(scenario())
 
 
+def test_that_nothing_has_happened_is_heard_and_is_not_said_of_a_later_view(path: Path) -> None:
+    async def scenario() -> None:
+        async with ControllerLink(path, accept) as link:
+            link.publish(example_view(tick=1, time=100.0))
+            client = ControllerClient(path)
+            running = await connected(client)
+            before, again = client.last_heard, asyncio.Event()
+            client.listen(lambda view: again.set())
+            link.publish_alive(100.5)
+            await asyncio.wait_for(again.wait(), 5)
+            assert client.view is not None
+            assert (client.view.tick, client.view.time) == (1, 100.5)
+            assert before is not None
+            assert client.last_heard is not None
+            assert client.last_heard > before
+            link.publish(example_view(tick=2, time=101.0))
+            late = ControllerClient(path)
+            also = await connected(late)
+            await asyncio.sleep(0.1)
+            assert late.view is not None
+            assert (late.view.tick, late.view.time) == (2, 101.0)
+            for each in (running, also):
+                each.cancel()
+
+    asyncio.run(scenario())
+
+
 def test_a_peer_gets_at_most_twenty_views_a_second_and_always_the_last(path: Path) -> None:
     async def scenario() -> None:
         async with ControllerLink(path, accept) as link, peer_of(path) as peer:

@@ -1,4 +1,4 @@
-"""The automaton that the files of a model mean, kept for commands: each begins anew, and few models have changed.
+"""What the files of a model mean, kept for commands and for a station's processes: few models have changed since.
 
 It is kept by all that lies in the model's folder, or in the file of a plain automaton, and by what its path is called,
 which findings name.
@@ -18,7 +18,8 @@ from sequence_planner.analysis.remembering import cache, read, write
 from sequence_planner.analysis.store import program
 from sequence_planner.automaton.structure import Automaton
 
-_KIND: Final = "automaton"
+AUTOMATON: Final = "automaton"
+STATION: Final = "station"
 _MOST_FILES: Final = 2_000
 _MOST_BYTES: Final = 20_000_000
 
@@ -44,16 +45,26 @@ def content_key(path: Path) -> str | None:
 
 def automaton_read_before(of: str) -> Automaton | None:
     """The automaton of a model with this content; None if it was never read, or cannot be read again."""
-    where = cache()
-    found = None if where is None else read(where, _KIND, of)
+    found = read_before(AUTOMATON, of)
     return found if isinstance(found, Automaton) else None
 
 
 def keep_automaton(of: str, automaton: Automaton) -> None:
     """Keep the automaton of a model with this content."""
+    keep(AUTOMATON, of, automaton)
+
+
+def read_before(kind: str, of: str) -> object:
+    """What was kept of a model with this content; None if nothing was, or it cannot be read again."""
+    where = cache()
+    return None if where is None else read(where, kind, of)
+
+
+def keep(kind: str, of: str, found: object) -> None:
+    """Keep what a model with this content means."""
     where = cache()
     if where is not None:
-        write(where, _KIND, of, automaton)
+        write(where, kind, of, found)
 
 
 def _contents(path: Path | str, below: str) -> Iterator[tuple[str, bytes]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import sys
 from importlib import import_module
 from typing import Any
@@ -9,6 +10,8 @@ from typing import Any
 import typer
 from typer.core import TyperCommand
 from typer.main import get_command
+
+from sequence_planner.collection import collection_put_off
 
 
 class PutOff(TyperCommand):
@@ -26,7 +29,9 @@ class PutOff(TyperCommand):
     def command(self) -> Any:  # noqa: ANN401 (a class that typer does not show)
         """The command itself."""
         module, _, attribute = self._place.partition(":")
-        found = getattr(import_module(f"sequence_planner.cli.{module}"), attribute)
+        with collection_put_off():  # all that is imported stays
+            found = getattr(import_module(f"sequence_planner.cli.{module}"), attribute)
+            gc.freeze()
         if not isinstance(found, typer.Typer):
             alone = typer.Typer(add_completion=False)
             alone.command(self.name)(found)
@@ -37,7 +42,7 @@ class PutOff(TyperCommand):
         """Read a command line as the command itself does; its context is one of that command."""
         if self._forks and "--help" not in sys.argv:
             from sequence_planner.forking.starting import OWN  # noqa: PLC0415
-            from sequence_planner.part_modules import ALL  # noqa: PLC0415
+            from sequence_planner.part_modules import LATER, NOW  # noqa: PLC0415
 
-            OWN.prepare(*ALL)
+            OWN.prepare(NOW, LATER)
         return self.command().make_context(*arguments, **settings)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-from multiprocessing.connection import Pipe
 from pathlib import Path
 from socket import socket as ListeningSocket  # noqa: N812 - the option `socket` is a path
 from typing import Annotated
@@ -32,7 +31,6 @@ from sequence_planner.cli.provider_options import Client, Groups, Issuer, Others
 from sequence_planner.cli.together import webhook_targets, wrong_together
 from sequence_planner.configuration import ConfigurationError, has_password, url_in
 from sequence_planner.deployment_folder import DeploymentNote, undo_what_was_cut_off
-from sequence_planner.forking.starting import start
 from sequence_planner.identity.openid.options import ProviderOptionError, ProviderOptions
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
 from sequence_planner.logs import LogFormat
@@ -52,7 +50,6 @@ from sequence_planner.ros.transport import TransportError
 from sequence_planner.secret_variables import CLIENT_SECRET
 from sequence_planner.start_needs import StartNeeds
 from sequence_planner.storage.environment import DATABASE
-from sequence_planner.storage.error import StorageError
 from sequence_planner.web.settings import Endpoint, Settings, SettingsError
 
 Host = Annotated[
@@ -254,7 +251,6 @@ def run(
     _provider(provider)
     webhooks = _targets(webhook_host, webhook_network, webhook_loopback)
     cut_off = _undone(model)
-    unusable = _unusable(model)
     url = None if demonstration else database_url(model, database)
     asked = Launch(
         model,
@@ -273,12 +269,11 @@ def run(
         retention=Retention.told(journal_days, journal_gb, order_days, archive_folder, archive_days, archive_gb),
         new=new,
         memory=memory,
-        unusable=unusable,
         cut_off=cut_off,
     )
     try:
         raise typer.Exit(launch(asked))
-    except (SettingsError, StorageError) as error:
+    except SettingsError as error:
         refuse(str(error))
 
 
@@ -299,22 +294,6 @@ def _undone(model: Path) -> DeploymentNote | None:
     if note is not None:
         typer.echo(f"the deployment of {note.name} was cut off: the model is as it was before", err=True)
     return note
-
-
-def _unusable(model: Path) -> str | None:
-    """Why the model cannot be used, if it cannot; said, since it may be repaired in the browser.
-
-    A process looks that has imported what it takes: this one lives as long as the station, and needs it for no more.
-    """
-    ours, theirs = Pipe(duplex=False)
-    with ours:
-        looking = start("sequence_planner.station:tell_whether_usable", model, name="reading", connection=theirs)
-        try:
-            said: str | None = ours.recv()
-        except EOFError:
-            refuse(f"{model}: the process that reads it has ended without an answer; is memory short?")
-        looking.wait()
-    return said
 
 
 def _url_in(file: Path) -> str:

@@ -26,6 +26,7 @@ from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.lines import read_lines
 from sequence_planner.control.link_messages import (
     LONGEST_COMMAND,
+    AliveMessage,
     AnswerMessage,
     AskMessage,
     CommandMessage,
@@ -104,7 +105,13 @@ class ControllerLink:
 
     def publish(self, view: StationView) -> None:
         """Make `view` the one that is shown. Never blocks, whatever the peers do."""
+        self._newest.pop("alive", None)  # that is of the view before
+        self._lines.pop("alive", None)
         self._publish("view", ViewMessage(view=view))
+
+    def publish_alive(self, time: float) -> None:
+        """Nothing has happened since `publish`; see there."""
+        self._publish("alive", AliveMessage(time=time))
 
     def publish_network(self, network: NetworkView) -> None:
         """Make `network` the one that is shown; see `publish`."""
@@ -155,8 +162,8 @@ class ControllerLink:
     async def _show_newest(self, peer: _Peer) -> None:
         peer.fresh.clear()
         for kind in list(self._newest):
-            line = self._encoded(kind)
-            if line is not peer.shown.get(kind):
+            line = self._encoded(kind) if kind in self._newest else None  # it may have been taken back meanwhile
+            if line is not None and line is not peer.shown.get(kind):
                 peer.shown[kind] = line
                 peer.writer.write(line)
                 await peer.writer.drain()

@@ -58,6 +58,13 @@ class ViewMessage(LinkMessage):
     view: StationView
 
 
+class AliveMessage(LinkMessage):
+    """Nothing has happened since the document that came last: it is still so, at this time."""
+
+    kind: Literal["alive"] = "alive"
+    time: float
+
+
 class NetworkMessage(LinkMessage):
     """The ROS graph as it is now; sent when it has changed."""
 
@@ -113,7 +120,7 @@ class AskMessage(LinkMessage):
     expires: float
 
 
-FromController = ViewMessage | NetworkMessage | Reply | AnswerMessage
+FromController = ViewMessage | AliveMessage | NetworkMessage | Reply | AnswerMessage
 FROM_CONTROLLER: TypeAdapter[FromController] = TypeAdapter(Annotated[FromController, Field(discriminator="kind")])
 FromServer = CommandMessage | AskMessage
 FROM_SERVER: TypeAdapter[FromServer] = TypeAdapter(Annotated[FromServer, Field(discriminator="kind")])

@@ -30,6 +30,7 @@ from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.preparation import PREPARING, Preparation, Unusable, analyse, preparing_view
 from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.recording import Recording
+from sequence_planner.control.shown import Shown
 from sequence_planner.control.starting import go_on, start_when_alone
 from sequence_planner.control.view import Mode, StationIdentity, StationView
 from sequence_planner.control.view_part import View
@@ -150,6 +151,7 @@ class _Life:
         self._deployment = LastDeployment(running.socket)
         self._begins_in = begins_in
         self._at_rest_until = 0.0  # on the clock of `time.monotonic`: somebody wanted it before it could be done
+        self._shown = Shown()
         self._link = ControllerLink(running.socket, self._handle, self._answer)
 
     async def run(self, living: asyncio.TaskGroup) -> None:
@@ -298,7 +300,9 @@ class _Life:
         audited = await self._recording.carry_out(command, self._preparation.tasks, self._act)
         if controller is None:
             return True
-        self._link.publish(self._seen(controller))
+        view = self._seen(controller)
+        self._shown.note(view)
+        self._link.publish(view)
         return await self._lasting.settle(command, controller, before, audited)
 
     async def _answer(self, ask: Ask) -> View:
@@ -334,7 +338,11 @@ class _Life:
         while True:
             controller.changed.clear()
             try:
-                self._link.publish(self._seen(controller))
+                view = self._seen(controller)
+                if self._shown.is_news(view):
+                    self._link.publish(view)
+                else:
+                    self._link.publish_alive(view.time)
             except Exception as error:  # who looks on is told that nothing is heard; the station goes on
                 if failed != (failed := repr(error)):
                     LOG.exception("the station cannot be shown")

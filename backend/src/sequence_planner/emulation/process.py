@@ -124,7 +124,8 @@ class _Life:
         self._kept, self._unkept = 0.0, True  # when it was written down how they stand, and whether they have changed
         devices.on_change = self._change
         self._connect = connect
-        self._links = Links(station.pipelines, emulation.emulated, lambda: connect(NODE), self._obey)
+        self._emulated = emulation.emulated
+        self._links = Links(station.pipelines, self._emulated, lambda: connect(NODE), self._obey)
 
     async def run(self) -> None:
         """Live until cancelled."""
@@ -134,7 +135,7 @@ class _Life:
             self._look_on(main)
             serve_clients(self._emulation.station, self._devices.devices, main)
             self._links.keep(frozenset())
-            LOG.info("emulated devices are up", resources=sorted(self._emulation.emulated))
+            LOG.info("emulated devices are up", resources=sorted(self._emulated))
             self._keep()
             script, began = list(self._emulation.script), time.monotonic()
             while True:
@@ -175,7 +176,7 @@ class _Life:
 
     def _look_on(self, main: Transport) -> None:
         """Hear what is said and commanded where the devices are not emulated."""
-        emulated = self._emulation.emulated
+        emulated = self._emulated
         for incoming in self._pipelines.incoming.values():
             if incoming.topic.resource not in emulated:
                 main.subscribe(incoming.topic.name, incoming.topic.type_name, incoming.topic.quality, self._see)
@@ -185,7 +186,7 @@ class _Life:
 
     def _report(self, now: float) -> None:
         for name, pipeline in self._pipelines.incoming.items():
-            if pipeline.topic.resource not in self._emulation.emulated:
+            if pipeline.topic.resource not in self._emulated:
                 continue
             message = self._devices.says(name)
             if message is None:

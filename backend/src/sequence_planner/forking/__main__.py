@@ -1,4 +1,4 @@
-"""The process of a fork server: `python -m sequence_planner.forking DESCRIPTOR MODULE…`."""
+"""The process of a fork server: `python -m sequence_planner.forking DESCRIPTOR MODULE… LATER MODULE…`."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 
 from setproctitle import setproctitle
 
+from sequence_planner.forking.request import LATER
 from sequence_planner.forking.server import ForkServer
 
 
@@ -17,7 +18,9 @@ def main() -> None:
     setproctitle("sequence-planner: fork server")  # its place is found before the environment changes, or never
     listener = socket.socket(fileno=int(sys.argv[1]))
     place = Path(listener.getsockname())
-    life = ForkServer(listener, sys.argv[2:]).serve()
+    modules = sys.argv[2:]
+    at = modules.index(LATER) if LATER in modules else len(modules)
+    life = ForkServer(listener, modules[:at], modules[at + 1 :]).serve()
     if life is not None:
         life()
         return

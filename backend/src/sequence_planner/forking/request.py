@@ -19,6 +19,7 @@ _LENGTH: Final = struct.Struct("!I")
 _NUMBER: Final = struct.Struct("!i")
 BYTES_OF_NUMBER: Final = _NUMBER.size
 MOST_DESCRIPTORS: Final = 8
+LATER: Final = "--later"  # on the command line of a server: what is imported only when nothing is urgent follows
 
 
 @dataclass(frozen=True)

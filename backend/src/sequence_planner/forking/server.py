@@ -18,6 +18,7 @@ import socket
 import sys
 import threading
 import time
+from collections import deque
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from multiprocessing.connection import Connection
@@ -29,6 +30,7 @@ from sequence_planner.forking.request import Request, read_request, send_begun, 
 
 _STANDARD_INPUT: Final = 0
 _LEAVING: Final = 0.5  # seconds after which one that was hung up is ended, unless that was the end of the launcher
+_QUIET: Final = 1.0  # seconds in which nobody has wanted anything, before each thing that is not urgent
 ABOVE: Final = 300  # no place has such a number
 _PATIENCE: Final = 5.0  # seconds for the whole of a request: its parts are sent one right after the other
 _OWN = "sequence_planner."  # what is imported here; anything else is imported by the process that needs it
@@ -46,11 +48,14 @@ class _Forked:
 
 
 class ForkServer:
-    """Forks for whoever connects to `listener`; imports `modules` while it has nothing else to do."""
+    """Forks for whoever connects to `listener`; imports modules while it has nothing else to do: those for `now`, and
+    those for `later` once nobody has wanted anything for a while, as whoever starts now needs the processor.
+    """
 
-    def __init__(self, listener: socket.socket, modules: Iterable[str]) -> None:
+    def __init__(self, listener: socket.socket, now: Iterable[str], later: Iterable[str] = ()) -> None:
         self._listener = listener
-        self._modules = iter(modules)
+        self._now, self._later = deque(now), deque(later)
+        self._tidy = False
         self._forked: dict[int, _Forked] = {}
         self._unwanted: dict[int, float] = {}  # processes that were to be left, and when they are ended
         self._selector = selectors.DefaultSelector()
@@ -67,11 +72,11 @@ class ForkServer:
 
     def serve(self) -> Life | None:
         """Serve; returns in each process that was forked, with its life, and without one in the end."""
-        importing = True
         while True:
-            events = self._selector.select(0 if importing else _LEAVING if self._unwanted else None)
-            if not events and importing:
-                importing = self._import_next()
+            wait = self._patience()
+            events = self._selector.select(wait)
+            if not events and wait != _LEAVING:
+                self._use_the_time()
             self._end_unwanted()
             for key, _ in events:
                 if key.fileobj == _STANDARD_INPUT:
@@ -88,13 +93,22 @@ class ForkServer:
                 else:
                     self._hang_up(key.data)
 
-    def _import_next(self) -> bool:
-        """Import the next module; false when there is none."""
-        for module in self._modules:
-            _import(module)
-            return True
-        gc.collect()
-        return False
+    def _patience(self) -> float | None:
+        """How long it is waited for whoever wants something; None where there is nothing else to do."""
+        if self._now:
+            return 0
+        if self._unwanted:
+            return _LEAVING
+        return None if self._tidy else _QUIET
+
+    def _use_the_time(self) -> None:
+        """Do the next of what is done while nobody wants anything."""
+        for modules in (self._now, self._later):
+            if modules:
+                _import(modules.popleft())
+                return
+        gc.collect()  # what imports have left behind
+        self._tidy = True
 
     def _accept(self) -> Life | None:
         """Fork for the next who asks: the life of the process in it, None here."""

@@ -14,13 +14,13 @@ import tempfile
 import threading
 import time
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Final
 
 from sequence_planner.forking.child import Child
-from sequence_planner.forking.request import Request, send_request
+from sequence_planner.forking.request import LATER, Request, send_request
 from sequence_planner.secret_variables import environment
 
 VARIABLE: Final = "SEQUENCE_PLANNER_FORK_SERVER"  # of the environment: the socket of the station's fork server
@@ -58,9 +58,9 @@ class OwnServer:
         """Whether it runs."""
         return self._process is not None and self._process.poll() is None
 
-    def prepare(self, *modules: str) -> None:
-        """Start it, and have it import `modules` while nobody asks. Raises OSError."""
-        self._modules = modules
+    def prepare(self, now: Sequence[str], later: Sequence[str] = ()) -> None:
+        """Start it, and have it import modules while nobody asks, some of them `later`. Raises OSError."""
+        self._modules = (*now, LATER, *later)
         with self._lock:
             self._see_to_it()
 

@@ -14,8 +14,8 @@ from sequence_planner.identity.attempts import Counter, Kind
 from sequence_planner.identity.clearing import clear
 from sequence_planner.identity.limited import Limited
 from sequence_planner.identity.names import UNKNOWN, short
-from sequence_planner.identity.openid.flow import Flow
-from sequence_planner.identity.openid.provider import Answer, Provider, names_in
+from sequence_planner.identity.openid.flow import Answer, Flow
+from sequence_planner.identity.openid.provider import Provider, names_in
 from sequence_planner.identity.openid.refusals import disabled, no_role, not_begun
 from sequence_planner.identity.provided import Provided, actor_of, be_person, find_provided, open_flow, take_flow
 from sequence_planner.identity.recording import record

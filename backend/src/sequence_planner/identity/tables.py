@@ -6,6 +6,7 @@ was done is in the journal, which forgets nothing.
 
 from sqlalchemy import Boolean, Column, Double, ForeignKey, Index, Integer, String, Table
 
+from sequence_planner.identity.openid.addresses import LONGEST_ISSUER
 from sequence_planner.storage.metadata import METADATA
 
 ID = String(40)
@@ -13,7 +14,6 @@ HASH = String(64)  # SHA-256 in hexadecimal digits
 NAME = String(100)
 TEXT = String(200)
 LONGEST_KEY = 400  # characters of what a name is found by
-LONGEST_ISSUER = 400  # characters of the address of a provider
 
 PEOPLE = Table(
     "people",

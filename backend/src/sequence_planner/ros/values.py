@@ -7,17 +7,21 @@ field left out gets its default. What comes back is plain again: bool, int, floa
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, TypeGuard
 
-import numpy as np
 from rosbags.typesys.base import normalize_fieldname
 
 from sequence_planner.counting import counted
 from sequence_planner.ros.errors import MessageValueError, nearest
 from sequence_planner.ros.fields import FLOAT32_MAX, PLACEHOLDER, FieldType
 
-_DTYPES = {"bool": np.bool_, "byte": np.uint8, "char": np.uint8}
+if TYPE_CHECKING:  # it takes a while to import, and whoever reads a model encodes nothing
+    import numpy as np
+
+_DTYPES = {"byte": "uint8", "char": "uint8"}
 
 
 @dataclass(frozen=True)
@@ -82,7 +86,7 @@ def _zero(shapes: Shapes, field: FieldType) -> object:
     if field.kind == "string":
         return "" if field.array is None else [""] * count
     if field.array is not None:
-        return np.zeros(count, dtype=_dtype(field))
+        return _array([0] * count, field)
     return {"bool": False, "int": 0, "float": 0.0}[field.kind]
 
 
@@ -99,7 +103,7 @@ def _value(shapes: Shapes, field: FieldType, value: object, root: str, path: str
         raise MessageValueError(root, path, f"at most {counted(field.max_items, 'item')}", value)
     element = field.element
     items = [_single(shapes, element, item, root, f"{path}[{index}]") for index, item in enumerate(value)]
-    return items if field.kind in ("string", "message") else np.array(items, dtype=_dtype(field))
+    return items if field.kind in ("string", "message") else _array(items, field)
 
 
 def _single(shapes: Shapes, field: FieldType, value: object, root: str, path: str) -> object:
@@ -146,8 +150,16 @@ def _string(field: FieldType, value: object, root: str, path: str) -> str:
     return value
 
 
-def _dtype(field: FieldType) -> np.dtype[np.generic]:
-    return np.dtype(_DTYPES.get(field.type_name, field.type_name))
+def _array(items: list[object], field: FieldType) -> np.ndarray:
+    import numpy as np  # noqa: PLC0415 - see above
+
+    return np.array(items, dtype=_DTYPES.get(field.type_name, field.type_name))
+
+
+def _is_array(value: object) -> TypeGuard[np.ndarray]:
+    """Whether it is one; where numpy was never imported there are none."""
+    np = sys.modules.get("numpy")
+    return np is not None and isinstance(value, np.ndarray)
 
 
 def _plain(shapes: Shapes, field: FieldType, value: object) -> object:
@@ -157,13 +169,13 @@ def _plain(shapes: Shapes, field: FieldType, value: object) -> object:
         if isinstance(value, list):
             return [read(shapes, field.type_name, item) for item in value]
         return read(shapes, field.type_name, value)
-    if isinstance(value, np.ndarray):
+    if _is_array(value):
         return value.tolist()
     return list(value) if isinstance(value, list) else value
 
 
 def _check_bounds(field: FieldType, value: object) -> None:
-    if field.max_items and isinstance(value, (list, np.ndarray)) and len(value) > field.max_items:
+    if field.max_items and (isinstance(value, list) or _is_array(value)) and len(value) > field.max_items:
         raise MessageValueError(str(field), "", f"at most {counted(field.max_items, 'item')}", len(value))
     if field.max_length:
         for text in value if isinstance(value, list) else [value]:

@@ -24,7 +24,6 @@ from dataclasses import dataclass, field
 from typing import Final
 
 from sqlalchemy import Connection, Engine, QueuePool, Row, create_engine, select, text, update
-from sqlalchemy.dialects.postgresql import insert as insert_or_not
 from sqlalchemy.exc import SQLAlchemyError
 
 from sequence_planner.standby.tables import LEASE, STANDBYS
@@ -206,6 +205,8 @@ class Lease:
 
     def stand_by(self) -> None:
         """Say that this station is there and waits."""
+        from sqlalchemy.dialects.postgresql import insert as insert_or_not  # noqa: PLC0415 - few stations have that
+
         values = {"name": self.name, "model": self.model, "signs": 1}
         said = insert_or_not(STANDBYS).values(values)
         again = said.on_conflict_do_update(
@@ -234,6 +235,8 @@ class Lease:
 
     def _take(self, seen: Seen | None) -> bool:
         began = self.clock()
+        from sqlalchemy.dialects.postgresql import insert as insert_or_not  # noqa: PLC0415 - as above
+
         mine = {"holder": self.name, "model": self.model, "renewals": 0, "free": False}
         with self._writing() as connection:
             if seen is None:

@@ -10,6 +10,7 @@ import stat
 import time
 from typing import Final
 
+import sqlalchemy.dialects.sqlite  # noqa: F401 - or each process that is forked imports it for itself
 from sqlalchemy import Connection, Engine, QueuePool, create_engine, event
 from sqlalchemy.exc import OperationalError
 

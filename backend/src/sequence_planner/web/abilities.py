@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import Path
 from pydantic import Field, StrictBool
 
 from sequence_planner.control.asks import AskDefinition
@@ -13,11 +13,12 @@ from sequence_planner.control.restart_commands import TryAbility
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
 LONGEST_ABILITY = 400  # characters
-router = APIRouter(tags=["abilities"])
+router = interface(tags=["abilities"])
 
 
 class TrialBody(Body):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Request
+from fastapi import Path, Request
 from pydantic import Field, StrictInt
 
 from sequence_planner.control.commands import ClearOverride, SetOverride
@@ -18,14 +18,15 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.identity.watches import Watch
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, live_view
 
 LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader keeps
 OPERATOR = allowed(Role.OPERATOR)
 
-router = APIRouter(tags=["actions"], dependencies=[JSON_ONLY], responses=refused(409, 504))
-bodiless = APIRouter(tags=["actions"], responses=refused(409, 504))
+router = interface(tags=["actions"], dependencies=[JSON_ONLY], responses=refused(409, 504))
+bodiless = interface(tags=["actions"], responses=refused(409, 504))
 Name = Annotated[str, Path(max_length=200)]
 DOER = allowed(Role.OPERATOR, watch=True)
 

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from sequence_planner.control.alarm_commands import (
@@ -22,11 +21,12 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.journal.entry import LONGEST_REASON
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
 OPERATOR, ENGINEER = allowed(Role.OPERATOR), allowed(Role.ENGINEER)
-router = APIRouter(prefix="/alarms", tags=["alarms"], dependencies=[JSON_ONLY], responses=refused(409, 504))
+router = interface("/alarms", tags=["alarms"], dependencies=[JSON_ONLY], responses=refused(409, 504))
 Why = Annotated[str, Field(min_length=1, max_length=LONGEST_REASON)]
 
 

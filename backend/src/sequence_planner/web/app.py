@@ -16,7 +16,6 @@ from pathlib import Path
 from typing import Any
 
 from fastapi import FastAPI
-from fastapi.routing import APIRoute
 from starlette.concurrency import run_in_threadpool
 from starlette.middleware.gzip import GZipMiddleware
 
@@ -79,7 +78,6 @@ from sequence_planner.web.liveness import WayToDatabase
 from sequence_planner.web.looking import FlowsShow, NetworkShow
 from sequence_planner.web.noting import Noted, Noting, known_routes
 from sequence_planner.web.openapi_document import describe
-from sequence_planner.web.openapi_refusals import PROBLEM_RESPONSES
 from sequence_planner.web.order_desk import OrderDesk
 from sequence_planner.web.order_of_work import OrderOfWorkDesk
 from sequence_planner.web.problems import LastResort
@@ -93,7 +91,6 @@ from sequence_planner.web.sweeper import Sweeper
 from sequence_planner.web.watch_show import WatchShow
 from sequence_planner.web.workshop import Workshop
 
-PREFIX = "/api/v1"
 LONG = 10_000  # bytes; such answers are compressed for who takes them so
 PARTS = (
     session.router,
@@ -208,7 +205,9 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         app.state.workshop = shop = None if folder is None else _workshop(office, folder, settings)
         app.state.backups = backup_desk = _backup_desk(office, settings, controller)
         app.state.retention = retention_desk = _retention_desk(office, settings, controller)
-        deliverer = Deliverer(office.database, Sender(settings.webhooks), stands_by=lambda: controller.stands_by)
+        app.state.deliverer = deliverer = Deliverer(
+            office.database, Sender(settings.webhooks), stands_by=lambda: controller.stands_by
+        )
         parts = (controller, flows, Sweeper(office, controller), desk, sequencing, deliverer)
         running = [asyncio.create_task(each.run()) for each in parts]
         running += [asyncio.create_task(each.run()) for each in (backup_desk, retention_desk) if each is not None]
@@ -234,8 +233,6 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
         docs_url=None,  # the usual viewers load their scripts from the network
         redoc_url=None,
         redirect_slashes=False,
-        generate_unique_id_function=_operation,
-        responses=PROBLEM_RESPONSES,
         lifespan=lifespan,
     )
     app.state.controller = controller
@@ -254,17 +251,10 @@ def create_app(settings: Settings, controller: ControllerClient) -> FastAPI:
 
 def _route(app: FastAPI, settings: Settings) -> None:
     """What answers each address: the interface, what watches over the station's health, and the page's files."""
-    for part in PARTS:
-        app.include_router(part, prefix=PREFIX)
-    app.include_router(health.router)
-    app.include_router(metrics.router)
+    for part in (*PARTS, health.router, metrics.router):
+        app.router.routes.extend(part.routes)
     check_declared(app.routes)
     app.router.default = PageFiles(settings.page)
-
-
-def _operation(route: APIRoute) -> str:
-    """What generated clients call the operation of a route: the name of its function, which no other one has."""
-    return route.name
 
 
 def _surround(app: FastAPI, settings: Settings) -> None:

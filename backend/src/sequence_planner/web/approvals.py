@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Path
+from fastapi import Path
 from pydantic import Field, StrictInt
 
 from sequence_planner.control.approval_commands import (
@@ -25,6 +25,7 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import allowed
 from sequence_planner.web.actions import LARGEST_REVISION
 from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
@@ -32,9 +33,7 @@ OPERATOR, ENGINEER = allowed(Role.OPERATOR), allowed(Role.ENGINEER)
 Revision = Annotated[StrictInt, Field(ge=0, le=LARGEST_REVISION)]
 Named = Annotated[str, Path(min_length=1, max_length=40)]
 
-router = APIRouter(
-    prefix="/approvals", tags=["approvals"], dependencies=[JSON_ONLY], responses=refused(404, 409, 422, 504)
-)
+router = interface("/approvals", tags=["approvals"], dependencies=[JSON_ONLY], responses=refused(404, 409, 422, 504))
 
 
 class CorrectionRequestBody(Body):

@@ -14,7 +14,7 @@ from asyncio.subprocess import PIPE
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Request
+from fastapi import Request
 from pydantic import BaseModel, ConfigDict, Field, JsonValue
 from starlette.concurrency import run_in_threadpool
 
@@ -27,6 +27,7 @@ from sequence_planner.model.paths import EditError
 from sequence_planner.secret_variables import environment
 from sequence_planner.web.access import allowed
 from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.interface import interface
 from sequence_planner.web.model import refusal, workshop
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
@@ -37,7 +38,7 @@ from sequence_planner.workshop.files import read_files, write_files
 LONGEST = 60.0  # seconds
 STATUS = {"no-topic": 404, "attached": 409, "not-written": 409}  # of refusals; others are 422
 
-router = APIRouter(prefix="/ros", tags=["ros"], dependencies=[allowed(Role.ENGINEER), JSON_ONLY])
+router = interface("/ros", tags=["ros"], dependencies=[allowed(Role.ENGINEER), JSON_ONLY])
 
 
 class AttachmentBody(BaseModel):

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from pydantic import BaseModel
 
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.journal import audit
 from sequence_planner.journal.entry import Record
 from sequence_planner.web.access import allowed
+from sequence_planner.web.interface import interface
 from sequence_planner.web.request_parts import Identity
 
 LARGEST_NUMBER = 2**53 - 1  # the largest whole number that every JSON reader keeps
 MOST_RECORDS = 200
 
-router = APIRouter(prefix="/audit", tags=["audit"], dependencies=[allowed(Role.OPERATOR, scope=Scope.AUDIT)])
+router = interface("/audit", tags=["audit"], dependencies=[allowed(Role.OPERATOR, scope=Scope.AUDIT)])
 
 
 class AuditAnswer(BaseModel):

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import Depends, Request
 
 from sequence_planner.backup.trouble import trouble_in
 from sequence_planner.identity.roles import Role
@@ -16,12 +16,13 @@ from sequence_planner.web.access import allowed
 from sequence_planner.web.backup_desk import BackupDesk, Busy, CannotBeginError, FolderSilentError, OtherBusyError
 from sequence_planner.web.backups_answer import BackupBusyAnswer, BackupsAnswer, backups_answer, busy_answer
 from sequence_planner.web.body import Identifier, NothingBody
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR)
-bodiless = APIRouter(prefix="/backups", tags=["backups"], dependencies=[ADMINISTRATOR], responses=refused(409))
-router = APIRouter(prefix="/backups", tags=["backups"], dependencies=[ADMINISTRATOR, JSON_ONLY], responses=refused(409))
+bodiless = interface("/backups", tags=["backups"], dependencies=[ADMINISTRATOR], responses=refused(409))
+router = interface("/backups", tags=["backups"], dependencies=[ADMINISTRATOR, JSON_ONLY], responses=refused(409))
 
 
 async def _desk(request: Request) -> BackupDesk:

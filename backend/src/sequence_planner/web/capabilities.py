@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Request
+from fastapi import Request
 from pydantic import BaseModel
 
 from sequence_planner.control.work_master_view import WorkMasterView
@@ -10,13 +10,12 @@ from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.mes import orders
 from sequence_planner.mes.orders import MOST_OPEN
 from sequence_planner.web.access import allowed
+from sequence_planner.web.interface import interface
 from sequence_planner.web.job_orders import desk_of
 from sequence_planner.web.problems import ProblemFound
 from sequence_planner.web.request_parts import Identity, LiveView
 
-router = APIRouter(
-    prefix="/capabilities", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)]
-)
+router = interface("/capabilities", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)])
 
 
 class EquipmentAnswer(BaseModel):

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter
 from pydantic import Field
 
 from sequence_planner.control.commands import ReleaseControl, TakeControl
 from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
 OPERATOR = allowed(Role.OPERATOR)
-router = APIRouter(prefix="/control", tags=["control"], responses=refused(409, 504))
+router = interface("/control", tags=["control"], responses=refused(409, 504))
 
 
 class ControlBody(Body):

@@ -24,6 +24,7 @@ from sequence_planner.control.lines import read_lines
 from sequence_planner.control.link_messages import (
     FROM_CONTROLLER,
     LONGEST_VIEW,
+    AliveMessage,
     AnswerMessage,
     AskMessage,
     CommandMessage,
@@ -181,17 +182,23 @@ class ControllerClient:
                 LOG.warning("a line of the controller cannot be read", errors=error.error_count())
                 continue
             if isinstance(message, ViewMessage):
-                self.view, self.last_heard = message.view, time.monotonic()
-                if self._looking is None:
-                    self._look_for_silence()
-                for listener in self._listeners:
-                    listener(message.view)
+                self._hear(message.view)
+            elif isinstance(message, AliveMessage):
+                if self.view is not None:
+                    self._hear(self.view.model_copy(update={"time": message.time}))
             elif isinstance(message, NetworkMessage):
                 self.network = message.network
                 for each in self._network_listeners:
                     each(message.network)
             else:
                 self._answered(message)
+
+    def _hear(self, view: StationView) -> None:
+        self.view, self.last_heard = view, time.monotonic()
+        if self._looking is None:
+            self._look_for_silence()
+        for listener in self._listeners:
+            listener(view)
 
     def _look_for_silence(self) -> None:
         """Look again when it would have fallen silent by then."""

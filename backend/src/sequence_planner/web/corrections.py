@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter
 from pydantic import Field, StrictInt
 
 from sequence_planner.control.asks import AskCorrection
@@ -25,12 +24,13 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import allowed
 from sequence_planner.web.actions import LARGEST_REVISION
 from sequence_planner.web.body import Body
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
 OPERATOR = allowed(Role.OPERATOR)
 
-router = APIRouter(tags=["corrections"], dependencies=[JSON_ONLY, OPERATOR], responses=refused(404, 409, 422, 504))
+router = interface(tags=["corrections"], dependencies=[JSON_ONLY, OPERATOR], responses=refused(404, 409, 422, 504))
 
 
 class ValuesBody(Body):

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 from pydantic import Field
 
 from sequence_planner.control.asks import AskRecord
@@ -15,6 +15,7 @@ from sequence_planner.model.paths import EditError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
 from sequence_planner.web.found import UnreadBody, found, takes
+from sequence_planner.web.interface import interface
 from sequence_planner.web.model import TheWorkshop, refusal
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
@@ -36,7 +37,7 @@ from sequence_planner.workshop.pipelines.view import (
     RunsView,
 )
 
-router = APIRouter(prefix="/model/pipelines", tags=["model"], responses=refused(409, 503))
+router = interface("/model/pipelines", tags=["model"], responses=refused(409, 503))
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 
 

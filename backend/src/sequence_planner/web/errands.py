@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 from pydantic import Field
 
 from sequence_planner.control.asks import LONGEST_PREDICATE, AskAdvice, AskGoal, AskReset
@@ -18,13 +18,14 @@ from sequence_planner.journal.entry import LONGEST_REASON
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason
 from sequence_planner.web.carried_out import CARRIED_OUT, carried_out
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
 MOST_STARTS = 150  # of a plan that a person confirms start by start; a body holds no more
 OPERATOR, ENGINEER = allowed(Role.OPERATOR), allowed(Role.ENGINEER)
-advice_router = APIRouter(tags=["restart"], responses=refused(409, 504))
-router = APIRouter(prefix="/errands", tags=["restart"], dependencies=[JSON_ONLY], responses=refused(409, 504))
+advice_router = interface(tags=["restart"], responses=refused(409, 504))
+router = interface("/errands", tags=["restart"], dependencies=[JSON_ONLY], responses=refused(409, 504))
 
 
 class GoalBody(Body):

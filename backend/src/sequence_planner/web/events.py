@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from pydantic import BaseModel
 from sqlalchemy import Connection
 
@@ -13,10 +13,11 @@ from sequence_planner.mes import events
 from sequence_planner.mes.events import JobEvent
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import Identity
 
-router = APIRouter(prefix="/events", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)])
+router = interface("/events", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)])
 
 
 class EventsAnswer(BaseModel):

@@ -8,11 +8,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from pydantic import BaseModel, JsonValue
 
 from sequence_planner.version import VERSION
 from sequence_planner.web.access import allowed
+from sequence_planner.web.interface import beside_interface
 from sequence_planner.web.liveness import WayToDatabase
 from sequence_planner.web.problems import problem_response, refused
 from sequence_planner.web.readiness import SILENT, Readiness, ReadinessCheck
@@ -21,7 +22,7 @@ from sequence_planner.web.stream_messages import ControllerState
 
 SHUT = "The server's connections to the database are stuck, and a new one is not. Start the station again."
 
-router = APIRouter(tags=["health"], dependencies=[allowed(None)])
+router = beside_interface(tags=["health"], dependencies=[allowed(None)])
 
 
 class Health(BaseModel):

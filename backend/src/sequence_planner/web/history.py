@@ -10,7 +10,7 @@ from collections.abc import AsyncIterator, Callable
 from functools import partial
 from typing import Annotated, TypeVar
 
-from fastapi import APIRouter, Depends, Path, Query, Request
+from fastapi import Depends, Path, Query, Request
 from fastapi.responses import StreamingResponse
 from pydantic import Field
 
@@ -42,6 +42,7 @@ from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.web.body import Body
 from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Identity
 
@@ -55,7 +56,7 @@ PARTS = "^[a-z_]{1,40}(,[a-z_]{1,40}){0,19}$"
 KINDS = "^[a-z-]{1,40}(,[a-z-]{1,40}){0,19}$"
 
 OPERATOR = allowed(Role.OPERATOR, scope=Scope.AUDIT)
-router = APIRouter(prefix="/history", tags=["history"])
+router = interface("/history", tags=["history"])
 
 _REFUSALS = {
     "no-record": (404, "There is no such record"),

@@ -10,7 +10,7 @@ from __future__ import annotations
 import asyncio
 import time
 from collections.abc import Callable
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from anyio import to_thread
 from sqlalchemy import Connection
@@ -18,16 +18,17 @@ from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.actor import Actor
 from sequence_planner.identity import keys, sessions, watches
-from sequence_planner.identity.openid.provider import Provider
 from sequence_planner.identity.openid.settings import ProviderSettings
 from sequence_planner.identity.passwords import Passwords
-from sequence_planner.identity.provider_sign_in import ProviderSignIn
 from sequence_planner.identity.sessions import SignedIn
 from sequence_planner.identity.sign_in import SignIn
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.bearer_memory import Bearer, BearerMemory
 from sequence_planner.web.cookies import Credentials
+
+if TYPE_CHECKING:
+    from sequence_planner.identity.provider_sign_in import ProviderSignIn
 
 T = TypeVar("T")
 PATIENCE = 1.0  # seconds in which the database answers, or who is remembered goes on without
@@ -68,7 +69,7 @@ class IdentityOffice:
         except StorageError:
             database.close()
             raise
-        sign_in = None if provider is None else ProviderSignIn(database, Provider(provider))
+        sign_in = None if provider is None else _provider_sign_in(database, provider)
         return cls(database, Passwords(), demonstration=demonstration, provider=sign_in)
 
     def close(self) -> None:
@@ -192,3 +193,11 @@ class IdentityOffice:
         if (key := bearer.key) is not None and key.due(now):
             used = key.id
             self._seen[used] = lambda connection, when: keys.used(connection, used, when)
+
+
+def _provider_sign_in(database: Database, provider: ProviderSettings) -> ProviderSignIn:
+    """Sign-in with a provider. Few stations have one, and what speaks to it takes a while to import."""
+    from sequence_planner.identity.openid.provider import Provider  # noqa: PLC0415
+    from sequence_planner.identity.provider_sign_in import ProviderSignIn  # noqa: PLC0415
+
+    return ProviderSignIn(database, Provider(provider))

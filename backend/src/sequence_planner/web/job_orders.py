@@ -10,7 +10,7 @@ import json
 from enum import StrEnum
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Path, Query, Request, Response
+from fastapi import Header, Path, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, StrictBool, StrictInt
 from sqlalchemy import Connection
 
@@ -24,6 +24,7 @@ from sequence_planner.mes.times import Time
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.web.body import Body, Reason
+from sequence_planner.web.interface import interface
 from sequence_planner.web.order_answer import OrderAnswer, all_answered, answered
 from sequence_planner.web.order_desk import OrderDesk
 from sequence_planner.web.problems import ProblemFound, refused
@@ -61,8 +62,8 @@ STORED: dict[str, Any] = {
 }
 OrderId = Annotated[str, Path(max_length=200)]
 
-bodiless = APIRouter(prefix="/job-orders", tags=["job orders"], dependencies=[READ])
-router = APIRouter(prefix="/job-orders", tags=["job orders"], dependencies=[WRITE, JSON_ONLY])
+bodiless = interface("/job-orders", tags=["job orders"], dependencies=[READ])
+router = interface("/job-orders", tags=["job orders"], dependencies=[WRITE, JSON_ONLY])
 
 
 class Sort(StrEnum):

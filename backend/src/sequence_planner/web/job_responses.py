@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query
+from fastapi import Query
 from pydantic import BaseModel
 from sqlalchemy import Connection
 
@@ -21,15 +21,14 @@ from sequence_planner.mes.responses import (
 from sequence_planner.mes.times import iso
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER
+from sequence_planner.web.interface import interface
 from sequence_planner.web.job_orders import OrderId
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import Identity
 
 MOST_RESPONSES = 50  # each may be long
 
-router = APIRouter(
-    prefix="/job-responses", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)]
-)
+router = interface("/job-responses", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)])
 
 
 class OperationAnswer(OperationMade):

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter
 from pydantic import BaseModel, Field, StrictInt
 
 from sequence_planner.identity import keys
@@ -12,12 +11,13 @@ from sequence_planner.identity.keys import LONGEST_LIFE, LONGEST_OVERLAP, Key
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Identifier, Name
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR)
-bodiless = APIRouter(prefix="/keys", tags=["keys"], dependencies=[ADMINISTRATOR])
-router = APIRouter(prefix="/keys", tags=["keys"], dependencies=[ADMINISTRATOR, JSON_ONLY])
+bodiless = interface("/keys", tags=["keys"], dependencies=[ADMINISTRATOR])
+router = interface("/keys", tags=["keys"], dependencies=[ADMINISTRATOR, JSON_ONLY])
 
 
 class KeyAnswer(BaseModel):

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
 from sequence_planner.web.found import found
+from sequence_planner.web.interface import interface
 from sequence_planner.web.model import TheWorkshop
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY
@@ -20,8 +21,8 @@ from sequence_planner.workshop.questions import (
     TextAt,
 )
 
-router = APIRouter(
-    prefix="/model/language",
+router = interface(
+    "/model/language",
     tags=["model"],
     dependencies=[allowed(Role.VIEWER, scope=Scope.READ), JSON_ONLY],
     responses=refused(409, 503),

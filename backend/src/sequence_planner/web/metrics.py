@@ -8,7 +8,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Iterable
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from prometheus_client import CollectorRegistry, Metric
 from prometheus_client.exposition import choose_encoder
 from prometheus_client.registry import Collector
@@ -18,11 +18,12 @@ from sequence_planner.parts_file import read_restarts
 from sequence_planner.web import metric_families as families
 from sequence_planner.web.access import beside_or
 from sequence_planner.web.figures import Figures
+from sequence_planner.web.interface import beside_interface
 from sequence_planner.web.readiness import Readiness
 from sequence_planner.web.request_parts import Controller, Identity
 from sequence_planner.web.settings import Settings
 
-router = APIRouter(tags=["health"])
+router = beside_interface(tags=["health"])
 FORMATS = {"text/plain": {"schema": {"type": "string"}}, "application/openmetrics-text": {"schema": {"type": "string"}}}
 
 

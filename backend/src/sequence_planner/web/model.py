@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Path, Query, Response, WebSocket
+from fastapi import Depends, Path, Query, Response, WebSocket
 from fastapi.requests import HTTPConnection
 from pydantic import Field
 
@@ -18,6 +18,7 @@ from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, NothingBody
 from sequence_planner.web.controller_client import ControllerClient
 from sequence_planner.web.found import UnreadBody, found, takes
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor
 from sequence_planner.web.stream import serve
@@ -33,7 +34,7 @@ PartId = Annotated[str, Field(min_length=3, max_length=500)]
 VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 ENGINEER = allowed(Role.ENGINEER)
 
-router = APIRouter(prefix="/model", tags=["model"], responses=refused(409, 503))
+router = interface("/model", tags=["model"], responses=refused(409, 503))
 
 
 async def workshop(connection: HTTPConnection) -> Workshop:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Path, Response
+from fastapi import Path, Response
 from pydantic import Field, StrictBool
 
 from sequence_planner.control.job_commands import SetByOrder
@@ -29,14 +29,15 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason
 from sequence_planner.web.carried_out import CARRIED_OUT, carried_out
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
 OPERATOR, ENGINEER = allowed(Role.OPERATOR), allowed(Role.ENGINEER)
 LONGEST_FORCE = 3600.0  # seconds
 
-router = APIRouter(tags=["modes"], dependencies=[JSON_ONLY], responses=refused(409, 504))
-bodiless = APIRouter(tags=["modes"], responses=refused(409, 504))
+router = interface(tags=["modes"], dependencies=[JSON_ONLY], responses=refused(409, 504))
+bodiless = interface(tags=["modes"], responses=refused(409, 504))
 Named = Annotated[str, Path(max_length=400)]
 # By their words: of members of an enumeration a wrong request would be shown Python's way to write them.
 ModeWord = Literal["automatic", "paused", "hold"]

@@ -11,7 +11,7 @@ from __future__ import annotations
 import threading
 from typing import Any, Final
 
-from fastapi import APIRouter, FastAPI, Request
+from fastapi import FastAPI, Request
 from fastapi.encoders import jsonable_encoder
 from fastapi.openapi.models import Schema
 from fastapi.openapi.utils import get_openapi
@@ -24,6 +24,7 @@ from starlette.concurrency import run_in_threadpool
 from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import Access, allowed, declared
 from sequence_planner.web.cookies import NAME, SESSION_COOKIE, WATCH_COOKIE
+from sequence_planner.web.interface import interface
 from sequence_planner.web.looking_messages import FlowsStreamMessage, NetworkStreamMessage, WorkshopStreamMessage
 from sequence_planner.web.openapi_parts import CONTACT, SERVERS, TAGS, WEBHOOKS, complete_arrays, websockets
 from sequence_planner.web.openapi_refusals import describe_refusals
@@ -61,7 +62,7 @@ STREAMS: Final[dict[str, type[BaseModel]]] = {
 
 _WRITING: Final = threading.Lock()
 
-router = APIRouter()
+router = interface()
 
 
 @router.get("/openapi.json", include_in_schema=False, dependencies=[allowed(Role.VIEWER, any_key=True)])

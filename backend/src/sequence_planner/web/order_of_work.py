@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Annotated
 
 import structlog
-from fastapi import APIRouter, Query, Request
+from fastapi import Query, Request
 from pydantic import BaseModel
 
 from sequence_planner.actor import SYSTEM
@@ -28,6 +28,7 @@ from sequence_planner.storage.error import StorageError
 from sequence_planner.web.access import allowed
 from sequence_planner.web.controller_client import ControllerClient
 from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.interface import interface
 from sequence_planner.web.order_desk import OrderDesk
 
 LOG = structlog.get_logger(__name__)
@@ -36,9 +37,7 @@ ASK_EVERY = 5.0  # seconds between two questions
 LIMIT = 5.0  # seconds for an answer
 HELD_UP = 30.0  # seconds after which nobody waits any longer for a job of which nothing is active
 
-router = APIRouter(
-    prefix="/order-of-work", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)]
-)
+router = interface("/order-of-work", tags=["job orders"], dependencies=[allowed(Role.VIEWER, scope=Scope.ORDERS_READ)])
 
 
 class ExpectedOperation(BaseModel):

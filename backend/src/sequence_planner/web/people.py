@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Response
+from fastapi import Header, Response
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 from sqlalchemy import Connection
 
@@ -20,12 +20,13 @@ from sequence_planner.identity.roles import Role
 from sequence_planner.identity.sessions import end_sessions_of, live_counts
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Identifier, Name
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR)
-bodiless = APIRouter(prefix="/people", tags=["people"], dependencies=[ADMINISTRATOR])
-router = APIRouter(prefix="/people", tags=["people"], dependencies=[ADMINISTRATOR, JSON_ONLY])
+bodiless = interface("/people", tags=["people"], dependencies=[ADMINISTRATOR])
+router = interface("/people", tags=["people"], dependencies=[ADMINISTRATOR, JSON_ONLY])
 # What is too short is told, but refused by `check_password`, in its words.
 TOLD = {"minLength": SHORTEST_PASSWORD}
 Password = Annotated[str, Field(min_length=1, max_length=LONGEST_PASSWORD, json_schema_extra=TOLD)]

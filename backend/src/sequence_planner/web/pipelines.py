@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query, WebSocket
+from fastapi import Query, WebSocket
 
 from sequence_planner.control.asks import AboutFlows, AboutPipelines
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
+from sequence_planner.web.interface import interface
 from sequence_planner.web.looking import FlowsShow
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import Controller
@@ -18,8 +19,8 @@ from sequence_planner.web.stream import serve
 # Pipelines by name, repeated as in `?pipeline=/robot/state&pipeline=robot.holding`.
 Names = Annotated[list[Annotated[str, Query(max_length=500)]] | None, Query(max_length=200)]
 
-router = APIRouter(
-    prefix="/pipelines",
+router = interface(
+    "/pipelines",
     tags=["pipelines"],
     dependencies=[allowed(Role.VIEWER, scope=Scope.READ)],
     responses=refused(504),

@@ -7,28 +7,30 @@ browser keeps a token for the sign-in that it has begun; without it the answer i
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from pydantic import AfterValidator, BaseModel, Field
 
-from sequence_planner.identity.openid.flow import FLOW_LIFE
-from sequence_planner.identity.openid.provider import Answer
-from sequence_planner.identity.provider_sign_in import ProviderSignIn
+from sequence_planner.identity.openid.flow import FLOW_LIFE, Answer
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
 from sequence_planner.web.cookies import credentials, flow_token, forget_flow, keep_flow
 from sequence_planner.web.identity import IdentityOffice
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Address, Agent, Identity
 from sequence_planner.web.session_answer import SessionAnswer, begin_session
 from sequence_planner.web.settings import Settings
 
+if TYPE_CHECKING:  # most stations have no provider, and what speaks to one takes a while to import
+    from sequence_planner.identity.provider_sign_in import ProviderSignIn
+
 BACK = "/sign-in/provider"  # the page to which the provider sends the browser back
 HOME = "/"
 LONGEST_PAGE = 2000  # characters
 
-router = APIRouter(prefix="/session/provider", tags=["session"], dependencies=[allowed(None), JSON_ONLY])
+router = interface("/session/provider", tags=["session"], dependencies=[allowed(None), JSON_ONLY])
 
 
 def own_page(text: str) -> str:

@@ -8,7 +8,7 @@ from enum import StrEnum
 from pathlib import Path as Folder
 from typing import Annotated
 
-from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi import Path, Query, Request, Response
 from pydantic import Field
 from starlette.concurrency import run_in_threadpool
 
@@ -22,6 +22,7 @@ from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body
 from sequence_planner.web.found import found
 from sequence_planner.web.history import looked_back
+from sequence_planner.web.interface import interface
 from sequence_planner.web.leaving import while_waited_for
 from sequence_planner.web.model import TheWorkshop, refusal
 from sequence_planner.web.problems import ProblemFound, refused
@@ -41,7 +42,7 @@ VIEWER = allowed(Role.VIEWER, scope=Scope.READ)
 ENGINEER = allowed(Role.ENGINEER)
 HASH = "[0-9a-f]{40}"
 
-router = APIRouter(prefix="/model", tags=["model"], responses=refused(409, 503))
+router = interface("/model", tags=["model"], responses=refused(409, 503))
 Id = Annotated[str, Path(pattern=f"^{HASH}$")]
 Version = Annotated[str, Query(pattern=f"^({DRAFT}|{RUNNING}|{HASH})$")]
 Number = Annotated[int, Field(ge=0, le=2**53 - 1, strict=True)]

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, WebSocket
+from fastapi import WebSocket
 
 from sequence_planner.control.network_view import NetworkView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
+from sequence_planner.web.interface import interface
 from sequence_planner.web.looking import NetworkShow
 from sequence_planner.web.problems import ProblemFound
 from sequence_planner.web.request_parts import Controller, LiveView
 from sequence_planner.web.stream import serve
 
-router = APIRouter(prefix="/ros", tags=["ros"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
+router = interface("/ros", tags=["ros"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
 
 
 @router.get("/graph")

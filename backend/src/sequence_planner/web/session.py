@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 from typing import Annotated
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from pydantic import Field
 from sqlalchemy import Connection
 
@@ -26,6 +26,7 @@ from sequence_planner.web.access import allowed, bearer_of
 from sequence_planner.web.body import Body, Name
 from sequence_planner.web.cookies import Credentials, credentials, forget_session
 from sequence_planner.web.demonstration import may_open_demonstration
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Address, Agent, Controller, Identity, Session
 from sequence_planner.web.session_answer import SessionAnswer, answered, begin_session
@@ -35,7 +36,7 @@ EVERYBODY = allowed(None)
 ONESELF = allowed(Role.VIEWER, unready=True)
 LONGEST = 1000  # characters of what somebody typed; what may be a password is a matter of `check_password`
 
-router = APIRouter(tags=["session"])
+router = interface(tags=["session"])
 Typed = Annotated[str, Field(min_length=1, max_length=LONGEST)]
 
 

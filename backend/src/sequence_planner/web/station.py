@@ -6,7 +6,6 @@ the controller is silent the answer is 503.
 
 from __future__ import annotations
 
-from fastapi import APIRouter
 from pydantic import BaseModel
 
 from sequence_planner.analysis.document import AnalysisDocument
@@ -42,9 +41,10 @@ from sequence_planner.control.view import (
 from sequence_planner.control.who_can_view import WhoCanView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
+from sequence_planner.web.interface import interface
 from sequence_planner.web.request_parts import LiveView
 
-router = APIRouter(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
+router = interface(tags=["station"], dependencies=[allowed(Role.VIEWER, scope=Scope.READ)])
 
 
 class Answer(BaseModel):

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Depends, Request
+from fastapi import Depends, Request
 
 from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import NothingBody
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor
 from sequence_planner.web.retention_desk import RetentionDesk
 from sequence_planner.web.storage_answer import StorageAnswer, StorageBusyAnswer, storage_answer
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR)
-bodiless = APIRouter(prefix="/storage", tags=["storage"], dependencies=[ADMINISTRATOR], responses=refused(409))
-router = APIRouter(prefix="/storage", tags=["storage"], dependencies=[ADMINISTRATOR, JSON_ONLY], responses=refused(409))
+bodiless = interface("/storage", tags=["storage"], dependencies=[ADMINISTRATOR], responses=refused(409))
+router = interface("/storage", tags=["storage"], dependencies=[ADMINISTRATOR, JSON_ONLY], responses=refused(409))
 
 
 async def _desk(request: Request) -> RetentionDesk:

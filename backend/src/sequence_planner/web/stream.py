@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager, nullcontext
 from typing import NamedTuple, Protocol
 
-from fastapi import APIRouter, WebSocket, WebSocketDisconnect
+from fastapi import WebSocket, WebSocketDisconnect
 from pydantic import ValidationError
 from starlette.types import Message
 
@@ -24,6 +24,7 @@ from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.access import Access, allowed
 from sequence_planner.web.broadcast import Broadcast, Subscriber
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound
 from sequence_planner.web.settings import StreamLimits
 from sequence_planner.web.stream_messages import Resync
@@ -31,7 +32,7 @@ from sequence_planner.web.stream_messages import Resync
 LOOK_EVERY = 1.0  # seconds between looks at whether a client still may listen
 LAST_WORDS = 30.0  # seconds in which a dropped client may still learn why
 
-router = APIRouter()
+router = interface()
 
 
 class Ending(NamedTuple):

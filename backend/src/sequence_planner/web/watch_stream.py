@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, WebSocket
+from fastapi import WebSocket
 
 from sequence_planner.identity.watches import Watch
 from sequence_planner.web.access import watch_only
+from sequence_planner.web.interface import interface
 from sequence_planner.web.stream import serve
 from sequence_planner.web.watch_show import WatchShow
 
-router = APIRouter(prefix="/watches")
+router = interface("/watches")
 
 
 @router.websocket("/stream", dependencies=[watch_only()])

@@ -6,7 +6,7 @@ and confirms it. Only then is it told anything. Whatever is wrong with a code, t
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 from starlette.concurrency import run_in_threadpool
 
 from sequence_planner.control.view import StationView
@@ -17,6 +17,7 @@ from sequence_planner.identity.watches import CONFIRMED_WITHIN, LIFE, Watch
 from sequence_planner.web.access import allowed, watch_only
 from sequence_planner.web.body import Identifier
 from sequence_planner.web.cookies import keep_watch
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Address, Agent, Controller, Identity, LiveView
 from sequence_planner.web.settings import Settings
@@ -33,7 +34,7 @@ from sequence_planner.web.watch_messages import (
 )
 
 OPERATOR = allowed(Role.OPERATOR)
-router = APIRouter(prefix="/watches", tags=["watches"])
+router = interface("/watches", tags=["watches"])
 
 
 @router.get("", dependencies=[OPERATOR])

@@ -5,13 +5,14 @@ from __future__ import annotations
 from functools import partial
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import Depends, Query, Request, Response
 from pydantic import BaseModel, Field, StrictInt
 
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.mes.events import EventKind
 from sequence_planner.mes.webhooks import deliveries
 from sequence_planner.mes.webhooks import webhook as webhooks
+from sequence_planner.mes.webhooks.deliverer import Deliverer
 from sequence_planner.mes.webhooks.deliveries import DeadLetter
 from sequence_planner.mes.webhooks.sealing import Seal, key_file
 from sequence_planner.mes.webhooks.sending import resolved
@@ -20,12 +21,13 @@ from sequence_planner.mes.webhooks.webhook import Webhook
 from sequence_planner.web.access import allowed
 from sequence_planner.web.audit import LARGEST_NUMBER, MOST_RECORDS
 from sequence_planner.web.body import Body, Identifier, Name
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Identity
 
 ADMINISTRATOR = allowed(Role.ADMINISTRATOR, scope=Scope.WEBHOOKS)
-bodiless = APIRouter(prefix="/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR])
-router = APIRouter(prefix="/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR, JSON_ONLY])
+bodiless = interface("/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR])
+router = interface("/webhooks", tags=["webhooks"], dependencies=[ADMINISTRATOR, JSON_ONLY])
 
 MADE: dict[str, Any] = {
     "headers": {
@@ -135,6 +137,8 @@ async def make_webhook(
         lambda connection: webhooks.make(connection, seal, body.title, body.url, body.kinds, body.after, actor, now),
         by=actor,
     )
+    deliverer: Deliverer = request.app.state.deliverer
+    deliverer.look()
     response.headers["Location"] = request.url_for("read_webhook", webhook=webhook.id).path
     return NewWebhookAnswer(webhook=webhook, secret=secret)
 

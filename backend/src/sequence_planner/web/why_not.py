@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from fastapi import APIRouter, Path
+from fastapi import Path
 
 from sequence_planner.control.asks import AskWhyNot
 from sequence_planner.control.why_not_view import WhyNotView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed
 from sequence_planner.web.errands import ENGINEER, GoalBody
+from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Controller
 
-router = APIRouter(prefix="/why-not", tags=["station"], responses=refused(504))
+router = interface("/why-not", tags=["station"], responses=refused(504))
 
 
 @router.get("/{of}/{name}", dependencies=[allowed(Role.VIEWER, scope=Scope.READ)], responses=refused(404))

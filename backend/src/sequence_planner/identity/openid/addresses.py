@@ -6,6 +6,7 @@ import re
 from ipaddress import ip_address
 from urllib.parse import SplitResult, urlsplit
 
+LONGEST_ISSUER = 400  # characters of the address of a provider
 _WRITTEN = re.compile(r"[!-~]{1,2000}")  # no blanks, nothing that does not show
 
 

@@ -58,3 +58,13 @@ class Flow:
 
 def _text(digest: bytes) -> str:
     return urlsafe_b64encode(digest).rstrip(b"=").decode()
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What the browser brought back from the provider."""
+
+    state: str
+    code: str | None = None
+    error: str | None = None
+    issuer: str | None = None

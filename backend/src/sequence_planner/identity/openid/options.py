@@ -11,10 +11,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from urllib.parse import urlsplit
 
-from sequence_planner.identity.openid.addresses import is_safe
+from sequence_planner.identity.openid.addresses import LONGEST_ISSUER, is_safe
 from sequence_planner.identity.openid.settings import NO_OTHERS, ProviderSettings
 from sequence_planner.identity.roles import Role
-from sequence_planner.identity.tables import LONGEST_ISSUER
 from sequence_planner.secret_variables import CLIENT_SECRET
 
 LONGEST_SECRET = 4096

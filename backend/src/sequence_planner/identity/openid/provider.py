@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from base64 import b64encode
 from collections.abc import Mapping
-from dataclasses import dataclass
 from urllib.parse import quote, urlencode
 
 import structlog
 
 from sequence_planner.identity.openid.asking import asked
-from sequence_planner.identity.openid.flow import Flow
+from sequence_planner.identity.openid.flow import Answer, Flow
 from sequence_planner.identity.openid.id_token import Expected, UnknownKeyError, verified
 from sequence_planner.identity.openid.metadata import Known, Metadata
 from sequence_planner.identity.openid.refusals import away, denied, unfit
@@ -24,16 +23,6 @@ NAMES = (
     "email",
 )  # claims that may name somebody, the best first
 OUR_FAULT = ("invalid_client", "unauthorized_client", "unsupported_grant_type", "invalid_scope")
-
-
-@dataclass(frozen=True)
-class Answer:
-    """What the browser brought back from the provider."""
-
-    state: str
-    code: str | None = None
-    error: str | None = None
-    issuer: str | None = None
 
 
 class Provider:

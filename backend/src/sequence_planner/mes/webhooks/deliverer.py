@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import time
 from collections.abc import Callable
@@ -23,11 +24,14 @@ from sequence_planner.storage.error import StorageError
 
 LOG = structlog.get_logger(__name__)
 LOOK_EVERY = 0.5  # seconds
+LOOK_FOR_WEBHOOKS = 5.0  # seconds, where there are none: whoever makes one here says so
 T = TypeVar("T")
 
 
 class Deliverer:
-    """Looks twice a second for what is to be delivered, unless it `stands_by` for another that does."""
+    """Looks twice a second for what is to be delivered where there are webhooks, unless it `stands_by` for another that
+    does.
+    """
 
     def __init__(
         self,
@@ -45,14 +49,23 @@ class Deliverer:
         self._stands_by = stands_by
         self._under_way: dict[str, asyncio.Task[None]] = {}
         self._in_trouble = False
+        self._made = asyncio.Event()
+        self._has_webhooks = True  # as far as it is known
+
+    def look(self) -> None:
+        """A webhook was made."""
+        self._made.set()
 
     async def run(self) -> None:
         """Deliver until cancelled. What fails is tried again and again."""
         try:
             while True:
+                self._made.clear()
                 if not self._stands_by():
                     await self._look()
-                await asyncio.sleep(LOOK_EVERY)
+                with contextlib.suppress(TimeoutError):
+                    async with asyncio.timeout(LOOK_EVERY if self._has_webhooks else LOOK_FOR_WEBHOOKS):
+                        await self._made.wait()
         finally:
             for task in self._under_way.values():
                 task.cancel()
@@ -60,7 +73,7 @@ class Deliverer:
 
     async def _look(self) -> None:
         try:
-            found = await self._read(partial(deliveries.waiting, now=self._now()))
+            self._has_webhooks, found = await self._read(partial(_waiting, now=self._now()))
             self._in_trouble = False
         except StorageError as error:
             self._note(str(error))
@@ -135,3 +148,8 @@ class Deliverer:
         if not self._in_trouble:
             LOG.warning("webhooks cannot be told now", reason=reason)
         self._in_trouble = True
+
+
+def _waiting(connection: Connection, now: float) -> tuple[bool, list[str]]:
+    """Whether there are webhooks, and those for which there is something to do."""
+    return deliveries.are_any(connection), deliveries.waiting(connection, now)

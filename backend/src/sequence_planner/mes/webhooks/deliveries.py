@@ -65,6 +65,11 @@ class DeadLetter(BaseModel):
     trouble: str
 
 
+def are_any(connection: Connection) -> bool:
+    """Whether there are webhooks."""
+    return connection.execute(select(WEBHOOKS.c.id).limit(1)).first() is not None
+
+
 def waiting(connection: Connection, now: float) -> list[str]:
     """The webhooks for which there is something to do now: events to look at, or one to be sent."""
     last = events.last(connection)

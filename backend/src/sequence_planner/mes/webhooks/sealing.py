@@ -10,14 +10,14 @@ from __future__ import annotations
 import base64
 import os
 from pathlib import Path
-from typing import Final
-
-from cryptography.exceptions import InvalidTag
-from cryptography.hazmat.primitives.ciphers.aead import AESGCM
+from typing import TYPE_CHECKING, Final
 
 from sequence_planner.journal import signing_key
 from sequence_planner.storage.address import PostgresqlServer, SqliteFile
 from sequence_planner.storage.error import StorageError
+
+if TYPE_CHECKING:  # most stations have no webhooks
+    from cryptography.hazmat.primitives.ciphers.aead import AESGCM
 
 _KEY_SIZE: Final = 32  # bytes
 _NONCE_SIZE: Final = 12
@@ -48,6 +48,8 @@ class Seal:
 
     def open(self, sealed: str, webhook: str) -> str:
         """The secret. Raises `UnreadableSecretError`, and `StorageError` when the file cannot be read."""
+        from cryptography.exceptions import InvalidTag  # noqa: PLC0415 - see above
+
         stored = base64.b64decode(sealed)
         if not self._file.exists():
             raise UnreadableSecretError(f"{self._file} is not there, with which its secret was sealed")
@@ -58,6 +60,8 @@ class Seal:
         return opened.decode()
 
     def _cipher(self, *, make: bool = False) -> AESGCM:
+        from cryptography.hazmat.primitives.ciphers.aead import AESGCM  # noqa: PLC0415 - see above
+
         try:
             if make and not self._file.exists():
                 _make(self._file)
@@ -78,7 +82,7 @@ def _make(file: Path) -> None:
     descriptor = os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o600)
     try:
         with os.fdopen(descriptor, "wb") as opened:
-            opened.write(AESGCM.generate_key(8 * _KEY_SIZE))
+            opened.write(os.urandom(_KEY_SIZE))
             opened.flush()
             os.fsync(opened.fileno())
         try:

@@ -8,11 +8,12 @@ import ssl
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Final
-
-import httpx
+from typing import TYPE_CHECKING, Final
 
 from sequence_planner.mes.webhooks.targets import Target, TargetRefused, Targets
+
+if TYPE_CHECKING:
+    import httpx
 
 _MOST_ADDRESSES: Final = 3  # that are tried
 
@@ -61,6 +62,8 @@ class Sender:
             raise Undelivered(f"there was no answer within {self._patience.all:g} s") from None
 
     async def _post(self, url: str, headers: Mapping[str, str], body: bytes) -> None:
+        import httpx  # noqa: PLC0415 - most stations have no webhooks
+
         target = self._targets.target(url)
         addresses = await resolved(self._targets, target)
         given = {
@@ -99,6 +102,8 @@ class Sender:
 
     def _client(self) -> httpx.AsyncClient:
         """One for each attempt: a connection to an address must not be used again for another name."""
+        import httpx  # noqa: PLC0415 - as above
+
         limits = httpx.Limits(max_connections=1, max_keepalive_connections=0)
         return httpx.AsyncClient(verify=self._trust, trust_env=False, timeout=self._timeout, limits=limits)
 
@@ -109,6 +114,8 @@ class Sender:
 
     @cached_property
     def _timeout(self) -> httpx.Timeout:
+        import httpx  # noqa: PLC0415 - as above
+
         return httpx.Timeout(self._patience.reading, connect=self._patience.connecting)
 
 
