@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable
+from math import inf
 from typing import Any
 
 import pytest
@@ -259,3 +260,52 @@ def reaches(
             return False
         state, left = after, missing(left, after)
     return not left
+
+
+class Looks(Budget):
+    """Spent when it has been looked at so many times."""
+
+    def __init__(self, looks: int) -> None:
+        super().__init__(inf)
+        self.left = looks
+
+    @property
+    def remaining(self) -> float:
+        self.left -= 1
+        return 60.0 if self.left >= 0 else 0.0
+
+
+def test_what_is_found_when_the_time_ends_is_told_with_what_is_proven_of_it() -> None:
+    """By the bounded solver, asked for no more than it has looked at before: it goes from long plans to short ones."""
+    counting = {
+        "name": "counting",
+        "variables": {"n": {"min": 0, "max": 9}, "m": {"min": 0, "max": 9}},
+        "initial": "n == 0 and m == 0",
+        "transitions": [
+            {"event": "up", "controllable": True, "set": {"n": "n + 1"}},
+            {"event": "over", "controllable": True, "guard": "n >= 3", "set": {"n": 0, "m": "m + 1"}},
+            {"event": "back", "controllable": True, "guard": "m > 0", "set": {"m": "m - 1"}},
+        ],
+        "goal": ["F (m == 2)", "F (m == 9 and n == 9)"],
+    }
+    automaton = read(counting)
+    supervisor = synthesise(automaton)
+    near, far = goals_of(automaton, automaton.operations)
+    lengths: set[int] = set()
+    for looks in range(60):
+        engine = SingleStarts(without_flags(automaton), supervisor)
+        begin = automaton.initial_valuation
+        assert engine.solve(Task(begin, (far,), longest=20, depth=20), Budget.seconds(60)).plan is None
+        task = Task(begin, (near,), longest=20, depth=20)
+        found = engine.solve(task, Looks(looks))
+        assert found.searched <= 9  # the tick in which the goal is seen to hold is the ninth
+        if found.plan is not None:
+            order = [name for _, name in found.plan.starts]
+            assert reaches(automaton, supervisor, begin, order, (near,))
+            assert found.plan.minimal_ticks == (len(order) == found.searched - 1 == 8)
+            lengths.add(len(order))
+        again = engine.solve(task, Budget.seconds(60))
+        assert again.plan is not None
+        assert again.plan.minimal_ticks
+        assert len(again.plan.starts) == 8
+    assert len(lengths) > 1
