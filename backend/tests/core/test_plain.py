@@ -27,6 +27,8 @@ from sequence_planner.planning.plan import Contract, Goal, Verdict, goals_of
 from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.sat.single_starts import SingleStarts
 from sequence_planner.planning.single.derived import without_flags
+from sequence_planner.planning.single.neighbourhood import shortened
+from sequence_planner.planning.single.stepping import Stepping
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
@@ -309,3 +311,29 @@ def test_what_is_found_when_the_time_ends_is_told_with_what_is_proven_of_it() ->
         assert again.plan.minimal_ticks
         assert len(again.plan.starts) == 8
     assert len(lengths) > 1
+
+
+@examples(60)
+@given(made_by(document_with_goals), made_by(lambda choices: [choices.number(0, 30) for _ in range(30)]))
+def test_what_is_shortened_still_leads_to_the_goals(written: dict[str, Any], drawn: list[int]) -> None:
+    """Of a plan that strays, as near to it as it can be; given time, the fewest transitions where all is near."""
+    explicit, automaton = meant(written)
+    if automaton is None or not explicit.initial <= explicit.safe:
+        return
+    supervisor, goals = synthesise(automaton), goals_of(automaton, automaton.operations)
+    key = min(explicit.initial, key=str)
+    begin, least = explicit.valuation(key), distance(explicit, key, goals)
+    left = missing(goals, begin)
+    strayed: list[str] = []
+    stepping = Stepping(without_flags(automaton), supervisor)
+    run = stepping.begin(begin)
+    for number in drawn:
+        if not (following := list(stepping.following(run))):
+            break
+        name, run = following[number % len(following)]
+        strayed.append(name)
+    if not left or not reaches(automaton, supervisor, begin, strayed, goals):
+        return
+    shorter = shortened(strayed, begin, left, stepping, Budget.seconds(60)) or strayed
+    assert reaches(automaton, supervisor, begin, shorter, goals)
+    assert len(shorter) == least
