@@ -20,6 +20,7 @@ LANE = Lane(
         Contract.FAST: ("pairs", "search", "relaxation", "pdr", "bmc", "a-star"),
     },
     first_turns={"pairs": 0.06, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
+    fast_first_turns={"search": 1.0, "bmc": 0.2},
     by_work=True,
 )
 
