@@ -45,7 +45,7 @@ class Lane(Immutable):
     engines: Mapping[Contract, tuple[str, ...]]
     niceness: int = 5  # ticks are not held up by planning
     first_turns: Mapping[str, float] = LONG_FIRST_TURNS  # of those whose first turn is not `FIRST_TURN`
-    fast_first_turns: Mapping[str, float] = MappingProxyType({})  # of those whose first turn is another one for a fast plan
+    fast_first_turns: Mapping[str, float] = MappingProxyType({})  # where it is another one then
     by_work: bool = False  # turns are seconds of the processor, however long others hold the process up
 
     def first_turn(self, engine: str, contract: Contract) -> float:
