@@ -60,15 +60,19 @@ class Lane(Immutable):
 
 
 class Maker(Immutable):
-    """Makes engines of a class that is imported only when one is made: a command needs few of them."""
+    """Makes engines of a class that is imported only when one is made: a command needs few of them.
+
+    What they have in common with others is made before, and is `shared`.
+    """
 
     module: str
     kind: str
+    shared: tuple[object, ...] = ()
 
     def __call__(self, automaton: Automaton, supervisor: Supervisor) -> Engine:
         """A new engine."""
         engine: Engine = getattr(import_module(f"sequence_planner.planning.{self.module}"), self.kind)(
-            automaton, supervisor
+            automaton, supervisor, *self.shared
         )
         return engine
 

@@ -6,7 +6,8 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.collection import collection_put_off
 from sequence_planner.immutable import replace
-from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Plan, one_by_one, starts_of
 from sequence_planner.planning.sat.search import Search, SearchTimeoutError, Sought
@@ -40,9 +41,10 @@ class SingleStarts:
 
     name = "bmc"
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+    def __init__(self, automaton: Automaton, supervisor: Supervisor, starts: Starts | None = None) -> None:
         self._automaton = automaton
         self._supervisor = supervisor
+        self._starts = starts or Starts(automaton, supervisor)
         self._searches: dict[bool, Search] = {}
         self._last: _Progress | None = None
 
@@ -52,17 +54,19 @@ class SingleStarts:
 
         When the budget is spent, the best plan so far, with no more proven of it than is.
         """
-        search = self._search(len(task.goals) == 1)
         if self._last is None or self._last.task is not task:
             self._last = _Progress(task)
         done = self._last
         try:
+            search = self._search(len(task.goals) == 1, budget)
             if task.bound <= search.ticks:
                 self._downwards(search, done, budget)
             else:
                 self._upwards(search, done, budget)
         except SearchTimeoutError as late:
             done.searched = max(done.searched, late.searched)
+        except SpentError:  # before the first question
+            pass
         return done.finding
 
     def _upwards(self, search: Search, done: _Progress, budget: Budget) -> None:
@@ -81,13 +85,16 @@ class SingleStarts:
                 return
             done.best = one_by_one(name for _, name in starts_of(plan.ticks))
 
-    def _search(self, only_the_end_counts: bool) -> Search:
-        """Of several goals each can hold at another moment, which another order of starts may do without."""
+    def _search(self, only_the_end_counts: bool, budget: Budget) -> Search:
+        """Of several goals each can hold at another moment, which another order of starts may do without.
+
+        Raises `SpentError`.
+        """
         if only_the_end_counts not in self._searches:
             order = tuple(self._automaton.abilities.values())
             follow: Succession = [None] * len(order)
             if only_the_end_counts:
-                follow = succession(self._automaton, self._supervisor, order)
+                follow = succession(self._starts, [ability.name for ability in order], budget.require)
             self._searches[only_the_end_counts] = Search(
                 self._automaton, self._supervisor, order, frozenset(), inside=True, succession=follow
             )

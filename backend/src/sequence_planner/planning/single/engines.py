@@ -8,6 +8,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.engine import Engine, Finding, Task
 from sequence_planner.planning.engines import FACTORIES, Factory, Lane, Maker
 from sequence_planner.planning.plan import Contract, one_by_one, starts_of
@@ -80,11 +81,13 @@ class _WithFlags(Separately):
         return super().solve(replace(task, state={**task.state, **self._flags}), budget)
 
 
-FACTORIES_OF_SINGLE: Mapping[str, Factory] = {
-    "bmc": Maker("sat.single_starts", "SingleStarts"),
-    "a-star": Maker("heuristic.fewest", "FewestStarts"),
-    "search": _Several(FACTORIES["search"]),
-    "relaxation": FACTORIES["relaxation"],
-    "pairs": Maker("single.pairs", "Pairs"),
-    "pdr": _proving,
-}
+def factories(starts: Starts) -> Mapping[str, Factory]:
+    """Those of all engines, for an automaton with these `starts`."""
+    return {
+        "bmc": Maker("sat.single_starts", "SingleStarts", (starts,)),
+        "a-star": Maker("heuristic.fewest", "FewestStarts"),
+        "search": _Several(FACTORIES["search"]),
+        "relaxation": FACTORIES["relaxation"],
+        "pairs": Maker("single.pairs", "Pairs", (starts,)),
+        "pdr": _proving,
+    }

@@ -11,6 +11,7 @@ from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.attempt import Attempt
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.engines import Engines, Report
 from sequence_planner.planning.goals.pursuit import Goals
@@ -22,7 +23,7 @@ from sequence_planner.planning.repair import NAME as REPAIR
 from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.single.derived import without_flags
 from sequence_planner.planning.single.detours import Detours
-from sequence_planner.planning.single.engines import FACTORIES_OF_SINGLE, LANE, PROVING
+from sequence_planner.planning.single.engines import LANE, PROVING, factories
 from sequence_planner.planning.single.neighbourhood import shortened
 from sequence_planner.planning.single.stepping import Stepping
 from sequence_planner.planning.single.ways import Ways
@@ -46,10 +47,11 @@ class SinglePlanner:
         bare = without_flags(automaton)
         self._supervisor = supervisor
         self._transitions = plain_transitions(automaton)
-        self._ways = Ways(bare, supervisor)
+        starts = Starts(bare, supervisor)
+        self._ways = Ways(starts)
         self._stepping = Stepping(bare, supervisor)
         self._detours = Detours(self._stepping, self._ways)
-        self._engines = Engines(bare, supervisor, LANE, FACTORIES_OF_SINGLE)
+        self._engines = Engines(bare, supervisor, LANE, factories(starts))
         self._last: tuple[Plan, _Taken] | None = None
 
     def answer(
