@@ -17,7 +17,7 @@ from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.plan import Circumstances, Contract, Goal, Plan
 from sequence_planner.planning.sat.fewest import Fewest
-from sequence_planner.planning.sat.succession import Succession
+from sequence_planner.planning.sat.succession import ANY_START, Singly
 from sequence_planner.planning.sat.unrolling import Unrolling
 
 _NOTHING: State = MappingProxyType({})
@@ -81,10 +81,10 @@ class Search:
         unknown: frozenset[str],
         inside: bool = False,
         oracles: frozenset[str] = frozenset(),
-        succession: Succession = (),
+        singly: Singly = ANY_START,
     ) -> None:
         self._made_of = (automaton, supervisor, order, unknown, inside, _NOTHING, oracles)
-        self._succession = succession
+        self._singly = singly
         self._one_at_a_time = automaton.one_at_a_time
         self._unrolling: Unrolling | None = None
 
@@ -105,7 +105,7 @@ class Search:
         first = sought.longest if sought.at_once else sought.least
         try:
             if self._unrolling is None:
-                self._unrolling = Unrolling(*self._made_of, budget, self._succession)
+                self._unrolling = Unrolling(*self._made_of, budget, self._singly)
             unrolling = self._unrolling
             given = unrolling.given(sought.state, sought.circumstances)
             for length in range(1, sought.longest + 1):

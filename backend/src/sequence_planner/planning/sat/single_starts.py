@@ -11,7 +11,7 @@ from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Plan, one_by_one, starts_of
 from sequence_planner.planning.sat.search import Search, SearchTimeoutError, Sought
-from sequence_planner.planning.sat.succession import Succession, succession
+from sequence_planner.planning.sat.succession import Singly, Succession, succession
 
 
 class _Progress:
@@ -96,6 +96,6 @@ class SingleStarts:
             if only_the_end_counts:
                 follow = succession(self._starts, [ability.name for ability in order], budget.require)
             self._searches[only_the_end_counts] = Search(
-                self._automaton, self._supervisor, order, frozenset(), inside=True, succession=follow
+                self._automaton, self._supervisor, order, frozenset(), inside=True, singly=Singly(follow, self._starts)
             )
         return self._searches[only_the_end_counts]

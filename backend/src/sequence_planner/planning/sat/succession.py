@@ -11,12 +11,23 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from itertools import islice
+from typing import Final, NamedTuple
 
 from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.sat.encoding import SymbolicTick
 
 # Of each start, by its place, those places from its own on that it may come right after; None where it may any.
 Succession = Sequence[Sequence[int] | None]
+
+
+class Singly(NamedTuple):
+    """How starts are taken one at a time: which after which, and what they ask for, if anybody knows it already."""
+
+    succession: Succession = ()
+    starts: Starts | None = None
+
+
+ANY_START: Final = Singly()
 
 Places = int  # a set of them, a bit each
 
