@@ -9,8 +9,9 @@ from typing import NamedTuple
 from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State, target
-from sequence_planner.expressions.evaluation import RELATIONS, evaluate
+from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import (
+    Arithmetic,
     Assignment,
     Comparison,
     Constant,
@@ -23,7 +24,10 @@ from sequence_planner.expressions.syntax import (
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.known import Known
 
+Becomes = tuple[tuple[Value, Value], ...]  # for values of a variable, what is written to another
 Some = int  # of the values of a variable, a bit each, in the order of its domain
+
+_BINARY = (Comparison, Arithmetic)
 
 
 class Domains:
@@ -33,27 +37,56 @@ class Domains:
         self.automaton = automaton
         self.values = {name: variable.type.domain for name, variable in automaton.variables.items()}
         self.number = {name: {value: n for n, value in enumerate(each)} for name, each in self.values.items()}
-        self._compared: dict[tuple[str, str, Value], Some] = {}
+        kinds: dict[object, int] = {}  # equal numbers are given to equal domains
+        self._kind = {n: kinds.setdefault((type(each[0]), each), len(kinds)) for n, each in self.values.items()}
+        self._asked: dict[object, Some] = {}
+        self._became: dict[object, Becomes] = {}
 
     def asked(self, predicate: Expression) -> tuple[str, Some] | None:
         """The variable that `predicate` reads, if that is one alone, and the values with which it holds."""
-        if type(predicate) is Comparison and type(predicate.left) is Variable and type(predicate.right) is Constant:
-            name, value = predicate.left.name, predicate.right.value
-            if name not in self.values:
-                return None
-            key = predicate.operator, name, value
-            if key not in self._compared:
-                relation = RELATIONS[predicate.operator]
-                self._compared[key] = sum(1 << n for n, each in enumerate(self.values[name]) if relation(each, value))
-            return name, self._compared[key]
-        if type(predicate) is Variable:
-            return (predicate.name, 1 << self.number[predicate.name][True]) if predicate.name in self.values else None
-        names = set(variables(predicate))
-        if len(names) != 1 or not names <= self.values.keys():
+        name, shape = self._shape(predicate)
+        if name is None:
             return None
-        (name,) = names
-        each = enumerate(self.values[name])
-        return name, sum(1 << n for n, value in each if evaluate(predicate, Known({name: value})) is True)
+        if shape not in self._asked:
+            each = enumerate(self.values[name])
+            found = sum(1 << n for n, value in each if evaluate(predicate, Known({name: value})) is True)
+            if shape is None:
+                return name, found
+            self._asked[shape] = found
+        return name, self._asked[shape]
+
+    def becomes(self, name: str, value: Expression, asked: Mapping[str, Some]) -> tuple[str | None, Becomes | None]:
+        """The variable that `value`, which is written to another, reads, if that is one alone, and what is written for
+        each of its values that is `asked` for.
+        """
+        source, shape = self._shape(value)
+        if source is None:
+            return None, None
+        values = asked.get(source, -1)
+        key = None if shape is None else (shape, values, self._kind[name])
+        if key not in self._became or key is None:
+            domain = self.number[name]
+            results = ((each, evaluate(value, Known({source: each}))) for each in self.some(source, values))
+            found = tuple((each, after) for each, after in results if after in domain)
+            if key is None:
+                return source, found
+            self._became[key] = found
+        return source, self._became[key]
+
+    def _shape(self, expression: Expression) -> tuple[str | None, object]:
+        """The variable that is read, if that is one alone, and what else there is to the expression, if it is short.
+
+        Two of one shape have the same value where their variables have.
+        """
+        inner = expression
+        more: list[Value] = []
+        while isinstance(inner, _BINARY) and isinstance(inner.right, Constant):
+            more += (inner.operator, inner.right.value)
+            inner = inner.left
+        if isinstance(inner, Variable):
+            return (inner.name, (self._kind[inner.name], *more)) if inner.name in self.values else (None, None)
+        names = set(variables(expression))
+        return (names.pop(), None) if len(names) == 1 and names <= self.values.keys() else (None, None)
 
     def some(self, name: str, values: Some) -> list[Value]:
         """The values themselves."""
@@ -73,7 +106,7 @@ class Written(NamedTuple):
     name: str
     action: Assignment
     source: str | None
-    becomes: tuple[tuple[Value, Value], ...] | None
+    becomes: Becomes | None
 
 
 class Demands:
@@ -97,21 +130,17 @@ class Demands:
         self.writes = [self._written(action) for action in actions]
         self.written = frozenset(map(target, actions))
         read = [*self.others, *(action.condition for action in actions if action.condition is not None)]
-        read += (action.value for action in actions if type(action.value) is not Constant)
-        self.reads = self.asked.keys() | (read_variables(domains.automaton, read) if read else frozenset())
+        read += (each.action.value for each in self.writes if each.becomes is None)
+        self.reads = self.asked.keys() | {each.source for each in self.writes if each.source is not None}
+        if read:
+            self.reads |= read_variables(domains.automaton, read)
 
     def _written(self, action: Assignment) -> Written:
         name, value = target(action), action.value
-        domain = self._domains.number[name]
         if type(value) is Constant:
-            return Written(name, action, None, ((value.value, value.value),) if value.value in domain else ())
-        sources = set(variables(value))
-        if len(sources) != 1 or not sources <= self._domains.values.keys():
-            return Written(name, action, None, None)
-        (source,) = sources
-        possible = self._domains.some(source, self.asked.get(source, -1))
-        results = ((each, evaluate(value, Known({source: each}))) for each in possible)
-        return Written(name, action, source, tuple((e, after) for e, after in results if after in domain))
+            known = value.value in self._domains.number[name]
+            return Written(name, action, None, ((value.value, value.value),) if known else ())
+        return Written(name, action, *self._domains.becomes(name, value, self.asked))
 
     @cached_property
     def surely_written(self) -> frozenset[str]:

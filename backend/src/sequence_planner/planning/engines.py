@@ -25,6 +25,7 @@ LONG_FIRST_TURNS = {
     "search": 0.5,
     "operation by operation": 1.0,
     "bmc": 1.5,
+    "relaxation": 2.0,
 }
 
 Factory = Callable[[Automaton, Supervisor], Engine]

@@ -81,7 +81,7 @@ class Template:
         self._carried = self._carry(anew.values())
         asked = set(map(abs, self._asked()))
         self._literals: dict[int, list[int]] = defaultdict(list)  # of all clauses of a length, one after the other
-        for clause in flattened(recorder.clauses, circuit.gates, self._inputs, asked):
+        for clause in flattened(recorder.clauses, circuit.gates, self._inputs, asked, pause):
             self._literals[len(clause)] += clause
         self.top = circuit.top
         met = {abs(literal) for literals in self._literals.values() for literal in literals}

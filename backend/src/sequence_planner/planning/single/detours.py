@@ -7,6 +7,7 @@ from itertools import count
 
 from sequence_planner.automaton.compiled import CompiledRun
 from sequence_planner.automaton.structure import State
+from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.single.stepping import Stepping
 from sequence_planner.planning.single.ways import Way, Ways
@@ -22,7 +23,7 @@ class Detours:
         self._stepping = stepping
         self._ways = ways
 
-    def found(self, state: State, goals: Goals) -> tuple[str, ...] | None:
+    def found(self, state: State, goals: Goals, budget: Budget) -> tuple[str, ...] | None:
         """The starts of a plan that soon comes to the rest of another; the rest itself if it leads from `state`."""
         nearest = self._ways.nearest(state, goals, _NEAREST)
         if not nearest:
@@ -34,7 +35,7 @@ class Detours:
         seen = {tuple(begin.values.values())}
         ages = count()
         queue: list[tuple[int, int, CompiledRun, tuple[str, ...]]] = [(0, next(ages), begin, ())]
-        while queue and len(seen) < _MOST:
+        while queue and len(seen) < _MOST and not budget.spent:
             _, _, run, order = heappop(queue)
             for name, after in self._stepping.following(run):
                 key = tuple(after.values.values())

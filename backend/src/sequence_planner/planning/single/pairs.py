@@ -71,7 +71,6 @@ class Pairs:
 
     def __init__(self, automaton: Automaton, supervisor: Supervisor, starts: Starts | None = None) -> None:
         """What the supervisor allows is not looked at: nothing more than can be proven without it is."""
-        self._automaton = automaton
         self._demands = starts or Starts(automaton, supervisor)
         self._facts = [(name, value) for name, each in automaton.variables.items() for value in each.type.domain]
         self._number = {fact: number for number, fact in enumerate(self._facts)}
@@ -81,7 +80,8 @@ class Pairs:
         for number, (name, _) in enumerate(self._facts):
             self._own[name] |= 1 << number
             self._first.setdefault(name, number)
-        self._starts: list[_Start] | None = None
+        self._names = tuple(automaton.abilities)
+        self._starts: list[_Start] = []  # in this order, as far as they have been looked at
         self._readers: dict[int, set[int]] = defaultdict(set)  # of each value, the starts that it matters to
         self._unasked: set[int] = set()  # starts that ask for nothing, so that all values matter to them
         self._work: _Work | None = None
@@ -95,8 +95,10 @@ class Pairs:
         if work is None or work.task is not task:
             if work is not None and work.task.goals == task.goals and self._in_vain(work, wanted, task.state):
                 return Finding()
-            work = self._work = self._begun(task)
+            work = None
         try:
+            if work is None:
+                work = self._work = self._begun(task, budget)
             while work.waiting:
                 if all(_beside(work.noted, each, self._all) for each in wanted):
                     return Finding()
@@ -114,23 +116,23 @@ class Pairs:
         inside = all(there & ~work.noted[number] == 0 for number in _bits(there))
         return inside and all(_beside(work.noted, each, self._all) for each in wanted)
 
-    def _begun(self, task: Task) -> _Work:
-        """The values that are there at first, and all starts."""
-        if self._starts is None:
-            self._starts = [self._start(self._demands[name]) for name in self._automaton.abilities]
-            for number, start in enumerate(self._starts):
-                for asked in (*start.asked, *(each for outcome in start.outcomes for each in outcome.asked)):
-                    for fact in _bits(asked.values):
-                        self._readers[fact].add(number)
-                if not start.asked:
-                    self._unasked.add(number)
+    def _begun(self, task: Task, budget: Budget) -> _Work:
+        """The values that are there at first, and all starts. Raises `SpentError`; asked again, it goes on."""
+        for name in self._names[len(self._starts) :]:
+            budget.require()
+            number, start = len(self._starts), self._start(self._demands[name])
+            for asked in (*start.asked, *(each for outcome in start.outcomes for each in outcome.asked)):
+                for fact in _bits(asked.values):
+                    self._readers[fact].add(number)
+            if not start.asked:
+                self._unasked.add(number)
+            self._starts.append(start)
         begin = sum(1 << self._number[name, value] for name in self._own if (value := task.state[name]) is not None)
         noted = [begin if begin >> number & 1 else 0 for number in range(len(self._facts))]
         return _Work(task, noted, set(range(len(self._starts))))
 
     def _note(self, work: _Work) -> None:
         """Take each of the starts that wait, and have those wait to which it matters what is noted then."""
-        assert self._starts is not None
         noted = work.noted
         layer, work.waiting = work.waiting, set()
         for number in layer:

@@ -71,7 +71,7 @@ class SinglePlanner:
             )
         task = Task(state, left, contract=contract, longest=longest + 1, depth=longest + 1)
         attempt = Attempt(task, lambda plan: self._accepts(task, plan), budget)
-        mended = self._detours.found(state, left)
+        mended = self._detours.found(state, left, budget)
         without: Set[str] = frozenset()
         if mended is not None and len(mended) <= longest:
             attempt.take(Report(REPAIR, Finding(one_by_one(mended), searched=2)))  # some goal is missing
