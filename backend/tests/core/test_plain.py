@@ -29,6 +29,7 @@ from sequence_planner.planning.sat.single_starts import SingleStarts
 from sequence_planner.planning.single.derived import without_flags
 from sequence_planner.planning.single.neighbourhood import shortened
 from sequence_planner.planning.single.stepping import Stepping
+from sequence_planner.planning.single.sums import Sums
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
@@ -337,3 +338,51 @@ def test_what_is_shortened_still_leads_to_the_goals(written: dict[str, Any], dra
     shorter = shortened(strayed, begin, left, stepping, Budget.seconds(60)) or strayed
     assert reaches(automaton, supervisor, begin, shorter, goals)
     assert len(shorter) == least
+
+
+@examples(150)
+@given(made_by(document_with_goals))
+def test_what_sums_exclude_is_never_reached(written: dict[str, Any]) -> None:
+    explicit, automaton = meant(written)
+    if automaton is None or not explicit.initial <= explicit.safe:
+        return
+    supervisor, goals = synthesise(automaton), goals_of(automaton, automaton.operations)
+    for key in sorted(explicit.initial, key=str)[:2]:
+        begin = explicit.valuation(key)
+        for each in goals:
+            left = missing((each,), begin)
+            task = Task(begin, left, longest=LONGEST)
+            if left and Sums(without_flags(automaton), supervisor).solve(task, Budget.seconds(60)).exhausted:
+                assert distance(explicit, key, left) is None
+
+
+@pytest.mark.parametrize(
+    ("transitions", "never", "sometimes"),
+    [
+        ({"a": "a + 1", "b": "b - 1"}, "a == 3 and b == 2 and c == 2", "a == 3 and b == 1 and c == 2"),
+        ({"a": "a + 1", "b": "b + 1"}, "a == 3 and b == 2 and c == 2", "a == 3 and b == 3 and c == 2"),
+        ({"a": "a + 1", "b": "b - 1"}, "a >= 3 and b >= 2", "a >= 3 and b <= 1"),
+    ],
+)
+def test_sums_and_parities_that_nothing_changes(transitions: dict[str, str], never: str, sometimes: str) -> None:
+    back = {name: text.translate(str.maketrans("+-", "-+")) for name, text in transitions.items()}
+    automaton = read(
+        {
+            "name": "sums",
+            "variables": {name: {"min": 0, "max": 4} for name in "abc"},
+            "initial": "a == 2 and b == 2 and c == 2",
+            "transitions": [
+                {"event": "go", "controllable": True, "set": transitions},
+                {"event": "back", "controllable": True, "set": back},
+                {"event": "up", "controllable": True, "guard": "c < 3", "set": {"c": "c + 1"}},
+                {"event": "down", "controllable": True, "guard": "a != 4", "set": {"c": 0}},
+            ],
+            "goal": [f"F ({never})", f"F ({sometimes})"],
+        }
+    )
+    engine = Sums(without_flags(automaton), synthesise(automaton))
+    found = [
+        engine.solve(Task(automaton.initial_valuation, (goal,)), Budget.seconds(60)).exhausted
+        for goal in goals_of(automaton, automaton.operations)
+    ]
+    assert found == [True, False]

@@ -7,4 +7,5 @@
 - `stepping`: what can follow a state
 - `engines`: who looks for plans and proofs, and in which order
 - `pairs`: proofs by values that two variables never have at the same time
+- `sums`: proofs by weighted sums of values that no start changes
 """

@@ -17,16 +17,16 @@ from sequence_planner.planning.single.derived import with_flags
 LANE = Lane(
     "single",
     {
-        Contract.MINIMAL: ("pairs", "bmc", "relaxation", "pdr", "a-star", "search"),
-        Contract.FAST: ("pairs", "search", "relaxation", "pdr", "bmc", "a-star"),
+        Contract.MINIMAL: ("pairs", "sums", "bmc", "relaxation", "pdr", "a-star", "search"),
+        Contract.FAST: ("pairs", "sums", "search", "relaxation", "pdr", "bmc", "a-star"),
     },
-    first_turns={"pairs": 0.06, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
+    first_turns={"pairs": 0.06, "sums": 0.02, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
     fast_first_turns={"search": 1.0, "bmc": 0.2},
     by_work=True,
 )
 
 
-PROVING = frozenset(("pairs", "relaxation", "pdr"))  # engines that have nothing to say where there is a plan
+PROVING = frozenset(("pairs", "sums", "relaxation", "pdr"))  # engines that have nothing to say where there is a plan
 
 
 class Separately:
@@ -89,5 +89,6 @@ def factories(starts: Starts) -> Mapping[str, Factory]:
         "search": _Several(FACTORIES["search"]),
         "relaxation": FACTORIES["relaxation"],
         "pairs": Maker("single.pairs", "Pairs", (starts,)),
+        "sums": Maker("single.sums", "Sums", (starts,)),
         "pdr": _proving,
     }
