@@ -17,7 +17,7 @@ from sequence_planner.planning.single.derived import with_flags
 LANE = Lane(
     "single",
     {
-        Contract.MINIMAL: ("pairs", "sums", "bmc", "relaxation", "pdr", "a-star", "search"),
+        Contract.MINIMAL: ("pairs", "bmc", "sums", "relaxation", "pdr", "a-star", "search"),
         Contract.FAST: ("pairs", "sums", "search", "relaxation", "pdr", "bmc", "a-star"),
     },
     first_turns={"pairs": 0.06, "sums": 0.02, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
