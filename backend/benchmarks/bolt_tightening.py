@@ -18,7 +18,7 @@ from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Circumstances, Goal, Plan, goals_of
 from sequence_planner.planning.replaying.lookahead import Lookahead
 from sequence_planner.planning.replaying.replay import Replay
-from sequence_planner.planning.sat.search import Search
+from sequence_planner.planning.sat.search import Search, Sought
 from sequence_planner.planning.sat.sweep import sweep_order
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.supervision import synthesise
@@ -63,7 +63,7 @@ def measure_plans(
     goals = goals_of(automaton, (f"tighten_bolt_pair({pair})" for pair in pairs))
 
     def plan(search: Search) -> Plan:
-        found = search.plan(state, goals, Circumstances(), 60, Budget.seconds(60))
+        found = search.plan(Sought(state, goals, Circumstances(), 60), Budget.seconds(60))
         assert found is not None
         return found
 

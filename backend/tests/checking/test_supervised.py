@@ -17,12 +17,12 @@ from core.budget import examples
 from core.building import Does, automaton
 from core.choices import Choices, made_by
 from core.explicit import Explicit, Key, outcomes
+from core.plain_questions import meant, read
 from core.random_devices import device_station
 from core.random_expressions import equality, rare
 from core.random_plain import document
 from core.random_stations import automaton as random_automaton
 from core.replaying import replay
-from core.test_plain import meant, read
 from sequence_planner.automaton.structure import Ability, Automaton, Operation
 from sequence_planner.checking import far
 from sequence_planner.checking import supervised as checking

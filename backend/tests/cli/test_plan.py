@@ -183,6 +183,62 @@ def test_a_plain_automaton(tmp_path: Path) -> None:
     assert command("plan", file, "--restart")[0] == 2
 
 
+def test_of_several_initial_states_it_says_why_from_which_there_is_no_plan(tmp_path: Path) -> None:
+    document = {
+        "name": "doors",
+        "variables": {"key": ["lost", "broken", "here"], "door": "bool", "inside": "bool"},
+        "initial": "(key == lost or key == broken) and not inside",
+        "transitions": [
+            {"event": "open", "controllable": True, "guard": "key == here", "set": {"door": True}},
+            {"event": "enter", "controllable": True, "guard": "door", "set": {"inside": True}},
+            {"event": "mend", "controllable": True, "guard": "key == broken and inside", "set": {"key": "here"}},
+        ],
+    }
+    file = tmp_path / "doors.efa.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    code, found = as_json("plan", file, "--goal", "key == here and not inside")
+    assert (code, found["status"], found["why"]) == (1, "none", found["initially"][0]["why"])
+    explained = [state for reason in found["initially"] for state in reason["states"]]
+    assert sorted((state["key"], state["door"]) for state in explained) == [
+        ("broken", False), ("broken", True), ("lost", False), ("lost", True),
+    ]  # fmt: skip
+    for reason in found["initially"]:
+        values = {each["name"]: each["value"] for each in reason["why"]["members"] if each["part"] == "value"}
+        assert values
+        assert all(values.items() <= state.items() for state in reason["states"])
+    code, out, _ = command("plan", file, "--goal", "door and key == here")
+    assert code == 0
+    code, out, _ = command("plan", file, "--goal", "door and key == here", "--state", "-",
+                           given='{"state": {"key": "lost", "door": true, "inside": false}}')  # fmt: skip
+    assert (code, "      key is lost\n" in out) == (1, True)
+
+
+def test_a_reason_is_given_for_each_initial_state_that_others_do_not_hold_for(tmp_path: Path) -> None:
+    document = {
+        "name": "apart",
+        "variables": {"place": ["left", "middle", "right"], "gate": "bool"},
+        "initial": "place == left and gate or place == middle and not gate",
+        "transitions": [
+            {"event": "go", "controllable": True, "guard": "place == left and not gate", "set": {"place": "right"}},
+            {"event": "turn", "controllable": True, "guard": "place == middle and gate", "set": {"place": "right"}},
+        ],
+    }
+    file = tmp_path / "apart.efa.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    code, out, _ = command("plan", file, "--goal", "place == right")
+    lines = out.splitlines()
+    assert code == 1
+    assert sum(line.startswith("of the 2 initial states, from that with place == ") for line in lines) == 2
+    assert lines.count("      gate is true") == lines.count("      gate is false") == 1
+
+
+def test_that_no_plan_has_fewer_than_one_transition_is_not_said(tmp_path: Path) -> None:
+    file = plain(tmp_path)
+    code, out, _ = command("plan", file, "--goal", "user == has", "--contract", "fast")
+    assert code == 0
+    assert "fewer than 1" not in out
+
+
 def asking(folder: Path, condition: str) -> Path:
     """The worked example, in which a bolt is placed only on a condition about operations."""
     copy = Path(shutil.copytree(EXAMPLE, folder / "example"))

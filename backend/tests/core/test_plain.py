@@ -2,69 +2,26 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable
 from typing import Any
 
 import pytest
 from hypothesis import given
 
 from sequence_planner.automaton.plain.events import event_of
-from sequence_planner.automaton.plain.meaning import plain_automaton
 from sequence_planner.automaton.plain.steps import plain_transitions, step
-from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.expressions.evaluation import holds
-from sequence_planner.expressions.printing import print_value
-from sequence_planner.model.plain_documents import read_plain
-from sequence_planner.model.source import ModelError
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
-from sequence_planner.planning.goals.pursuit import Goals
 from sequence_planner.planning.plain import PlainPlanner, plan_transitions
-from sequence_planner.planning.plan import Contract, Goal, Verdict, goals_of
-from sequence_planner.planning.replaying.replay import missing
-from sequence_planner.planning.sat.single_starts import SingleStarts
-from sequence_planner.planning.single.derived import without_flags
+from sequence_planner.planning.plan import Contract, Verdict, goals_of
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.supervision import Supervision, SynthesisError, relevant, synthesise
 
 from .budget import examples
-from .choices import Choices, made_by
-from .explicit_plain import ExplicitPlain, Key, type_of
+from .choices import made_by
+from .explicit_plain import Key
+from .plain_questions import distance, document_with_goals, meant, reaches
 from .random_plain import document
-
-LONGEST = 8
-
-
-def document_with_goals(choices: Choices) -> dict[str, Any]:
-    """A document that now and then has further goals."""
-    first = document(choices)
-    more = (
-        [f"F ({name} == {value})" for name, value in values(choices, first["variables"])] if choices.chance(2) else []
-    )
-    return {**first, "goal": [*first["goal"], *more]}
-
-
-def values(choices: Choices, variables: dict[str, object]) -> list[tuple[str, str]]:
-    """Some variables, each with a value of its domain as it is written."""
-    chosen = choices.different(list(variables), 1, 2)
-    return [(name, print_value(choices.pick(type_of(variables[name]).domain))) for name in chosen]
-
-
-def read(written: dict[str, Any]) -> Automaton:
-    return plain_automaton(read_plain(json.dumps(written, indent=1), "example.efa.json"))
-
-
-def meant(written: dict[str, Any]) -> tuple[ExplicitPlain, Automaton | None]:
-    """The document state by state, and as an automaton if it has an initial state at all."""
-    explicit = ExplicitPlain(written)
-    if explicit.initial:
-        return explicit, read(written)
-    with pytest.raises(ModelError, match="there is nowhere to begin"):
-        read(written)
-    return explicit, None
 
 
 @examples(200)
@@ -127,30 +84,6 @@ def test_safe_and_reachable_states_are_those_of_the_definition(written: dict[str
             synthesise(automaton)
 
 
-def distance(explicit: ExplicitPlain, begin: Key, goals: Goals) -> int | None:
-    """The fewest transitions of a supervised run from `begin` in which each goal holds somewhere, if there is one.
-
-    The search is over states together with the goals that are missing still.
-    """
-
-    def missing_in(key: Key, left: Goals) -> Goals:
-        return tuple(goal for goal in left if not holds(goal.predicate, explicit.valuation(key)))
-
-    layer = {(begin, missing_in(begin, goals))}
-    seen, steps = set(layer), 0
-    while layer:
-        if any(not left for _, left in layer):
-            return steps
-        following = {
-            (after, missing_in(after, left))
-            for key, left in layer
-            for after in explicit.steps[False][key] | (explicit.steps[True][key] & explicit.safe)
-        }
-        layer, steps = following - seen, steps + 1
-        seen |= layer
-    return None
-
-
 @examples(150)
 @given(made_by(document_with_goals))
 def test_plans_have_the_fewest_transitions_and_there_is_none_exactly_where_exhaustive_search_finds_none(
@@ -200,29 +133,6 @@ def test_of_several_initial_states_a_plan_begins_in_the_best(written: dict[str, 
 
 
 @examples(60)
-@given(made_by(document_with_goals))
-def test_the_unrolled_run_finds_as_few_transitions_as_exhaustive_search(written: dict[str, Any]) -> None:
-    """As it does where there are too many states for the other engines."""
-    explicit, automaton = meant(written)
-    if automaton is None or not explicit.initial <= explicit.safe:
-        return
-    supervisor, goals = synthesise(automaton), goals_of(automaton, automaton.operations)
-    key = min(explicit.initial, key=str)
-    begin, least = explicit.valuation(key), distance(explicit, key, goals)
-    left = missing(goals, begin)
-    if not left:
-        return
-    task = Task(begin, left, longest=LONGEST + 1)
-    finding = SingleStarts(without_flags(automaton), supervisor).solve(task, Budget.seconds(60))
-    if least is None or least > LONGEST:
-        assert (finding.plan, finding.searched) == (None, LONGEST + 1)
-    else:
-        assert finding.plan is not None
-        assert len(finding.plan.starts) == finding.searched - 1 == least
-        assert reaches(automaton, supervisor, begin, [name for _, name in finding.plan.starts], goals)
-
-
-@examples(60)
 @given(made_by(document_with_goals), made_by(lambda choices: [choices.number(0, 9) for _ in range(5)]))
 def test_a_planner_that_was_asked_before_answers_as_one_that_was_not(written: dict[str, Any], drawn: list[int]) -> None:
     """From states on the ways of its plans, beside them, and anywhere else, by both contracts."""
@@ -246,16 +156,3 @@ def test_a_planner_that_was_asked_before_answers_as_one_that_was_not(written: di
         assert not answer.minimal or len(answer.transitions) == least
         assert answer.minimal or contract is Contract.FAST
         assert reaches(automaton, supervisor, begin, answer.transitions, asked)
-
-
-def reaches(
-    automaton: Automaton, supervisor: Supervisor, state: State, plan: Iterable[str], goals: Iterable[Goal]
-) -> bool:
-    """Whether each transition of `plan` can be taken under the supervisor, and each goal holds somewhere on the way."""
-    transitions, left = plain_transitions(automaton), missing(goals, state)
-    for name in plan:
-        after = step(state, transitions[name])
-        if after is None or (transitions[name].controllable and not supervisor.allows(state, after)):
-            return False
-        state, left = after, missing(left, after)
-    return not left

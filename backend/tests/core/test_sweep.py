@@ -13,12 +13,12 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.expressions.types import BOOLEAN, IntegerRange
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.demands import Demands, Domains
 from sequence_planner.planning.engine import Task
 from sequence_planner.planning.pdr.engine import Reachability
 from sequence_planner.planning.plan import Circumstances, goals_of
 from sequence_planner.planning.sat.bounded import BoundedModelChecking
 from sequence_planner.planning.sat.circles import circles, linear
-from sequence_planner.planning.sat.demands import Demands
 from sequence_planner.planning.sat.pairs import Pairs
 from sequence_planner.planning.sat.sweep import Sweep
 from sequence_planner.synthesis.supervision import synthesise
@@ -73,7 +73,7 @@ def test_only_members_of_circles_are_repeated(given_: tuple[Before, tuple[str, .
 @given(made_by(problem))
 def test_what_texts_show_the_solver_finds_too(given_: Problem) -> None:
     station, supervisor = given_.automaton, given_.supervisor
-    asked = {name: Demands(station, ability) for name, ability in station.abilities.items()}
+    asked = {name: Demands(Domains(station), ability) for name, ability in station.abilities.items()}
     told, merely_known = (Pairs(station, supervisor, known) for known in (False, True))
     for one, other in permutations(asked, 2):
         if asked[one].excludes(asked[other]):

@@ -25,11 +25,11 @@ from .building import Does, automaton
 from .choices import Choices, made_by
 from .explicit import Explicit, Key
 from .explicit_plain import ExplicitPlain
+from .plain_questions import meant
 from .random_devices import device_station
 from .random_plain import document
 from .random_stations import automaton as random_automaton
 from .replaying import replay
-from .test_plain import meant
 
 OFF = (BOOLEAN, False)
 

@@ -14,14 +14,15 @@ from collections.abc import AsyncIterator, Callable, Generator, Iterator
 from contextlib import AbstractAsyncContextManager, asynccontextmanager
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, Pipe
-from typing import Generic, TypeVar
+from typing import TYPE_CHECKING, Generic, TypeVar
 
-from sequence_planner.analysis.analysis import Analysis
-from sequence_planner.analysis.finding import analyses
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.forking.copying import Copy, can_be_copied
 from sequence_planner.forking.starting import hang_up, start
 from sequence_planner.memory_limit import LOOK, MemoryLimit, memory_limit
+
+if TYPE_CHECKING:  # a command that asks for less has no need of all that finds it
+    from sequence_planner.analysis.analysis import Analysis
 
 _NICENESS = 5  # ticks come first
 
@@ -51,6 +52,8 @@ class _Last:
 
 def analysing(automaton: Automaton) -> AbstractAsyncContextManager[AsyncIterator[Analysis]]:
     """What synthesis finds of `automaton`, each time more of it, see `telling`. Raises `MemoryLimitError`."""
+    from sequence_planner.analysis.finding import analyses  # noqa: PLC0415
+
     return telling(memory_limit(), analyses, automaton)
 
 

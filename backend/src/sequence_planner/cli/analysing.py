@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from types import FrameType
 from typing import TYPE_CHECKING, Annotated
 
@@ -24,6 +25,7 @@ from sequence_planner.analysis.remembering import known_supervisor, remember_sup
 from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.cli.loading import usable_automaton
 from sequence_planner.cli.options import FINDINGS, refuse
 from sequence_planner.memory_limit import USUAL
 
@@ -115,25 +117,39 @@ def _found(automaton: Automaton, limits: Limits, hearing: _Hearing, *, far: bool
     return Found(document, analysis.supervisor, unfinished, tuple(sorted(hearing.suspicious)))
 
 
-def supervisor_of(automaton: Automaton, deadline: float = USUAL_DEADLINE) -> Supervisor:
-    """The supervisor of `automaton`, kept or computed here and now. Ends the command if that takes too long.
+def supervisor_of(automaton: Automaton, limits: Limits | None = None) -> Supervisor:
+    """The supervisor of `automaton`, kept or computed within `limits`. Ends the command if that takes too much.
 
     Raises `SynthesisError` if there is none.
     """
     if (known := known_supervisor(automaton)) is not None:
         return known
-    from sequence_planner.synthesis.supervision import synthesise  # noqa: PLC0415
+    from sequence_planner.analysis.process import SynthesisEndedError, told  # noqa: PLC0415
+    from sequence_planner.synthesis.supervision import SynthesisError, tried  # noqa: PLC0415
 
+    limits = limits or Limits()
+    found = None
     try:
-        with within(deadline):
-            found = synthesise(automaton)
+        for found in told(limits.memory, limits.left, tried, automaton):
+            if not isinstance(found, Supervisor):
+                raise SynthesisError(found)
+            remember_supervisor(automaton, found)
     except TimeoutError:
-        late = f"the safe states could not be computed within {deadline:g} s"
+        late = f"the safe states could not be computed within {limits.deadline:g} s"
         refuse(f"{late}: allow more with --deadline, or let fewer variables bear on them", FINDINGS)
-    except MemoryError:
-        refuse("the safe states have outgrown the memory set aside for them: let fewer variables bear on them")
-    remember_supervisor(automaton, found)
+    except SynthesisEndedError as ended:
+        refuse(f"the safe states could not be computed: {ended}", FINDINGS)
+    assert isinstance(found, Supervisor)
     return found
+
+
+def read_within(path: Path, limits: Limits) -> Automaton:
+    """The automaton of a model. Ends the command if it cannot be used, or not be read within `limits`."""
+    try:
+        with within(limits.left):
+            return usable_automaton(path)
+    except TimeoutError:
+        refuse(f"{path}: it could not be read within {limits.deadline:g} s: allow more with --deadline", FINDINGS)
 
 
 @contextmanager

@@ -13,24 +13,23 @@ import typer
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import record_activity, update_operations
-from sequence_planner.cli.analysing import supervisor_of
+from sequence_planner.cli.analysing import Limits, read_within, supervisor_of
+from sequence_planner.cli.explaining import explained
 from sequence_planner.cli.lanes import lanes
-from sequence_planner.cli.loading import usable_automaton
 from sequence_planner.cli.moments import Moment, StateFile, moment, named
 from sequence_planner.cli.options import FINDINGS, AnyModel, AsJson, print_json, refuse
-from sequence_planner.cli.plan_answers import because, document, plain_document, said, said_of_plain
+from sequence_planner.cli.plan_answers import because, document, plain_document, said, said_of_plain, values_text
 from sequence_planner.collection import collection_seldom
 from sequence_planner.exporting.sequential import ExportError
 from sequence_planner.exporting.ticks import sequential
 from sequence_planner.exporting.unified import UnifiedPlanning, planners
 from sequence_planner.expressions.parser import parse
-from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.resolution import Scope, resolve_predicate, suggestion
 from sequence_planner.expressions.syntax import Expression, ExpressionError
 from sequence_planner.planning.budget import Budget
-from sequence_planner.planning.engine import Task
 from sequence_planner.planning.engines import Engines, Lane
 from sequence_planner.planning.goals.monitor import monitor_of
+from sequence_planner.planning.initial_states import initial_states
 from sequence_planner.planning.plain import plan_transitions
 from sequence_planner.planning.plain_answer import PlainAnswer
 from sequence_planner.planning.plan import (
@@ -43,10 +42,7 @@ from sequence_planner.planning.plan import (
     goal_of,
 )
 from sequence_planner.planning.planner import InTurn, Planner, PlannerError
-from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest, diagnose
-from sequence_planner.planning.reasons.why import SupervisorFor
-from sequence_planner.planning.single.derived import as_station
-from sequence_planner.synthesis.fewer import FewerSpecifications
+from sequence_planner.planning.reasons.initially import FromThese
 from sequence_planner.synthesis.supervision import SynthesisError
 
 Operations = Annotated[
@@ -58,7 +54,7 @@ GoalTexts = Annotated[
 ]
 Wanted = Annotated[Contract, typer.Option("--contract", help="The fewest ticks and starts, proven; or a plan soon.")]
 Deadline = Annotated[
-    float, typer.Option(min=0.01, max=86_400, help="Seconds to look for the safe states, and then for the answer.")
+    float, typer.Option(min=0.01, max=86_400, help="Seconds that it may take, from reading the model on.")
 ]
 Restart = Annotated[bool, typer.Option("--restart", help="Restart abilities may start, too.")]
 Offline = Annotated[
@@ -98,20 +94,21 @@ def plan(
     Time runs down, and each resource has a lane. The goals of a plain automaton are goal_1, goal_2 and so on, or else
     all of them. The exit code is 1 when there is no plan for all of the goals.
     """
-    automaton = usable_automaton(model)
+    limits = Limits(deadline)
+    automaton = read_within(model, limits)
     before = moment(automaton, state)
     try:
-        supervisor = supervisor_of(automaton, deadline)
+        supervisor = supervisor_of(automaton, limits)
     except SynthesisError as error:
         refuse(str(error))
     circumstances = _circumstances(automaton, offline or [], restart, avoid or [], without or [])
     start, goals = _asked(automaton, before, operations or [], goal or [])
     wanted = contract if other is None else Contract.FAST
-    request = PlanRequest(start, goals, deadline, contract=wanted, circumstances=circumstances)
+    request = PlanRequest(start, goals, limits.left, contract=wanted, circumstances=circumstances)
     if not automaton.one_at_a_time:
-        found = _of_station(automaton, supervisor, request, other, expected, json)
+        found = _of_station(automaton, supervisor, request, other, expected, json, limits)
     elif other is None:
-        found = _of_plain(automaton, supervisor, request, state is not None, json)
+        found = _of_plain(automaton, supervisor, request, state is not None, json, limits)
     else:
         refuse("--with is for stations: have a plain automaton planned elsewhere with `export --to pddl`")
     if not found:
@@ -119,7 +116,13 @@ def plan(
 
 
 def _of_station(
-    automaton: Automaton, supervisor: Supervisor, request: PlanRequest, other: str | None, expected: bool, json: bool
+    automaton: Automaton,
+    supervisor: Supervisor,
+    request: PlanRequest,
+    other: str | None,
+    expected: bool,
+    json: bool,
+    limits: Limits,
 ) -> bool:
     try:
         if other is not None:
@@ -127,18 +130,16 @@ def _of_station(
         answer = _planner(automaton, supervisor, other).answer(request)
     except (PlannerError, ExportError) as error:
         refuse(str(error))
-    question = DiagnosisRequest(request.state, request.goals, request.circumstances)
-    more = FewerSpecifications(automaton, supervisor)
-    diagnosis = _diagnosis(automaton, supervisor, more, question.task, request, answer)
+    reasons = _reasons(automaton, supervisor, [request.state], request, answer, limits)
     if json:
-        print_json(document(answer, diagnosis))
+        print_json(document(answer, reasons))
         return answer.plan is not None and not answer.left_out
     if answer.plan is not None and answer.plan.ticks:
         width = shutil.get_terminal_size().columns
         for line in lanes(automaton, request.state, answer.plan.ticks, expected, width):
             typer.echo(line)
     typer.echo(said(answer))
-    for line in because(diagnosis):
+    for line in because(reasons):
         typer.echo(line)
     return answer.plan is not None and not answer.left_out
 
@@ -156,21 +157,9 @@ def _planner(automaton: Automaton, supervisor: Supervisor, other: str | None) ->
     return Planner(automaton, supervisor, InTurn(engines))
 
 
-def _diagnosis(
-    automaton: Automaton,
-    supervisor: Supervisor,
-    supervisor_for: SupervisorFor,
-    task: Task,
-    request: PlanRequest,
-    answer: PlanAnswer | PlainAnswer,
-) -> Diagnosis | None:
-    """Why there is no plan at all for `task`, in the time that is left."""
-    if answer.verdict is not Verdict.NONE_AT_ALL:
-        return None
-    return diagnose(automaton, supervisor, supervisor_for, task, Budget.seconds(request.deadline - answer.seconds))
-
-
-def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest, begins: bool, json: bool) -> bool:
+def _of_plain(
+    automaton: Automaton, supervisor: Supervisor, request: PlanRequest, begins: bool, json: bool, limits: Limits
+) -> bool:
     """Plan from the state of the request where it `begins` there, or else from the best initial state."""
     if request.circumstances != Circumstances():
         what = "--offline, --without, --restart and --avoid"
@@ -181,22 +170,32 @@ def _of_plain(automaton: Automaton, supervisor: Supervisor, request: PlanRequest
         answer = plan_transitions(automaton, supervisor, request.goals, start, request.contract, budget=budget)
     except ValueError as error:
         refuse(str(error))
-    diagnosis = None
-    if begins or automaton.initial is None:  # what keeps one of several initial states from it says nothing of others
-        derived, task = as_station(automaton, request.state, request.goals)
-        more = FewerSpecifications(automaton, supervisor)
-        diagnosis = _diagnosis(derived, supervisor, more, task, request, answer)
+    states = [request.state] if begins else initial_states(automaton)
+    reasons = _reasons(automaton, supervisor, states, request, answer, limits)
     if json:
-        print_json(plain_document(answer, request.goals, diagnosis))
+        print_json(plain_document(answer, request.goals, reasons))
         return answer.verdict is Verdict.FOUND
     if answer.begin is not None:
-        values = [f"{name} == {print_value(value)}" for name, value in answer.begin.items() if value is not None]
-        typer.echo(f"      begins with {', '.join(values)}")
+        typer.echo(f"      begins with {values_text(answer.begin)}")
     for number, name in enumerate(answer.transitions, 1):
         typer.echo(f"{number:>4}  {name}")
-    for line in (said_of_plain(answer, request.goals), *because(diagnosis)):
+    for line in (said_of_plain(answer, request.goals), *because(reasons)):
         typer.echo(line)
     return answer.verdict is Verdict.FOUND
+
+
+def _reasons(
+    automaton: Automaton,
+    supervisor: Supervisor,
+    states: Sequence[State],
+    request: PlanRequest,
+    answer: PlanAnswer | PlainAnswer,
+    limits: Limits,
+) -> tuple[FromThese, ...]:
+    """Why there is no plan at all, in the time that is left."""
+    if answer.verdict is not Verdict.NONE_AT_ALL:
+        return ()
+    return explained(automaton, supervisor, states, request.goals, request.circumstances, limits)
 
 
 def _circumstances(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any
 
+from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.planning.plain_answer import PlainAnswer
 from sequence_planner.planning.plan import Clause, Goal, PlanAnswer, Proof, Verdict
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, correction_text, member_text
+from sequence_planner.planning.reasons.initially import FromThese
 
 _STATUS = {
     Verdict.FOUND: "plan",
@@ -18,7 +20,7 @@ _STATUS = {
 }
 
 
-def document(answer: PlanAnswer, diagnosis: Diagnosis | None) -> dict[str, Any]:
+def document(answer: PlanAnswer, reasons: Sequence[FromThese]) -> dict[str, Any]:
     """An answer about a station as one JSON document."""
     plan = answer.plan
     ticks = () if plan is None else plan.ticks
@@ -35,13 +37,13 @@ def document(answer: PlanAnswer, diagnosis: Diagnosis | None) -> dict[str, Any]:
         "schedule": [{"effects": tick.effects, "starts": tick.starts} for tick in ticks],
         "searched": answer.searched,
         "proof": _proof(answer.proof),
-        "why": None if diagnosis is None else _why(diagnosis),
+        **_whys(reasons),
         "engine": answer.engine,
         "seconds": answer.seconds,
     }
 
 
-def plain_document(answer: PlainAnswer, goals: Iterable[Goal], diagnosis: Diagnosis | None) -> dict[str, Any]:
+def plain_document(answer: PlainAnswer, goals: Iterable[Goal], reasons: Sequence[FromThese]) -> dict[str, Any]:
     """An answer about a plain automaton as one JSON document."""
     found = answer.verdict is Verdict.FOUND
     return {
@@ -54,16 +56,25 @@ def plain_document(answer: PlainAnswer, goals: Iterable[Goal], diagnosis: Diagno
         "ticks": len(answer.transitions),
         "searched": answer.searched,
         "proof": _proof(answer.proof),
-        "why": None if diagnosis is None else _why(diagnosis),
+        **_whys(reasons),
         "engine": answer.engine,
         "seconds": answer.seconds,
     }
 
 
-def because(diagnosis: Diagnosis | None) -> Iterator[str]:
-    """Why there is no plan at all, line by line."""
-    if diagnosis is None:
-        return
+def because(reasons: Sequence[FromThese]) -> Iterator[str]:
+    """Why there is no plan at all, line by line; where not for the same reason from all states, of which from which."""
+    number = sum(len(each.states) for each in reasons)
+    telling = _differing([state for each in reasons for state in each.states])
+    for each in reasons:
+        if len(reasons) > 1:
+            which = values_text({name: each.states[0][name] for name in telling})
+            more = "" if len(each.states) == 1 else f" and {len(each.states) - 1} more"
+            yield f"of the {number} initial states, from that with {which}{more}:"
+        yield from _because(each.diagnosis)
+
+
+def _because(diagnosis: Diagnosis) -> Iterator[str]:
     reason = diagnosis.reason
     if reason is None:
         yield "why could not be found in time: allow more with --deadline"
@@ -75,6 +86,16 @@ def because(diagnosis: Diagnosis | None) -> Iterator[str]:
     if diagnosis.corrections:
         yield "there would be a plan again with"
         yield from (f"      {correction_text(correction)}" for correction in diagnosis.corrections)
+
+
+def values_text(state: State) -> str:
+    """The values that are known in a state."""
+    return ", ".join(f"{name} == {print_value(value)}" for name, value in state.items() if value is not None)
+
+
+def _differing(states: Sequence[State]) -> list[str]:
+    """The variables that do not have the same value in all of them."""
+    return [name for name in states[0] if any(state[name] != states[0][name] for state in states)] if states else []
 
 
 def said(answer: PlanAnswer) -> str:
@@ -113,7 +134,10 @@ def said_of_plain(answer: PlainAnswer, goals: Iterable[Goal]) -> str:
         return _none(answer, names, "transitions")
     if not answer.transitions:
         return f"{', '.join(names)}: nothing to do, all of it holds already"
-    kind = "the fewest" if answer.minimal else f"no plan has fewer than {answer.searched}"
+    if answer.minimal:
+        kind = "the fewest"
+    else:
+        kind = f"no plan has fewer than {answer.searched}" if answer.searched > 1 else "found fast"
     number = _number(len(answer.transitions), "transition")
     return f"{', '.join(names)}: {number}, {kind} ({answer.engine}, {answer.seconds:.2f} s)"
 
@@ -128,6 +152,14 @@ def _none(answer: PlanAnswer | PlainAnswer, goals: Iterable[str], unit: str) -> 
         case _:
             known = f", and no plan of up to {answer.searched} {unit}" if answer.searched > 0 else ""
             return f"no answer in time{known}: {names} ({answer.seconds:.2f} s)"
+
+
+def _whys(reasons: Sequence[FromThese]) -> dict[str, Any]:
+    several = sum(len(each.states) for each in reasons) > 1
+    return {
+        "why": _why(reasons[0].diagnosis) if reasons else None,
+        "initially": [{"states": e.states, "why": _why(e.diagnosis)} for e in reasons] if several else [],
+    }
 
 
 def _why(diagnosis: Diagnosis) -> dict[str, Any]:

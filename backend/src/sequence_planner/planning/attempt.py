@@ -39,6 +39,11 @@ class Attempt:
         self._searched = 0
 
     @property
+    def took(self) -> float:
+        """The seconds since it has begun."""
+        return time.monotonic() - self._began
+
+    @property
     def plan(self) -> Plan | None:
         """The best plan so far; what is proven of it may have been proven by another engine."""
         plan = self._plan
@@ -106,8 +111,7 @@ class Attempt:
 
     def _wait(self) -> None:
         """Say how long what is known now is worth waiting to be bettered."""
-        now = time.monotonic()
-        took = now - self._began
+        now, took = time.monotonic(), self.took
         if self._grace_ends != inf:
             return
         if self._plan is not None and self.task.contract is Contract.FAST:

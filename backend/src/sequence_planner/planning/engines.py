@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from importlib import import_module
 from math import inf
+from types import MappingProxyType
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
@@ -24,6 +25,7 @@ LONG_FIRST_TURNS = {
     "search": 0.5,
     "operation by operation": 1.0,
     "bmc": 1.5,
+    "relaxation": 2.0,
 }
 
 Factory = Callable[[Automaton, Supervisor], Engine]
@@ -44,7 +46,13 @@ class Lane(Immutable):
     engines: Mapping[Contract, tuple[str, ...]]
     niceness: int = 5  # ticks are not held up by planning
     first_turns: Mapping[str, float] = LONG_FIRST_TURNS  # of those whose first turn is not `FIRST_TURN`
+    fast_first_turns: Mapping[str, float] = MappingProxyType({})  # where it is another one then
     by_work: bool = False  # turns are seconds of the processor, however long others hold the process up
+
+    def first_turn(self, engine: str, contract: Contract) -> float:
+        """The seconds of its first turn."""
+        usual = self.first_turns.get(engine, FIRST_TURN)
+        return self.fast_first_turns.get(engine, usual) if contract is Contract.FAST else usual
 
     @property
     def all_engines(self) -> tuple[str, ...]:
@@ -53,15 +61,19 @@ class Lane(Immutable):
 
 
 class Maker(Immutable):
-    """Makes engines of a class that is imported only when one is made: a command needs few of them."""
+    """Makes engines of a class that is imported only when one is made: a command needs few of them.
+
+    What they have in common with others is made before, and is `shared`.
+    """
 
     module: str
     kind: str
+    shared: tuple[object, ...] = ()
 
     def __call__(self, automaton: Automaton, supervisor: Supervisor) -> Engine:
         """A new engine."""
         engine: Engine = getattr(import_module(f"sequence_planner.planning.{self.module}"), self.kind)(
-            automaton, supervisor
+            automaton, supervisor, *self.shared
         )
         return engine
 
@@ -157,7 +169,7 @@ class Engines:
         while waiting and not budget.spent:
             going_on: list[str] = []
             for name in waiting:
-                turn = longer * self._lane.first_turns.get(name, FIRST_TURN) if len(waiting) > 1 else inf
+                turn = longer * self._lane.first_turn(name, task.contract) if len(waiting) > 1 else inf
                 if self._lane.by_work and turn != inf:
                     own = _at_most(budget, patience()).working(turn)
                 else:

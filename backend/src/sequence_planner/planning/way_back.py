@@ -20,7 +20,7 @@ from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Circumstances, Goal, Plan, PlanTick, WayBack, WayBackAnswer, WayBackRequest
 from sequence_planner.planning.planner import PlannerError
-from sequence_planner.planning.sat.search import Searches, SearchTimeoutError
+from sequence_planner.planning.sat.search import Searches, SearchTimeoutError, Sought
 from sequence_planner.planning.sat.sweep import sweep_order
 
 # Of the time for an answer, what the search for the way may take; the rest is for what the devices could do.
@@ -59,7 +59,8 @@ class WaysBack:
         Raises `SearchTimeoutError` when the budget is spent before, and `PlannerError` when it does not replay.
         """
         unknown = frozenset(name for name in self._automaton.variables if state[name] is None)
-        plan = self._ways.search(state).plan_into(self._safe.for_all(unknown), state, circumstances, longest, budget)
+        sought = Sought(state, (), circumstances, longest, into=self._safe.for_all(unknown))
+        plan = self._ways.search(state).plan(sought, budget)
         return None if plan is None else self._replayed(state, plan)
 
     @cached_property
@@ -83,7 +84,7 @@ class WaysBack:
         forbidden = Or(tuple(specification.forbidden for specification in self._automaton.specifications.values()))
         goals = (Goal("violated", forbidden),)
         try:
-            plan = self._threats.search(state).plan(state, goals, Circumstances(), longest, budget)
+            plan = self._threats.search(state).plan(Sought(state, goals, Circumstances(), longest), budget)
         except SearchTimeoutError:
             return ()
         if plan is None:

@@ -6,7 +6,7 @@ which a state of rest can be reached inside it, without faults and without resta
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from sequence_planner.automaton.cone import cone_of_influence
 from sequence_planner.automaton.state_set import StateSet, Supervisor
@@ -108,6 +108,14 @@ class Supervision:
 def synthesise(automaton: Automaton) -> Supervisor:
     """The maximally permissive supervisor of `automaton`. Raises `SynthesisError` if there is none."""
     return supervisor(supervised(automaton))
+
+
+def tried(automaton: Automaton) -> Iterator[Supervisor | Unmeetable]:
+    """The same for another process to hear, or why there is none."""
+    try:
+        yield synthesise(automaton)
+    except SynthesisError as error:
+        yield error.reason
 
 
 def supervised(automaton: Automaton) -> Supervision:

@@ -84,7 +84,7 @@ class HeuristicSearch:
         if self._compiled is None:
             self._compiled = CompiledTick(self._automaton, hot=False)
         if self._relaxed is None:
-            self._relaxed = RelaxedTask(self._automaton, self._supervisor)
+            self._relaxed = RelaxedTask(self._automaton, self._supervisor, budget.require)
         space = Space(self._compiled, self._supervisor, task, self._at_once)
         way = _Search(space, self._relaxed, task, budget).way(most)
         if way is None:

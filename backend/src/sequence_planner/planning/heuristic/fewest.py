@@ -90,9 +90,11 @@ class FewestStarts:
             least, _, _, node = heappop(queue)
             if not node.position.goals:
                 return Fewest(node.order, least)
-            if least > most or budget.spent or len(reached) > most_positions:
+            if least > most or len(reached) > most_positions:
                 return Fewest(None, least)
             for name in sorted(node.position.run.startable()):
+                if budget.spent:
+                    return Fewest(None, least)
                 after = space.start(node.position, name)
                 if after is not None and reached.get(after.key, node.length + 2) > node.length + 1:
                     reached[after.key] = node.length + 1

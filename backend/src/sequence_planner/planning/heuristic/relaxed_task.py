@@ -6,7 +6,7 @@ made once per automaton so that it can be asked from thousands of states.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from sequence_planner.automaton.state_set import EVERYTHING, FIRST_NODE, NOTHING, StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton, reads, target
@@ -22,13 +22,17 @@ _MOST_NODES = 64  # of a supervisor's guard; one with more is left out
 class RelaxedTask(RelaxedPredicates):
     """Reads an automaton into a graph; predicates come to it as they are asked for."""
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+    def __init__(
+        self, automaton: Automaton, supervisor: Supervisor, pause: Callable[[], object] = lambda: None
+    ) -> None:
+        """`pause` is called for each ability, and may raise."""
         super().__init__(automaton)
         self._sets: dict[tuple[int, int], int] = {}
         for effect in automaton.effects:
             if not effect.fault:
                 self._operator((Kind.EFFECT, effect.name), self._needs(effect.guard), effect.actions)
         for ability in automaton.abilities.values():
+            pause()
             if ability.finish_guard is not None:
                 needs = self._needs(ability.finish_guard)
                 self._operator((Kind.FINISH, ability.name), needs, ability.finish_actions)

@@ -7,7 +7,7 @@ there is no plan at all; this is the delete relaxation of planning (Bonet and Ge
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from itertools import product
 from math import prod
 
@@ -39,15 +39,20 @@ _MOST_COMBINATIONS = 4096
 
 
 def reachable(
-    automaton: Automaton, state: State, circumstances: Circumstances, supervisor: Supervisor | None = None
+    automaton: Automaton,
+    state: State,
+    circumstances: Circumstances,
+    supervisor: Supervisor | None = None,
+    pause: Callable[[], object] = lambda: None,
 ) -> Relaxation:
     """All that runs from `state` can make of variables and flags, and perhaps more.
 
     Operations stay as active as they are. With a `supervisor` nothing starts that it never allows, which takes longer.
+    `pause` is called again and again, and may raise.
     """
     first: dict[str, set[Value | None]] = {name: {value} for name, value in state.items()}
     permission = None if supervisor is None else Permission(supervisor)
-    return Relaxation(automaton, first, counted_on(automaton, circumstances), permission)
+    return Relaxation(automaton, first, counted_on(automaton, circumstances), permission, pause)
 
 
 def unreached(automaton: Automaton, relaxed: Relaxation) -> Proof:
@@ -71,7 +76,12 @@ class Relaxation:
     """What each variable and flag may become from `first`, where each has some values already, by permitted `moves`."""
 
     def __init__(
-        self, automaton: Automaton, first: Possible, moves: Iterable[Transition], permission: Permission | None = None
+        self,
+        automaton: Automaton,
+        first: Possible,
+        moves: Iterable[Transition],
+        permission: Permission | None = None,
+        pause: Callable[[], object] = lambda: None,
     ) -> None:
         self._automaton = automaton
         self._permission = permission
@@ -87,6 +97,7 @@ class Relaxation:
         waiting = dict.fromkeys(range(len(steps)))
         held: dict[int, Transition] = {}  # that only the supervisor keeps from being taken
         while waiting:
+            pause()
             number = waiting.popitem()[0]
             step = steps[number]
             if (

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.relaxed.relaxation import reachable, unreached
 
@@ -20,6 +20,9 @@ class Relaxing:
 
     def solve(self, task: Task, budget: Budget) -> Finding:
         """A proof, or nothing."""
-        relaxed = reachable(self._automaton, task.state, task.circumstances, self._supervisor)
+        try:
+            relaxed = reachable(self._automaton, task.state, task.circumstances, self._supervisor, budget.require)
+        except SpentError:
+            return Finding()
         reached = all(relaxed.may(goal.predicate) for goal in task.goals)
         return Finding() if reached else Finding(proof=unreached(self._automaton, relaxed))

@@ -12,7 +12,7 @@ from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget, SpentError
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.plan import Contract
-from sequence_planner.planning.sat.search import Searches, SearchTimeoutError
+from sequence_planner.planning.sat.search import Searches, SearchTimeoutError, Sought
 from sequence_planner.planning.sat.sweep import Sweep
 
 # Formulas and conditions that more abilities than this write to are looked at after their starts in one order only.
@@ -46,11 +46,7 @@ class BoundedModelChecking:
         seen = self._seen(task)
         exact = task.contract is Contract.MINIMAL and len(seen) <= _MOST_SEEN
         try:
-            plan = (
-                self._searched(task, seen, budget)
-                .search(task.state)
-                .plan(task.state, task.goals, task.circumstances, task.bound, budget, task.contract)
-            )
+            plan = self._searched(task, seen, budget).search(task.state).plan(Sought.of(task), budget)
         except SpentError:
             return Finding()
         except SearchTimeoutError as late:

@@ -14,9 +14,11 @@ from typing import NamedTuple
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, Flag, State
 from sequence_planner.expressions.types import Value
+from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.plan import Circumstances
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.following import Following
+from sequence_planner.planning.sat.single_step import SingleStep
 from sequence_planner.planning.sat.symbolic import FollowingState, Reading, Symbol, SymbolicState
 from sequence_planner.planning.sat.writing import Write, Writes, Writing, sharing
 
@@ -60,8 +62,10 @@ class Encoding:
         unknown: frozenset[str],
         inside: bool = False,
         lazily: bool = False,
+        starts: Starts | None = None,
     ) -> None:
         self.automaton = automaton
+        self._starts = starts or Starts(automaton, supervisor) if automaton.one_at_a_time else None
         self._circuit = circuit
         self.reading = Reading(circuit)
         self._writing = Writing(automaton, circuit)
@@ -151,29 +155,10 @@ class Encoding:
 
     def _step(self, state: SymbolicState, order: Iterable[Ability], pause: Callable[[], object]) -> SymbolicTick:
         """At most one start from a safe state in which nothing is unknown, of an automaton with nothing but starts."""
-        circuit = self._circuit
-        taken: list[tuple[int, Writes]] = []
-        starts: list[tuple[str, int]] = []
-        earlier: list[int] = []
-        before = circuit.FALSE
-        for ability in order:
-            pause()
-            choice = circuit.fresh()
-            writes, determined = self._writing.writes(ability.start_actions, state)
-            for condition in (
-                determined,
-                self.reading.truth(ability.enabled, state).yes,
-                self.reading.truth(ability.start_guard, state).yes,
-                self._permitted(ability, state),
-                -before,
-            ):
-                circuit.require(-choice, condition)
-            before = circuit.disjunction((before, choice))
-            taken.append((choice, writes))
-            starts.append((ability.name, choice))
-            earlier.append(before)
-        end = self._writing.together(state, taken)
-        return SymbolicTick({}, {}, starts, state, [(before, end)], earlier)
+        assert self._starts is not None
+        step = SingleStep(self._starts, self._circuit, self.reading, self._writing)
+        starts, earlier, end = step.choices(state, order, self._permitted, pause)
+        return SymbolicTick({}, {}, starts, state, [(earlier[-1] if earlier else Circuit.FALSE, end)], earlier)
 
     def _permitted(self, ability: Ability, state: SymbolicState) -> int:
         """Whether the supervisor allows a start in a safe state in which nothing is unknown."""

@@ -8,24 +8,33 @@ more than one clause as it is, and in one negated, is replaced there by its part
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterable, Sequence, Set
+from collections.abc import Callable, Iterable, Sequence, Set
 
 _MOST = 10  # literals that a clause may become; with more, the gate is worth its definition
+
+_OFTEN = 256  # gates from one pause to the next
 
 Clause = list[int]
 
 
 def flattened(
-    clauses: Iterable[Sequence[int]], gates: dict[tuple[int, ...], int], above: int, asked: Set[int]
+    clauses: Iterable[Sequence[int]],
+    gates: dict[tuple[int, ...], int],
+    above: int,
+    asked: Set[int],
+    pause: Callable[[], object] = lambda: None,
 ) -> list[Clause]:
     """`clauses` with all that they mean by `gates`, each of them a conjunction of parts, parts before wholes.
 
     Gates up to the variable `above` are taken for inputs. Of the variables `asked` either value may be asked for, too.
+    `pause` is called now and then, and may raise.
     """
     flat = _Flat(clauses)
-    for parts, gate in reversed(gates.items()):
+    for number, (parts, gate) in enumerate(reversed(gates.items())):
         if gate <= above:
             break
+        if number % _OFTEN == 0:
+            pause()
         if gate in asked or not flat.replaced(gate, parts):
             flat.define(gate, parts, gate in asked)
     return flat.clauses

@@ -12,14 +12,22 @@ from types import MappingProxyType
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State
 from sequence_planner.counting import counted
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget, SpentError
-from sequence_planner.planning.plan import Circumstances, Contract, Goal, Plan, PlanTick
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.plan import Circumstances, Contract, Goal, Plan
 from sequence_planner.planning.sat.fewest import Fewest
-from sequence_planner.planning.sat.succession import Succession
+from sequence_planner.planning.sat.succession import ANY_START, Singly
 from sequence_planner.planning.sat.unrolling import Unrolling
+
+_NOTHING: State = MappingProxyType({})
 
 # A solver for each set of unknown variables; topics come and go in few combinations.
 _KEPT_SEARCHES = 4
+
+
+def _any(_: Plan) -> bool:
+    return True
 
 
 class SearchTimeoutError(Exception):
@@ -30,11 +38,39 @@ class SearchTimeoutError(Exception):
         self.searched = searched
 
 
+class Sought(Immutable):
+    """Plans from `state` of at most `longest` ticks that reach `goals`; it is known that none has fewer than `least`.
+
+    Or, instead of goals, that lead `into` states none of whose variables is unknown, after step 3 or after a start:
+    what the last tick starts counts as well then. If one of the fewest ticks is not `promising`, none with fewer starts
+    is looked for. Those sought `at_once` are any that are short enough: one question, and not one for each length.
+    """
+
+    state: State
+    goals: Sequence[Goal]
+    circumstances: Circumstances
+    longest: int
+    contract: Contract = Contract.MINIMAL
+    promising: Callable[[Plan], bool] = _any
+    least: int = 1
+    into: StateSet | None = None
+    at_once: bool = False
+
+    @classmethod
+    def of(cls, task: Task) -> Sought:
+        """What is asked by a task."""
+        return cls(task.state, task.goals, task.circumstances, task.bound, task.contract)
+
+    def reached(self, unrolling: Unrolling, length: int) -> list[int]:
+        """The literals that say so many ticks are enough."""
+        if self.into is not None:
+            return [unrolling.inside(self.into, length)]
+        return [unrolling.reached(goal, length) for goal in self.goals]
+
+
 class Search:
     """Plans from any state in which exactly `unknown`, variables and flags, have no value; with `inside`, from any
-    safe one. The variables `frozen` have these values throughout: no transition writes others.
-    The `oracles`, which no transition writes, have any value anew in each tick. What is asked `once` only is asked
-    faster.
+    safe one. The `oracles`, which no transition writes, have any value anew in each tick.
     """
 
     def __init__(
@@ -44,15 +80,12 @@ class Search:
         order: Sequence[Ability],
         unknown: frozenset[str],
         inside: bool = False,
-        frozen: State = MappingProxyType({}),
-        once: bool = False,
         oracles: frozenset[str] = frozenset(),
-        succession: Succession = (),
+        singly: Singly = ANY_START,
     ) -> None:
-        self._made_of = (automaton, supervisor, order, unknown, inside, frozen, oracles)
-        self._succession = succession
+        self._made_of = (automaton, supervisor, order, unknown, inside, _NOTHING, oracles)
+        self._singly = singly
         self._one_at_a_time = automaton.one_at_a_time
-        self._once = once
         self._unrolling: Unrolling | None = None
 
     def close(self) -> None:
@@ -61,47 +94,35 @@ class Search:
             self._unrolling.solver.close()
             self._unrolling = None
 
-    def plan(
-        self,
-        state: State,
-        goals: Sequence[Goal],
-        circumstances: Circumstances,
-        longest: int,
-        budget: Budget,
-        contract: Contract = Contract.MINIMAL,
-        promising: Callable[[Plan], bool] = lambda _: True,
-        least: int = 1,
-    ) -> Plan | None:
+    def plan(self, sought: Sought, budget: Budget) -> Plan | None:
         """A plan with the fewest ticks, then the fewest starts, or nearly so by a fast contract; None if there is none
-        of at most `longest` ticks. It is known that none has fewer than `least`. If one of so many ticks is not
-        `promising`, none with fewer starts is looked for.
+        that is short enough. Where it is sought `at_once`, any that is.
 
         Raises `SearchTimeoutError` when the budget is spent before any plan is found; a plan found in time whose starts
         could not be proven fewest says so.
         """
-
-        def reached(unrolling: Unrolling, length: int) -> list[int]:
-            return [unrolling.reached(goal, length) for goal in goals]
-
-        return self._shortest(state, circumstances, reached, longest, budget, contract, promising, False, least)
-
-    def plan_within(
-        self, state: State, goals: Sequence[Goal], circumstances: Circumstances, longest: int, budget: Budget
-    ) -> tuple[PlanTick, ...] | None:
-        """Some plan of at most `longest` ticks, of which there have been as many before; None if there is none.
-
-        Raises `SearchTimeoutError`.
-        """
-        unrolling = self._unrolling
-        assert unrolling is not None
-        given = unrolling.given(state, circumstances)
-        for length in range(1, longest + 1):
-            given += unrolling.keeps(circumstances, length)
-        given += (unrolling.reached(goal, longest) for goal in goals)
-        answer = unrolling.solver.solve(given, budget)
-        if answer is None:
-            raise SearchTimeoutError(0)
-        return unrolling.read(longest, longest - 1, unrolling.solver.model()) if answer else None
+        known = sought.least - 1
+        first = sought.longest if sought.at_once else sought.least
+        try:
+            if self._unrolling is None:
+                self._unrolling = Unrolling(*self._made_of, budget, self._singly)
+            unrolling = self._unrolling
+            given = unrolling.given(sought.state, sought.circumstances)
+            for length in range(1, sought.longest + 1):
+                unrolling.extend(length, budget)
+                given += unrolling.keeps(sought.circumstances, length)
+                if length < first:
+                    continue
+                assumptions = [*given, *sought.reached(unrolling, length)]
+                answer = unrolling.solver.solve(assumptions, budget)
+                if answer is None:
+                    raise SearchTimeoutError(known)
+                if answer:
+                    return self._found(sought, assumptions, length, budget)
+                known = length
+        except SpentError:
+            raise SearchTimeoutError(known) from None
+        return None
 
     @property
     def ticks(self) -> int:
@@ -113,61 +134,16 @@ class Search:
         assert self._unrolling is not None
         return self._unrolling.finishing(len(plan.ticks), self._unrolling.solver.model())
 
-    def plan_into(
-        self, states: StateSet, state: State, circumstances: Circumstances, longest: int, budget: Budget
-    ) -> Plan | None:
-        """The same for a run into `states`, none of whose variables is unknown, after step 3 or after a start.
-
-        What its last tick starts counts as well.
-        """
-
-        def inside(unrolling: Unrolling, length: int) -> list[int]:
-            return [unrolling.inside(states, length)]
-
-        return self._shortest(
-            state, circumstances, inside, longest, budget, Contract.MINIMAL, lambda _: True, last_starts=True
-        )
-
-    def _shortest(
-        self,
-        state: State,
-        circumstances: Circumstances,
-        wanted: Callable[[Unrolling, int], list[int]],
-        longest: int,
-        budget: Budget,
-        contract: Contract,
-        promising: Callable[[Plan], bool],
-        last_starts: bool,
-        least: int = 1,
-    ) -> Plan | None:
-        """`wanted` has the literals that say so many ticks are enough; without `last_starts` the last has none."""
-        length = least
-        try:
-            if self._unrolling is None:
-                self._unrolling = Unrolling(*self._made_of, budget, self._succession)
-            unrolling = self._unrolling
-            given = unrolling.given(state, circumstances)
-            if self._once:
-                unrolling.solver.add_clauses([literal] for literal in given)
-                given = []
-            for length in range(1, longest + 1):
-                unrolling.extend(length, budget)
-                given += unrolling.keeps(circumstances, length)
-                if length < least:
-                    continue
-                assumptions = [*given, *wanted(unrolling, length)]
-                answer = unrolling.solver.solve(assumptions, budget)
-                if answer is None:
-                    raise SearchTimeoutError(length - 1)
-                if answer:
-                    starting = length if last_starts else length - 1
-                    if self._one_at_a_time:  # with fewer starts a plan would have fewer ticks
-                        return Plan(unrolling.read(length, starting, unrolling.solver.model()), True, True)
-                    fewest = Fewest(unrolling, assumptions, length, starting)
-                    return fewest.plan(contract, promising, budget)
-        except SpentError:
-            raise SearchTimeoutError(length - 1) from None
-        return None
+    def _found(self, sought: Sought, assumptions: Sequence[int], length: int, budget: Budget) -> Plan:
+        """The plan of so many ticks that the solver has just found, or one with fewer starts."""
+        unrolling = self._unrolling
+        assert unrolling is not None
+        starting = length - 1 if sought.into is None else length
+        if sought.at_once or self._one_at_a_time:  # with fewer starts of one at a time it would have fewer ticks
+            ticks, proven = unrolling.read(length, starting, unrolling.solver.model()), not sought.at_once
+            return Plan(ticks, proven, proven)
+        fewest = Fewest(unrolling, assumptions, length, starting)
+        return fewest.plan(sought.contract, sought.promising, budget)
 
 
 class Searches:

@@ -24,7 +24,7 @@ from sequence_planner.planning.plan import Circumstances, Contract, Plan
 from sequence_planner.planning.relaxed.relaxed_plan import RelaxedPlan
 from sequence_planner.planning.relaxed.relevance import Relevance
 from sequence_planner.planning.replaying.acceptance import Acceptance
-from sequence_planner.planning.sat.search import Search, SearchTimeoutError
+from sequence_planner.planning.sat.search import Search, SearchTimeoutError, Sought
 from sequence_planner.planning.sat.sweep import Sweep
 
 _MOST = 0.7  # of the variables; beyond, nothing is gained
@@ -55,9 +55,8 @@ class _Part:
                 seen.automaton, seen.supervisor, order, frozenset(), inside=True, oracles=oracles
             )
         self._latest = self._searches[restart]
-        return self._latest.plan(
-            seen.state(task.state), task.goals, task.circumstances, task.bound, budget, promising=promising
-        )
+        sought = Sought(seen.state(task.state), task.goals, task.circumstances, task.bound, promising=promising)
+        return self._latest.plan(sought, budget)
 
     def made_of(self, plan: Plan) -> frozenset[str]:
         """The effects and abilities of `plan`, which has just been found, what finishes without a start included."""

@@ -16,8 +16,8 @@ from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, target
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.sat.circles import Before, circles, linear
-from sequence_planner.planning.sat.demands import Demands
 from sequence_planner.planning.sat.pairs import Pairs
 
 _AS_LONG_AS_IT_TAKES = 1e7  # seconds
@@ -144,12 +144,12 @@ class Sweep:
                 for other in users[variable]:
                     if other != name:
                         found |= {(name, other): None, (other, name): None}
-        demands = {ability.name: Demands(self._automaton, ability) for ability in self._automaton.abilities.values()}
-        return [pair for pair in found if not self._shown(pair, demands)]
+        starts = Starts(self._automaton, self._supervisor)
+        return [pair for pair in found if not self._shown(pair, starts)]
 
-    def _shown(self, pair: tuple[str, str], demands: Mapping[str, Demands]) -> bool:
+    def _shown(self, pair: tuple[str, str], starts: Starts) -> bool:
         """Whether the texts alone show that there is no need to take the second after the first rather than before."""
-        one, other = (demands[name] for name in pair)
+        one, other = (starts[name] for name in pair)
         if one.excludes(other) or (self._known and one.undone_by(other)):
             return True
         free = not any(name in self._supervisor.guards or self._automaton.abilities[name].restart for name in pair)

@@ -13,6 +13,7 @@ from itertools import combinations, count, repeat
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton, State, reads
 from sequence_planner.expressions.syntax import Expression, variables
+from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.plan import Circumstances
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.encoding import Encoding, SymbolicTick
@@ -41,7 +42,8 @@ class Template:
     """The tick from states in which exactly `unknown`, variables and flags, have no value.
 
     With `inside`, only from safe states. The variables `frozen` have these values throughout, and the `oracles` any
-    value anew in each tick. `pause` is called now and then while it is made, and may raise.
+    value anew in each tick. `pause` is called now and then while it is made, and may raise. Where one start is taken at
+    a time, `starts` knows what these ask for.
     """
 
     def __init__(
@@ -54,12 +56,13 @@ class Template:
         frozen: State,
         oracles: frozenset[str],
         pause: Callable[[], object],
+        starts: Starts | None = None,
     ) -> None:
         recorder = Recorder()
         circuit = Circuit(recorder, later=True)
         blind = unknown & automaton.variables.keys()
         self._predicates = automaton.flag_predicates
-        self._encoding = Encoding(automaton, supervisor, circuit, blind, inside, lazily=not unknown)
+        self._encoding = Encoding(automaton, supervisor, circuit, blind, inside, lazily=not unknown, starts=starts)
         self._shared = circuit.top  # literals up to here mean the same in all ticks
         free = self._encoding.initial(blind, determined=self._predicates.keys() - unknown, frozen=frozen)
         kept = free.keys() if unknown else automaton.variables.keys() | _read_before_synchronising(automaton)
@@ -73,11 +76,12 @@ class Template:
         for symbol in anew.values():
             recorder.clauses += _one_value(symbol)
         self._tick = self._encoding.tick(self.start | anew, order, pause)
-        recorder.clauses += _no_two_values(self._tick.synchronised.values())
+        if not automaton.one_at_a_time:
+            recorder.clauses += _no_two_values(self._tick.synchronised.values())
         self._carried = self._carry(anew.values())
         asked = set(map(abs, self._asked()))
         self._literals: dict[int, list[int]] = defaultdict(list)  # of all clauses of a length, one after the other
-        for clause in flattened(recorder.clauses, circuit.gates, self._inputs, asked):
+        for clause in flattened(recorder.clauses, circuit.gates, self._inputs, asked, pause):
             self._literals[len(clause)] += clause
         self.top = circuit.top
         met = {abs(literal) for literals in self._literals.values() for literal in literals}

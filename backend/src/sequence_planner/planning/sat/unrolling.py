@@ -16,7 +16,7 @@ from sequence_planner.planning.plan import Circumstances, Goal, PlanTick
 from sequence_planner.planning.sat.circuit import Circuit
 from sequence_planner.planning.sat.encoding import SymbolicTick
 from sequence_planner.planning.sat.solver import Solver
-from sequence_planner.planning.sat.succession import Succession, in_order
+from sequence_planner.planning.sat.succession import ANY_START, Singly, in_order
 from sequence_planner.planning.sat.symbolic import Reading
 from sequence_planner.planning.sat.template import Template
 
@@ -34,24 +34,26 @@ class Unrolling:
         frozen: State,
         oracles: frozenset[str],
         budget: Budget,
-        succession: Succession = (),
+        singly: Singly = ANY_START,
     ) -> None:
         """Of runs in which the variables `frozen` have these values throughout, which no transition writes to others,
         and the `oracles`, which none writes, any value anew in each tick. Of runs of single starts only those in which
-        one follows another as `succession` says, if it says anything.
+        one follows another as `singly` says, if it says anything.
 
         Raises `SpentError` when the budget is spent before the first tick is encoded."""
         self.solver = Solver()
         self.circuit = Circuit(self.solver)
         self.ticks: list[SymbolicTick] = []
         with collection_put_off():
-            self._template = Template(automaton, supervisor, order, unknown, inside, frozen, oracles, budget.require)
+            self._template = Template(
+                automaton, supervisor, order, unknown, inside, frozen, oracles, budget.require, singly.starts
+            )
         self.circuit.reserve(self._template.top)
         self._renaming = self._template.first()
         self._reading = Reading(self.circuit)
         self._tracker = Tracker(self.circuit)
         self._progress: dict[Goal, list[Progress]] = {}
-        self._succession = succession
+        self._succession = singly.succession
         self._avoided: dict[Expression, list[int]] = {}
         self._counted: dict[tuple[str, int], tuple[int, int]] = {}  # by ability and number: in how many ticks, and how
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from heapq import heappop, heappush
 from itertools import count
 
-from sequence_planner.automaton.compiled import CompiledRun, CompiledTick
-from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.automaton.compiled import CompiledRun
+from sequence_planner.automaton.structure import State
+from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.goals.pursuit import Goals
+from sequence_planner.planning.single.stepping import Stepping
 from sequence_planner.planning.single.ways import Way, Ways
 
 _MOST = 120  # states that are looked at
@@ -18,13 +19,11 @@ _NEAREST = 4  # rests of plans that a way is looked for to
 class Detours:
     """Looks for ways back to `ways`: greedily, where the fewest values differ that the rest of a plan asks for."""
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor, ways: Ways) -> None:
-        self._automaton = automaton
-        self._safe = None if supervisor.safe.everything else supervisor.safe
+    def __init__(self, stepping: Stepping, ways: Ways) -> None:
+        self._stepping = stepping
         self._ways = ways
-        self._compiled: CompiledTick | None = None
 
-    def found(self, state: State, goals: Goals) -> tuple[str, ...] | None:
+    def found(self, state: State, goals: Goals, budget: Budget) -> tuple[str, ...] | None:
         """The starts of a plan that soon comes to the rest of another; the rest itself if it leads from `state`."""
         nearest = self._ways.nearest(state, goals, _NEAREST)
         if not nearest:
@@ -32,18 +31,13 @@ class Detours:
         if nearest[0][0] == 0:
             return min((way.order[number:] for far, way, number in nearest if far == 0), key=len)
         targets = [(way, number) for _, way, number in nearest]
-        if self._compiled is None:
-            self._compiled = CompiledTick(self._automaton, hot=False)
-        begin = CompiledRun(self._compiled, state)
+        begin = self._stepping.begin(state)
         seen = {tuple(begin.values.values())}
         ages = count()
         queue: list[tuple[int, int, CompiledRun, tuple[str, ...]]] = [(0, next(ages), begin, ())]
-        while queue and len(seen) < _MOST:
+        while queue and len(seen) < _MOST and not budget.spent:
             _, _, run, order = heappop(queue)
-            for name in sorted(run.startable()):
-                after = run.fork()
-                if not after.start(name) or (self._safe is not None and not self._safe.includes(after.values)):
-                    continue
+            for name, after in self._stepping.following(run):
                 key = tuple(after.values.values())
                 if key in seen:
                     continue

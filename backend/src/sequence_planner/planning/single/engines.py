@@ -8,6 +8,7 @@ from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.immutable import replace
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.engine import Engine, Finding, Task
 from sequence_planner.planning.engines import FACTORIES, Factory, Lane, Maker
 from sequence_planner.planning.plan import Contract, one_by_one, starts_of
@@ -16,15 +17,16 @@ from sequence_planner.planning.single.derived import with_flags
 LANE = Lane(
     "single",
     {
-        Contract.MINIMAL: ("pairs", "bmc", "relaxation", "pdr", "a-star", "search"),
-        Contract.FAST: ("pairs", "search", "relaxation", "pdr", "bmc", "a-star"),
+        Contract.MINIMAL: ("pairs", "bmc", "sums", "relaxation", "pdr", "a-star", "search"),
+        Contract.FAST: ("pairs", "sums", "search", "relaxation", "pdr", "bmc", "a-star"),
     },
-    first_turns={"pairs": 0.06, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
+    first_turns={"pairs": 0.06, "sums": 0.02, "bmc": 1.0, "search": 0.3, "relaxation": 1.0, "pdr": 0.2},
+    fast_first_turns={"search": 1.0, "bmc": 0.2},
     by_work=True,
 )
 
 
-PROVING = frozenset(("pairs", "relaxation", "pdr"))  # engines that have nothing to say where there is a plan
+PROVING = frozenset(("pairs", "sums", "relaxation", "pdr"))  # engines that have nothing to say where there is a plan
 
 
 class Separately:
@@ -79,11 +81,14 @@ class _WithFlags(Separately):
         return super().solve(replace(task, state={**task.state, **self._flags}), budget)
 
 
-FACTORIES_OF_SINGLE: Mapping[str, Factory] = {
-    "bmc": Maker("sat.single_starts", "SingleStarts"),
-    "a-star": Maker("heuristic.fewest", "FewestStarts"),
-    "search": _Several(FACTORIES["search"]),
-    "relaxation": FACTORIES["relaxation"],
-    "pairs": Maker("single.pairs", "Pairs"),
-    "pdr": _proving,
-}
+def factories(starts: Starts) -> Mapping[str, Factory]:
+    """Those of all engines, for an automaton with these `starts`."""
+    return {
+        "bmc": Maker("sat.single_starts", "SingleStarts", (starts,)),
+        "a-star": Maker("heuristic.fewest", "FewestStarts"),
+        "search": _Several(FACTORIES["search"]),
+        "relaxation": FACTORIES["relaxation"],
+        "pairs": Maker("single.pairs", "Pairs", (starts,)),
+        "sums": Maker("single.sums", "Sums", (starts,)),
+        "pdr": _proving,
+    }

@@ -15,13 +15,11 @@ from operator import or_
 from typing import NamedTuple
 
 from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, State, target
-from sequence_planner.expressions.evaluation import evaluate
-from sequence_planner.expressions.syntax import Assignment, Constant, Expression, conjunction, conjuncts, variables
-from sequence_planner.expressions.types import Value
+from sequence_planner.automaton.structure import Automaton, State
+from sequence_planner.expressions.syntax import Expression, conjuncts
 from sequence_planner.planning.budget import Budget, SpentError
+from sequence_planner.planning.demands import Demands, Some, Starts, Written
 from sequence_planner.planning.engine import Finding, Task
-from sequence_planner.planning.known import Known
 from sequence_planner.planning.plan import Clause, Literal, Proof
 
 NAME = "pairs"  # of proofs, too
@@ -71,16 +69,19 @@ class Pairs:
 
     name = NAME
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
+    def __init__(self, automaton: Automaton, supervisor: Supervisor, starts: Starts | None = None) -> None:
         """What the supervisor allows is not looked at: nothing more than can be proven without it is."""
-        self._automaton = automaton
+        self._demands = starts or Starts(automaton, supervisor)
         self._facts = [(name, value) for name, each in automaton.variables.items() for value in each.type.domain]
         self._number = {fact: number for number, fact in enumerate(self._facts)}
         self._all = (1 << len(self._facts)) - 1
         self._own: dict[str, Facts] = defaultdict(int)  # all values of a variable
+        self._first: dict[str, int] = {}  # and the number of the first
         for number, (name, _) in enumerate(self._facts):
             self._own[name] |= 1 << number
-        self._starts: list[_Start] | None = None
+            self._first.setdefault(name, number)
+        self._names = tuple(automaton.abilities)
+        self._starts: list[_Start] = []  # in this order, as far as they have been looked at
         self._readers: dict[int, set[int]] = defaultdict(set)  # of each value, the starts that it matters to
         self._unasked: set[int] = set()  # starts that ask for nothing, so that all values matter to them
         self._work: _Work | None = None
@@ -94,8 +95,10 @@ class Pairs:
         if work is None or work.task is not task:
             if work is not None and work.task.goals == task.goals and self._in_vain(work, wanted, task.state):
                 return Finding()
-            work = self._work = self._begun(task)
+            work = None
         try:
+            if work is None:
+                work = self._work = self._begun(task, budget)
             while work.waiting:
                 if all(_beside(work.noted, each, self._all) for each in wanted):
                     return Finding()
@@ -113,23 +116,23 @@ class Pairs:
         inside = all(there & ~work.noted[number] == 0 for number in _bits(there))
         return inside and all(_beside(work.noted, each, self._all) for each in wanted)
 
-    def _begun(self, task: Task) -> _Work:
-        """The values that are there at first, and all starts."""
-        if self._starts is None:
-            self._starts = [self._start(ability) for ability in self._automaton.abilities.values()]
-            for number, start in enumerate(self._starts):
-                for asked in (*start.asked, *(each for outcome in start.outcomes for each in outcome.asked)):
-                    for fact in _bits(asked.values):
-                        self._readers[fact].add(number)
-                if not start.asked:
-                    self._unasked.add(number)
+    def _begun(self, task: Task, budget: Budget) -> _Work:
+        """The values that are there at first, and all starts. Raises `SpentError`; asked again, it goes on."""
+        for name in self._names[len(self._starts) :]:
+            budget.require()
+            number, start = len(self._starts), self._start(self._demands[name])
+            for asked in (*start.asked, *(each for outcome in start.outcomes for each in outcome.asked)):
+                for fact in _bits(asked.values):
+                    self._readers[fact].add(number)
+            if not start.asked:
+                self._unasked.add(number)
+            self._starts.append(start)
         begin = sum(1 << self._number[name, value] for name in self._own if (value := task.state[name]) is not None)
         noted = [begin if begin >> number & 1 else 0 for number in range(len(self._facts))]
         return _Work(task, noted, set(range(len(self._starts))))
 
     def _note(self, work: _Work) -> None:
         """Take each of the starts that wait, and have those wait to which it matters what is noted then."""
-        assert self._starts is not None
         noted = work.noted
         layer, work.waiting = work.waiting, set()
         for number in layer:
@@ -159,43 +162,37 @@ class Pairs:
                     together |= 1 << other.value
             yield outcome.value, together
 
-    def _start(self, ability: Ability) -> _Start:
-        asked = tuple(self._asked(conjunction(ability.enabled, ability.start_guard)))
+    def _start(self, demands: Demands) -> _Start:
+        asked = tuple(self._of(name, values) for name, values in demands.asked.items())
         left = self._all
-        for action in ability.start_actions:
-            if action.condition is None:
-                left &= ~self._own[target(action)]
-        outcomes = (outcome for action in ability.start_actions for outcome in self._outcomes(action))
-        return _Start(asked, tuple(outcomes), left)
+        for name in demands.surely_written:
+            left &= ~self._own[name]
+        return _Start(asked, tuple(o for written in demands.writes for o in self._outcomes(written)), left)
 
-    def _outcomes(self, action: Assignment) -> Iterator[_Outcome]:
-        name = target(action)
+    def _outcomes(self, written: Written) -> Iterator[_Outcome]:
+        name, condition = written.name, written.action.condition
         others = self._all & ~self._own[name]
-        asked = () if action.condition is None else tuple(self._asked(action.condition))
-        read = frozenset(variables(action.value))
-        if isinstance(action.value, Constant):
-            yield _Outcome(self._number[name, action.value.value], others, asked)
-        elif len(read) == 1:
-            (source,) = read
-            for number in _bits(self._own[source]):
-                value = evaluate(action.value, Known({source: self._facts[number][1]}))
-                if value is not None and (name, value) in self._number:
-                    from_ = _Asked(1 << number, self._all & ~self._own[source])
-                    yield _Outcome(self._number[name, value], others, (*asked, from_))
-        else:
+        asked = () if condition is None else tuple(self._asked(condition))
+        if written.becomes is None:
             yield from (_Outcome(number, others, asked) for number in _bits(self._own[name]))
+            return
+        for from_, value in written.becomes:
+            source = written.source
+            where = (
+                () if source is None else (self._of(source, 1 << self._number[source, from_] - self._first[source]),)
+            )
+            yield _Outcome(self._number[name, value], others, (*asked, *where))
 
     def _asked(self, predicate: Expression) -> Iterator[_Asked]:
         """What the parts of a conjunction ask for that read one variable; others may ask for more."""
         for part in conjuncts(predicate):
-            read = frozenset(variables(part))
-            if len(read) == 1 and read <= self._own.keys():
-                (name,) = read
-                numbers = (n for n in _bits(self._own[name]) if self._may(part, *self._facts[n]))
-                yield _Asked(reduce(or_, (1 << number for number in numbers), 0), self._all & ~self._own[name])
+            alone = self._demands.domains.asked(part)
+            if alone is not None:
+                yield self._of(*alone)
 
-    def _may(self, predicate: Expression, name: str, value: Value) -> bool:
-        return evaluate(predicate, Known({name: value})) is not False
+    def _of(self, name: str, values: Some) -> _Asked:
+        """One of these values of a variable is asked for."""
+        return _Asked(values << self._first[name], self._all & ~self._own[name])
 
     def _clauses(self, noted: list[Facts]) -> Iterator[Clause]:
         """That no two values are there together that never are."""

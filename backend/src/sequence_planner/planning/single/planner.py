@@ -11,6 +11,7 @@ from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.attempt import Attempt
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.engine import Finding, Task
 from sequence_planner.planning.engines import Engines, Report
 from sequence_planner.planning.goals.pursuit import Goals
@@ -22,8 +23,14 @@ from sequence_planner.planning.repair import NAME as REPAIR
 from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.single.derived import without_flags
 from sequence_planner.planning.single.detours import Detours
-from sequence_planner.planning.single.engines import FACTORIES_OF_SINGLE, LANE, PROVING
+from sequence_planner.planning.single.engines import LANE, PROVING, factories
+from sequence_planner.planning.single.neighbourhood import shortened
+from sequence_planner.planning.single.stepping import Stepping
 from sequence_planner.planning.single.ways import Ways
+
+# Of the time that it took to find a plan, and in seconds of the processor: what it may cost to shorten it.
+_SHARE, _LEAST, _MOST = 0.5, 0.02, 0.5
+_AGAIN = 2  # times that each of its starts is taken, on average
 
 
 class _Taken(Immutable):
@@ -40,9 +47,11 @@ class SinglePlanner:
         bare = without_flags(automaton)
         self._supervisor = supervisor
         self._transitions = plain_transitions(automaton)
-        self._ways = Ways(bare, supervisor)
-        self._detours = Detours(bare, supervisor, self._ways)
-        self._engines = Engines(bare, supervisor, LANE, FACTORIES_OF_SINGLE)
+        starts = Starts(bare, supervisor)
+        self._ways = Ways(starts)
+        self._stepping = Stepping(bare, supervisor)
+        self._detours = Detours(self._stepping, self._ways)
+        self._engines = Engines(bare, supervisor, LANE, factories(starts))
         self._last: tuple[Plan, _Taken] | None = None
 
     def answer(
@@ -62,7 +71,7 @@ class SinglePlanner:
             )
         task = Task(state, left, contract=contract, longest=longest + 1, depth=longest + 1)
         attempt = Attempt(task, lambda plan: self._accepts(task, plan), budget)
-        mended = self._detours.found(state, left)
+        mended = self._detours.found(state, left, budget)
         without: Set[str] = frozenset()
         if mended is not None and len(mended) <= longest:
             attempt.take(Report(REPAIR, Finding(one_by_one(mended), searched=2)))  # some goal is missing
@@ -70,11 +79,26 @@ class SinglePlanner:
             task, without = replace(task, longest=len(mended), depth=len(mended)), PROVING
         for report in () if _enough(attempt) else self._engines.work(task, budget, lambda: attempt.patience, without):
             attempt.take(report)
+            if report.finding.plan is not None:
+                self._shorten(attempt, budget)
             if _enough(attempt) or not attempt.patience:
                 break
         if attempt.troubles and not attempt.heard and not budget.spent:
             raise PlannerError("; ".join(attempt.troubles))
         return self._answered(attempt, longest, time.monotonic() - began)
+
+    def _shorten(self, attempt: Attempt, budget: Budget) -> None:
+        """Look for a shorter plan near one that does the same again and again, for some of the time that it took.
+
+        Others are seldom much longer than needed.
+        """
+        plan, task = attempt.plan, attempt.task
+        if plan is None or plan.minimal_ticks or len(plan.starts) < _AGAIN * len(set(_order(plan))):
+            return
+        seconds = min(max(_SHARE * attempt.took, _LEAST), _MOST)
+        shorter = shortened(_order(plan), task.state, task.goals, self._stepping, budget.working(seconds))
+        if shorter is not None:
+            attempt.take(Report(attempt.engine, Finding(one_by_one(shorter), searched=attempt.searched)))
 
     def _answered(self, attempt: Attempt, longest: int, seconds: float) -> PlainAnswer:
         plan, searched = attempt.plan, max(attempt.searched - 1, 0)

@@ -7,17 +7,16 @@ there it leads to the goals as well (regression, as in Fritz and McIlraith 2007)
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from functools import cached_property
 from heapq import nsmallest
 from operator import itemgetter
 from typing import NamedTuple
 
-from sequence_planner.automaton.cone import read_variables
-from sequence_planner.automaton.state_set import Supervisor
-from sequence_planner.automaton.structure import Ability, Automaton, State, target
-from sequence_planner.expressions.syntax import conjunction, variables
+from sequence_planner.automaton.structure import State
+from sequence_planner.expressions.syntax import variables
 from sequence_planner.expressions.types import Value
+from sequence_planner.planning.demands import Starts
 from sequence_planner.planning.goals.pursuit import Goals
 
 _MOST = 8  # plans that are kept
@@ -32,13 +31,6 @@ class Rest(NamedTuple):
     minimal: bool
 
 
-class _Touched(NamedTuple):
-    """What a start reads, and what it writes in any case."""
-
-    reads: frozenset[str]
-    written: frozenset[str]
-
-
 class Way:
     """A plan, the states that it leads through, and the goals missing in each; `minimal` if none has fewer starts."""
 
@@ -48,13 +40,13 @@ class Way:
         states: Sequence[State],
         missing: Sequence[Goals],
         minimal: bool,
-        touched: Mapping[str, _Touched],
+        starts: Starts,
     ) -> None:
         self.order = tuple(order)
         self.states = states
         self.missing = missing
         self.minimal = minimal
-        self._touched = touched
+        self._starts = starts
 
     def far(self, number: int, state: State) -> int:
         """How many other values the rest of the plan, from so many starts on, asks for.
@@ -71,8 +63,8 @@ class Way:
         names: frozenset[str] = seen
         found: list[frozenset[str]] = []
         for name in reversed(self.order):
-            touched = self._touched[name]
-            names = (names - touched.written) | touched.reads
+            start = self._starts[name]
+            names = (names - start.surely_written) | start.reads | self._starts.guarded(name)
             if len(goals) > 1:  # each can hold at a moment of its own
                 names |= seen
             found.append(names)
@@ -83,12 +75,10 @@ class Way:
 
 
 class Ways:
-    """The last plans of one automaton under one supervisor."""
+    """The last plans of one automaton under one supervisor, with these `starts`."""
 
-    def __init__(self, automaton: Automaton, supervisor: Supervisor) -> None:
-        self._automaton = automaton
-        self._supervisor = supervisor
-        self._names = tuple(automaton.variables)
+    def __init__(self, starts: Starts) -> None:
+        self._starts = starts
         self._ways: deque[Way] = deque(maxlen=_MOST)  # the last one first
 
     def __iter__(self) -> Iterator[Way]:
@@ -96,7 +86,7 @@ class Ways:
 
     def keep(self, order: Sequence[str], states: Sequence[State], missing: Sequence[Goals], minimal: bool) -> None:
         """Note a plan that has been taken step by step; the shorter of two from one state replaces the other."""
-        way = Way(order, states, missing, minimal, self._touched)
+        way = Way(order, states, missing, minimal, self._starts)
         for known in tuple(self._ways):
             if known.missing[0] == way.missing[0] and known.states[0] == way.states[0]:
                 self._ways.remove(known)
@@ -123,16 +113,3 @@ class Ways:
             if wanted.issubset(way.missing[number])
         ]
         return [(far, way, number) for far, _, _, way, number in nsmallest(most, found, key=itemgetter(0, 1, 2))]
-
-    @cached_property
-    def _touched(self) -> dict[str, _Touched]:
-        return {name: self._touching(ability) for name, ability in self._automaton.abilities.items()}
-
-    def _touching(self, ability: Ability) -> _Touched:
-        actions = ability.start_actions
-        conditions = [action.condition for action in actions if action.condition is not None]
-        guard = conjunction(ability.enabled, ability.start_guard)
-        reads = read_variables(self._automaton, (guard, *conditions, *(action.value for action in actions)))
-        kept = self._supervisor.guards.get(ability.name)
-        written = frozenset(target(action) for action in actions if action.condition is None)
-        return _Touched(reads | frozenset(() if kept is None else kept.names), written)
