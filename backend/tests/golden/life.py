@@ -38,6 +38,7 @@ SPEED: Final = 6.0  # of the devices
 DEVICE_STEP: Final = 0.05  # seconds between two reports of a device
 SNAPSHOT_EVERY: Final = 120  # records, so that there are some in a short run
 PATIENCE: Final = 30.0  # seconds
+SOON: Final = 3.0  # seconds
 TASK: Final = 0.5  # seconds that a person needs for a task
 WHY: Final = "to record it"
 
@@ -135,9 +136,13 @@ class Life:
         await self.controller.command(SetMode(actor=EVA, mode=mode))
 
     async def enter_restart(self) -> None:
-        """Go to restart mode, and wait until nothing runs."""
+        """Go to restart mode, and wait for what runs: it ends soon, or waits for what is not started any more."""
         await self.controller.command(EnterRestart(actor=EVA))
-        await self.until(lambda: not self.controller.execution.running())
+        end = time.monotonic() + SOON
+        while self.controller.execution.running():
+            if time.monotonic() > end:
+                return
+            await asyncio.sleep(0.02)
 
     async def leave_restart(self) -> None:
         """Leave restart mode, and go on."""

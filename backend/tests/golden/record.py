@@ -63,11 +63,11 @@ def _models(scenario: Scenario, folder: Path) -> list[Path]:
         return [scenario.station] * len(scenario.lives)
     deployed = folder / f"{scenario.station.name}_deployed"
     shutil.copytree(scenario.station, deployed)
-    file = deployed / "operations.yaml"
-    text = file.read_text()
-    assert scenario.edit[0] in text, scenario.edit
-    file.write_text(text.replace(*scenario.edit))
-    return [scenario.station, *[deployed] * (len(scenario.lives) - 1)]
+    name, old, new = scenario.edit
+    text = (deployed / name).read_text()
+    assert old in text, scenario.edit
+    (deployed / name).write_text(text.replace(old, new))
+    return [*[scenario.station] * scenario.since, *[deployed] * (len(scenario.lives) - scenario.since)]
 
 
 def main(asked: list[str]) -> None:

@@ -12,9 +12,8 @@ from core.actors import EVA
 from golden.life import WHY, Life
 from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.structure import Kind
-from sequence_planner.control.commands import SetMode
 from sequence_planner.control.job_commands import ForgetJob, JobOperation, JobWait, SequenceJobs, SetByOrder
-from sequence_planner.control.production_commands import ServiceKind, SetStepping, TakeStep
+from sequence_planner.control.production_commands import EnterRestart, ServiceKind, SetStepping, TakeStep
 from sequence_planner.control.restart_commands import (
     ConfirmEstimates,
     ReleaseForce,
@@ -35,14 +34,15 @@ Script = Callable[[Life], Awaitable[None]]
 class Scenario:
     """A journal: the station, what is done in each life of its controller, and kinds of records that must come of it.
 
-    Before the second life another model is deployed, where `edit` says how one text of its operations takes the place
-    of another. Devices begin anew with the second life unless they `stay`.
+    Where there is an `edit`, one text of a file of the model takes the place of another: what runs from the life
+    `since` on, counted from 0, is that model, as if it had been deployed. Devices go on as they are.
     """
 
     station: Path
     lives: tuple[Script, ...]
     kinds: frozenset[str] = frozenset()
-    edit: tuple[str, str] | None = None
+    edit: tuple[str, str, str] | None = None
+    since: int = 1
 
 
 async def produce(life: Life) -> None:
@@ -109,7 +109,7 @@ async def moved_by_hand(life: Life) -> None:
         await asyncio.sleep(0.7)
     life.devices.fail(FaultKind.RESTARTED, life.chance.choice(_resources(life)), 0.5)
     await asyncio.sleep(1.0)
-    await life.enter_restart()
+    await life.controller.command(EnterRestart(actor=EVA))
     for _ in range(3):
         name = life.chance.choice(automaton.names(Kind.ESTIMATED))
         await life.correct({name: life.chance.choice(automaton.variables[name].type.domain)})
@@ -137,30 +137,26 @@ async def correct(life: Life) -> None:
 
 
 async def work_by_order(life: Life) -> None:
-    """Jobs, one behind the other: the first is paused, goes on, and is stopped, the second aborted and forgotten."""
-    master, jobs = next(iter(life.controller.execution.automaton.work_masters.items()))
-    first, *_, last = jobs.operations
+    """Two jobs: the second waits for the first and is aborted; the first is paused, goes on, and is stopped."""
+    second, first = life.controller.execution.automaton.work_masters.values()
     await life.start()
     await life.controller.command(SetByOrder(actor=EVA, reason=WHY, on=True))
-    await life.job("a", master)
+    await life.job("a", first.name)
+    await life.job("b", second.name)
+    before = JobOperation(job="a", operation=list(first.operations)[-1])
+    waits = [JobWait(job="b", operation=next(iter(second.operations)), for_=[before])]
+    await life.controller.command(SequenceJobs(actor=SYSTEM, waits=waits))
     await life.work(3)
     await life.tell_job("a", "pause")
     await asyncio.sleep(1.0)
     await life.tell_job("a", "resume")
+    await life.tell_job("b", "abort")
     await life.work(2)
     await life.tell_job("a", "stop")
     await life.until(lambda: life.view.jobs["a"].state == "stopped")
-    await life.job("b", master)
-    waits = [JobWait(job="b", operation=first, for_=[JobOperation(job="a", operation=last)])]
-    await life.controller.command(SequenceJobs(actor=SYSTEM, waits=waits))
-    await life.work(2)
-    await life.tell_job("b", "abort")
-    await life.until(lambda: life.view.jobs["b"].state == "aborted")
     await life.controller.command(ForgetJob(actor=SYSTEM, job="b"))
-    await life.job("c", master)
-    await life.work(2)
     await life.controller.command(SetByOrder(actor=EVA, reason=WHY, on=False))
-    await asyncio.sleep(0.5)
+    await life.work(2)
 
 
 async def ends_at_work(life: Life) -> None:
@@ -210,22 +206,21 @@ async def out_of_service(life: Life) -> None:
         (ServiceKind.OPERATION, operation),
     ):
         await life.service(of, name, False)
-        await asyncio.sleep(1.2)
+        await asyncio.sleep(4.0 if of is ServiceKind.RESOURCE else 1.2)  # it is found out why there is no plan
         await life.service(of, name, True)
     await life.work(2)
 
 
 async def recover(life: Life) -> None:
     """In restart mode a plan by hand is stopped on its way, another one carried out, and the first advice taken."""
-    pose, far = {BOLTS: ("robot.pose", "above_engine"), TRUCK: ("robot.pose", "AboveEngineTCPPose")}[_station(life)]
     await life.start()
     await life.work(3)
     await life.enter_restart()
-    await life.goal(f"{pose} == {far}")
+    await life.goal(_elsewhere(life))
     await asyncio.sleep(0.2)
     await life.controller.command(StopErrand(actor=EVA))
     await life.until(lambda: not life.controller.execution.running())
-    await life.goal(f"{pose} == {far}")
+    await life.goal(_elsewhere(life))
     await life.errand_over()
     if await life.advised() is not None:
         await life.errand_over()
@@ -245,20 +240,22 @@ async def reset_an_operation(life: Life) -> None:
 
 
 async def try_abilities(life: Life) -> None:
-    """One run of an ability alone; another one is called off on its way."""
-    ability = {BOLTS: "robot.move_to_position(above_engine)", TRUCK: "engine.identify"}[_station(life)]
+    """Two runs of one ability each alone; the first is called off on its way, if it is not over by then."""
+    execution = life.controller.execution
     await life.start()
+    await life.work(1)
     await life.mode(Mode.PAUSED)
-    await life.until(lambda: not life.controller.execution.running())
-    await life.controller.command(TryAbility(actor=EVA, ability=ability))
-    await life.until(lambda: bool(life.controller.execution.running()))
-    await life.controller.command(StopErrand(actor=EVA))
-    await life.until(lambda: not life.controller.execution.running())
-    await life.errand_over()
-    if life.controller.execution.startable(ability) is not None:
+    await life.until(lambda: not execution.running())
+    for stopped in (True, False):
+        moves = (name for name in execution.automaton.abilities if name.startswith("robot.move_to_position"))
+        ability = next(name for name in moves if execution.startable(name) is not None)
         await life.controller.command(TryAbility(actor=EVA, ability=ability))
+        await life.until(lambda: bool(execution.running()) or execution.errand is None)
+        if stopped and execution.errand is not None:
+            await life.controller.command(StopErrand(actor=EVA))
         await life.errand_over()
-    await life.controller.command(SetMode(actor=EVA, mode=Mode.AUTOMATIC))
+        await life.until(lambda: not execution.running())
+    await life.mode(Mode.AUTOMATIC)
     await life.work(3)
 
 
@@ -272,18 +269,10 @@ async def by_hand_for_the_robot(life: Life) -> None:
     await life.work(2)
 
 
-async def asked(life: Life) -> None:
-    """What is believed does not fit what is measured: a person answers the question by a correction."""
-    await life.start()
-    await life.until(lambda: life.value("engine.tag_is_read") is True)
-    await life.enter_restart()
-    await life.correct({"ladder_frame": "in_gripper"})
-    await life.until(lambda: bool(life.view.questions))
-    question = life.view.questions[0]
-    await life.correct({question.variable: question.possible[0]})
-    await life.until(lambda: not life.view.questions)
-    await life.leave_restart()
-    await life.work(3)
+def _elsewhere(life: Life) -> str:
+    """That the robot is where it is not now."""
+    home, far = {BOLTS: ("home", "above_engine"), TRUCK: ("HomeJOINTPose", "AboveEngineTCPPose")}[_station(life)]
+    return f"robot.pose == {home if life.value('robot.pose') == far else far}"
 
 
 def _station(life: Life) -> Path:
@@ -294,17 +283,24 @@ def _resources(life: Life) -> list[str]:
     return sorted({each.topic.resource for each in life.station.pipelines.incoming.values()})
 
 
+_MASTER: Final = "another:\n  title: Another\n  operations:\n    {}:\n\n"
 ORDERED: Final = frozenset({"by-order-changed", "job-taken", "jobs-sequenced", "job-commanded", "job-forgotten"})
 CORRECTED: Final = frozenset({"corrected", "confirmed"})
 ERRAND: Final = frozenset({"errand-taken", "errand-stopped", "mode-changed"})
-MOVES: Final = {BOLTS: ("title: Tighten {pair}", "title: Tighten {pair} again"), TRUCK: ("priority: 1", "priority: 2")}
+CHANGED: Final = {
+    BOLTS: ("operations.yaml", "title: Tighten {pair}", "title: Tighten {pair} again"),
+    TRUCK: ("operations.yaml", "priority: 1", "priority: 2"),
+}
+TWO_MASTERS: Final = {  # so that two jobs can be under way at once
+    BOLTS: ("work_masters.yaml", "truck_engine:\n", f"{_MASTER.format('prepare_planning_scene')}truck_engine:\n"),
+    TRUCK: ("work_masters.yaml", "\nengine:\n", f"\n{_MASTER.format('take_nutrunner')}engine:\n"),
+}
 _OF_BOTH: Final[dict[str, tuple[tuple[Script, ...], frozenset[str]]]] = {
     "production": ((produce,), frozenset({"asked", "answered", "production-started", "snapshot"})),
     "pause-and-hold": ((pause_and_hold,), frozenset({"mode-changed"})),
     "faults": ((faults,), frozenset({"alarm"})),
     "moved-by-hand": ((moved_by_hand,), frozenset({"corrected"})),
     "corrections": ((correct,), CORRECTED),
-    "jobs": ((work_by_order,), ORDERED),
     "restart": ((ends_at_work, goes_on), frozenset({"corrected", "confirmed"})),
     "forces": ((force,), frozenset({"forced", "force-released"})),
     "service": ((out_of_service,), frozenset({"service-changed"})),
@@ -317,13 +313,16 @@ SCENARIOS: Final[dict[str, Scenario]] = {
         for name, (lives, kinds) in _OF_BOTH.items()
     },
     **{
-        f"{station.name}-deployment": Scenario(station, (ends_at_work, goes_on), CORRECTED, MOVES[station])
+        f"{station.name}-deployment": Scenario(station, (ends_at_work, goes_on), CORRECTED, CHANGED[station])
+        for station in (BOLTS, TRUCK)
+    },
+    **{
+        f"{station.name}-jobs": Scenario(station, (work_by_order,), ORDERED, TWO_MASTERS[station], 0)
         for station in (BOLTS, TRUCK)
     },
     "bolt_tightening-steps": Scenario(BOLTS, (step,), frozenset({"stepping-changed", "step-taken"})),
-    "bolt_tightening-silent": Scenario(BOLTS, (nothing_heard,), frozenset({"explained"})),
+    "bolt_tightening-silent": Scenario(BOLTS, (nothing_heard,), frozenset({"alarm"})),
     "bolt_tightening-reset": Scenario(BOLTS, (reset_an_operation,), frozenset({"errand-taken"})),
-    "bolt_tightening-trials": Scenario(BOLTS, (try_abilities,), frozenset({"errand-taken", "errand-stopped"})),
+    "bolt_tightening-trials": Scenario(BOLTS, (try_abilities,), frozenset({"errand-taken"})),
     "truck_engine_station-by-hand": Scenario(TRUCK, (by_hand_for_the_robot,)),
-    "truck_engine_station-questions": Scenario(TRUCK, (asked,), frozenset({"corrected"})),
 }
