@@ -91,6 +91,12 @@ types: install frontend/node_modules/done.stamp ## Make the page's types and the
 	cd backend && .venv/bin/python -m sequence_planner.web.openapi > ../frontend/openapi.json
 	cd frontend && npm run types
 
+golden: install-test ## Write down anew the names on which others rely: commands, settings, alarms, metrics, records of the journal
+	cd backend && PYTHONPATH=tests .venv/bin/python -m golden.surface
+
+golden-journals: install-test ## Record anew the journals that must always be replayed, in real time: some five minutes
+	cd backend && PYTHONPATH=tests .venv/bin/python -m golden.record
+
 wheel: install page ## Make a wheel and an sdist with the page in them, in dist
 	$(BIN)/python backend/packaging/distribute.py frontend/build dist
 
@@ -183,4 +189,4 @@ chromium:
 	if [ "$$(id -u)" = 0 ] && grep -q '^ID=debian' /etc/os-release; then apt-get install -y chromium || { apt-get update && apt-get install -y chromium; }; \
 	else echo "Chromium is needed: sudo apt-get install chromium, or set CHROMIUM to its path" >&2; exit 1; fi
 
-.PHONY: help run emulator hall wheel test static types-of-e2e openapi figures pictures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types lock clean install install-test install-bench page node foreign postgresql chromium
+.PHONY: help run emulator hall wheel test static types-of-e2e openapi figures pictures lint typecheck pytest pytest-light pytest-heavy svelte-check vitest e2e bench campaign types golden golden-journals lock clean install install-test install-bench page node foreign postgresql chromium

@@ -18,6 +18,7 @@ HEAVY = (
     "control",
     "emulation",
     "foreign",
+    "golden/test_all_journals.py",
     "ros",
     "rosbridge",
     "running",
