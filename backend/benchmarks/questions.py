@@ -47,7 +47,7 @@ def measure(folder: Path) -> None:
         f"{at_once - to_safe:.2f} s, findings {kinds(found)}"
     )
     if left:
-        far = list(from_afar(automaton, left, safe, made))
+        far = from_afar(automaton, left, safe, made).findings
         took, memory = time.process_time() - at_once, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
         print(f"  from afar {len(left)} questions {took:.1f} s, {memory:.0f} MiB at most, findings {kinds(far)}")
         inquiry = begun(automaton, left, safe, Effort(MOST_EFFORT))

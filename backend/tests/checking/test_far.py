@@ -2,36 +2,47 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
+from dataclasses import replace
+
 import pytest
 from hypothesis import assume, given
+from hypothesis.errors import UnsatisfiedAssumption
 
 from checking.test_supervised import Expected, with_operations
 from core.budget import examples
-from core.choices import made_by
+from core.choices import Choices, made_by
+from core.random_expressions import equality
 from core.replaying import replay
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.checking import far
-from sequence_planner.checking.far import from_afar
-from sequence_planner.checking.possibility import UNKNOWN, Finding
+from sequence_planner.checking import far_inquiry
+from sequence_planner.checking.evidence import Evidence
+from sequence_planner.checking.far import FarAnswers, from_afar
+from sequence_planner.checking.possibility import UNKNOWN
 from sequence_planner.checking.supervised import subjects_of
 from sequence_planner.expressions.evaluation import holds
+from sequence_planner.expressions.syntax import Variable, conjunction
 from sequence_planner.synthesis.approximation import around, composed
 from sequence_planner.synthesis.plant import Plant, together
 from sequence_planner.synthesis.saturation import reachable
-from sequence_planner.synthesis.supervision import supervised, supervisor
+from sequence_planner.synthesis.supervision import SynthesisError, supervised, supervisor
 
 
-def found(made: Automaton) -> list[Finding]:
+def asked(made: Automaton, known: Evidence | None = None) -> FarAnswers:
     supervision = supervised(made)
     safe = supervision.plant.diagrams.exported(supervision.safe)
-    return list(from_afar(made, list(subjects_of(made)), safe, supervisor(supervision), planning=0.1))
+    return from_afar(made, list(subjects_of(made)), safe, supervisor(supervision), 0.1, known)
 
 
-def hold(made: Automaton) -> None:
-    """Assert that what is found of `made` is what the definition says, and that its runs are ones that show it."""
+def hold(made: Automaton, known: Evidence | None = None) -> Evidence | None:
+    """Assert that what is found of `made` is what the definition says, and that its runs are ones that show it.
+
+    What is `known` may be of another automaton. Returns what is known now.
+    """
     expected = Expected(made)
     assume(expected.initial in expected.safe)
-    findings = {each.subject.name: each for each in found(made)}
+    answers = asked(made, known)
+    findings = {each.subject.name: each for each in answers.findings}
     kinds = {name: each.kind for name, each in findings.items()}
     for ability in made.abilities.values():
         kind = None if ability.restart else expected.start(ability)
@@ -54,6 +65,7 @@ def hold(made: Automaton) -> None:
     for finding in findings.values():
         if finding.trace is not None:
             replay(made, finding.trace)
+    return answers.evidence
 
 
 @examples(80)
@@ -67,8 +79,55 @@ def test_what_is_found_from_afar_is_what_the_definition_says(made: Automaton) ->
 def test_it_is_so_too_where_each_question_is_a_long_one(made: Automaton) -> None:
     """Parts are made larger then, and states next to known runs are looked at one by one."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(far, "_SOON", 0)
+        patch.setattr(far_inquiry, "_SOON", 0)
         hold(made)
+
+
+def edited(choices: Choices, made: Automaton) -> Automaton:
+    """`made` with one thing changed: a guard, a finish, an effect, an ability more, a precondition, a goal, a value."""
+    scope = [Variable(name, variable.type) for name, variable in made.variables.items()]
+    name = choices.pick(sorted(made.abilities))
+    ability, condition = made.abilities[name], equality(choices, scope)
+    match choices.number(0, 7):
+        case 0:
+            changed = replace(ability, start_guard=conjunction(ability.start_guard, condition))
+        case 1:
+            changed = replace(ability, start_guard=condition)
+        case 2:
+            changed = replace(ability, start_actions=ability.start_actions[1:])
+        case 3:
+            changed = replace(ability, finish_guard=None)
+        case 4:
+            left = choices.number(0, len(made.effects))
+            return replace(made, effects=(*made.effects[:left], *made.effects[left + 1 :]))
+        case 5:
+            effects = [replace(each, guard=condition) if choices.chance(2) else each for each in made.effects]
+            return replace(made, effects=tuple(effects))
+        case 6:
+            operation = replace(made.operations["g1"], precondition=condition, goal=equality(choices, scope))
+            return replace(made, operations={**made.operations, "g1": operation})
+        case _:
+            return replace(made, specifications={})
+    return replace(made, abilities={**made.abilities, name: changed})
+
+
+def with_edits(choices: Choices) -> list[Automaton]:
+    """A random station, and what becomes of it by some edits, one after the other."""
+    versions = [with_operations(choices)]
+    for _ in range(3):
+        versions.append(edited(choices, versions[-1]))
+    return versions
+
+
+@examples(80)
+@given(made_by(with_edits))
+def test_after_an_edit_what_was_known_leads_to_what_the_definition_says(versions: list[Automaton]) -> None:
+    known: Evidence | None = None
+    for made in versions:
+        with suppress(
+            UnsatisfiedAssumption, SynthesisError
+        ):  # it has no supervisor: what is known is of the one before
+            known = hold(made, known) or known
 
 
 @examples(60)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from sequence_planner.automaton.state_set import Supervisor
 
 if TYPE_CHECKING:
+    from sequence_planner.checking.evidence import Evidence
     from sequence_planner.checking.warning import ModelWarning
     from sequence_planner.synthesis.guards import Guard
 
@@ -24,6 +25,7 @@ class Analysis:
     `pending` is what is being computed, and None when that is all. Without a supervisor in the end, `warnings` say why
     there is none. Counts are of the states of all variables that can be reached, without and with the supervisor;
     `guarded` are the starts that it restricts, `guards` what it adds to them for people to read, by ability or event.
+    `evidence` is what answers from afar rest on; it is said once.
     """
 
     pending: str | None
@@ -33,3 +35,4 @@ class Analysis:
     reachable_states: int | None = None
     supervised_states: int | None = None
     warnings: tuple[ModelWarning, ...] | None = None
+    evidence: Evidence | None = None

@@ -10,8 +10,8 @@ from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analy
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.checks import Looked, conflicting, looked
 from sequence_planner.checking.connections import Connections
-from sequence_planner.checking.possibility import UNKNOWN
-from sequence_planner.checking.supervised import check_supervision
+from sequence_planner.checking.evidence import Evidence
+from sequence_planner.checking.supervised import Asked
 from sequence_planner.checking.unmeetable import unmeetable
 from sequence_planner.checking.warning import ModelWarning, place
 from sequence_planner.synthesis.effort import Effort, TooMuchError
@@ -26,13 +26,18 @@ _SOON = 2_000_000  # nodes, see `Effort`: whoever waits for guards does not noti
 
 
 def analyses(
-    automaton: Automaton, counting: int = MOST_COUNTING, far: bool = False, guards: bool = True
+    automaton: Automaton,
+    counting: int = MOST_COUNTING,
+    far: bool = False,
+    guards: bool = True,
+    evidence: Evidence | None = None,
 ) -> Iterator[Analysis]:
     """What is found of `automaton`, again and again, each time more of it.
 
     No more is spent on `counting` states than so much `Effort`: with 0 they are not counted. Where they soon are, their
     numbers come first. What too many states bear on is found out only with `far`: it can take a minute, so that guards
-    come before it. Without `guards` these are what is left at last.
+    come before it; but with `evidence` of the model before an edit it is soon proven again, and is looked at first.
+    Without `guards` these are what is left at last.
     """
     found = Analysis("the safe states")
     yield found
@@ -46,18 +51,27 @@ def analyses(
         yield found
         found = _counted(found, supervision, min(counting, _SOON))
         yield found
-        found = replace(found, warnings=tuple(check_supervision(automaton, supervision)))
-        yield found
+        asked = Asked(automaton, supervision, evidence)
+        made = found.supervisor
+        assert made is not None
+        if far and evidence is not None:
+            asked.look_far(made)
+        if asked.left:
+            asked.look()
+        found = replace(found, warnings=tuple(asked.warnings()))
+        yield replace(found, evidence=None if asked.left else asked.evidence)
         restrictions = Restrictions(supervision)
         found = replace(found, guarded=tuple(start for starts in restrictions.starts.values() for start in starts))
         if guards:
             found = replace(found, pending=GUARDS)
             yield found
             found = replace(found, guards={name: restrictions.guard(name) for name in restrictions.starts})
-        if far and any(each.kind == UNKNOWN for each in found.warnings or ()):
+        if far and asked.left:
             found = replace(found, pending=FAR)
             yield found
-            found = replace(found, warnings=tuple(check_supervision(automaton, supervision, found.supervisor)))
+            asked.look_far(made)
+            found = replace(found, warnings=tuple(asked.warnings()))
+            yield replace(found, evidence=asked.evidence)
         if not guards:
             yield replace(found, pending=GUARDS)
             return
@@ -66,22 +80,26 @@ def analyses(
     yield replace(_counted(found, supervision, counting), pending=None)
 
 
-def without_numbers(automaton: Automaton, guards: bool = True, far: bool = False) -> Iterator[Analysis]:
+def without_numbers(
+    automaton: Automaton, guards: bool = True, far: bool = False, evidence: Evidence | None = None
+) -> Iterator[Analysis]:
     """What is found of `automaton` but for numbers of states, which few wait for; `guards` and `far` where wanted."""
-    for found in analyses(automaton, counting=0, far=far, guards=guards):
+    for found in analyses(automaton, counting=0, far=far, guards=guards, evidence=evidence):
         yield found
         if found.pending == COUNTING:
             return
 
 
-def everything(automaton: Automaton, connections: Connections | None, synthesis: bool) -> Iterator[Looked | Analysis]:
+def everything(
+    automaton: Automaton, connections: Connections | None, synthesis: bool, evidence: Evidence | None = None
+) -> Iterator[Looked | Analysis]:
     """What the checks find, and what synthesis finds where it is asked for, without numbers of states and guards.
 
     What may take longest comes last.
     """
     yield from looked(automaton, connections)
     if synthesis:
-        yield from without_numbers(automaton, guards=False, far=True)
+        yield from without_numbers(automaton, guards=False, far=True, evidence=evidence)
     yield from conflicting(automaton)
 
 

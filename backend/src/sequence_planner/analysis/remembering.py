@@ -18,17 +18,19 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from sequence_planner.analysis.analysis import Analysis
 from sequence_planner.analysis.document import read_supervisor
-from sequence_planner.analysis.store import folder, kept, key
+from sequence_planner.analysis.store import folder, kept, key, program
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.late_log import LateLog
 
 if TYPE_CHECKING:
     from sequence_planner.analysis.never_together import NeverTogether
+    from sequence_planner.checking.evidence import Evidence
 
 LOG = LateLog(__name__)
 NAMES: Final = {"Analysis": "analysis", "NeverTogether": "never-together", "Supervisor": "supervisor"}
 """How files begin, by what is in them."""
+_EVIDENCE: Final = "evidence"
 MOST_KEPT: Final = 20  # files of each kind; the oldest are removed
 _DIGEST: Final = 32  # bytes of SHA-256, before what is kept
 
@@ -54,6 +56,26 @@ def remembered(where: Path, automaton: Automaton, kind: type[Found]) -> Found | 
     """What was found of this very model, by this very program; None if nothing was, or it cannot be read."""
     found = read(where, NAMES[kind.__name__], key(automaton))
     return found if isinstance(found, kind) else None
+
+
+def remembered_evidence(automaton: Automaton) -> Evidence | None:
+    """What answers about the model of this name rested on when it was last looked at, in the user's cache."""
+    from sequence_planner.checking.evidence import Evidence  # noqa: PLC0415
+
+    where = cache()
+    found = None if where is None else read(where, _EVIDENCE, _of_name(automaton))
+    return found if isinstance(found, Evidence) else None
+
+
+def remember_evidence(automaton: Automaton, found: Evidence) -> None:
+    """Keep it for the next edit."""
+    where = cache()
+    if where is not None:
+        write(where, _EVIDENCE, _of_name(automaton), found)
+
+
+def _of_name(automaton: Automaton) -> str:
+    return hashlib.sha256(program() + automaton.name.encode()).hexdigest()
 
 
 def write(where: Path, kind: str, of: str, found: object) -> None:

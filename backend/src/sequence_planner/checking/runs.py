@@ -12,7 +12,17 @@ from sequence_planner.planning.plan import PlanTick
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.steps import Step
-from sequence_planner.synthesis.traces import Steps, Trace, TraceStep, forbidding
+from sequence_planner.synthesis.traces import StepKind, Steps, Trace, TraceStep, Valuation, forbidding
+
+
+@dataclass(frozen=True)
+class KeptStep:
+    """A step of a run for another model to take: after that of number `before`, or from the initial state `begin`."""
+
+    before: int
+    begin: State | None
+    kind: StepKind
+    names: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -46,6 +56,7 @@ class Runs:
         }
         self._points: dict[tuple[bool, bool], list[Point]] = defaultdict(list)
         self._known: dict[tuple[bool, bool], Function] = defaultdict(lambda: plant.initial)
+        self._taken: list[Point] = []
 
     def known(self, *, supervised: bool, faults: bool) -> Function:
         """The states that are known to be reached, as with `Inquiry.reached`."""
@@ -69,10 +80,52 @@ class Runs:
         for tick in ticks:
             sensed = apply_effects(point.state, [effects[name] for name in tick.effects])
             assert sensed is not None
-            wanted = {name: value for name, value in sensed.items() if value is not None}
-            point = self._extended(point, reference.tick(point.state, wanted))
+            point = self._extended(point, reference.tick(point.state, known_values(sensed)))
             for name in tick.starts:
                 point = self._extended(point, reference.start(point.state, name))
+
+    def kept(self) -> tuple[KeptStep, ...]:
+        """All steps that are known, each after the one before it."""
+        number: dict[int, int] = {}
+        kept: list[KeptStep] = []
+        for point in self._taken:
+            before, step = point.before, point.step
+            assert before is not None and step is not None
+            begin = (
+                None if before.step is not None else {name: before.state[name] for name in self._plant.diagrams.names}
+            )
+            kept.append(KeptStep(number.get(id(before), -1), begin, step.kind, step.names))
+            number[id(point)] = len(kept) - 1
+        return tuple(kept)
+
+    def recall(self, kept: Iterable[KeptStep]) -> bool:
+        """Take the steps of runs that were kept as far as they can be taken; returns whether all of them could."""
+        points: list[Point | None] = []
+        for each in kept:
+            before = points[each.before] if each.begin is None else self._begun_like(each.begin)
+            step = None if before is None else self._taken_again(before, each)
+            points.append(None if before is None or step is None else self._extended(before, step))
+        return None not in points
+
+    def _begun_like(self, values: State) -> Point | None:
+        """The beginning at these values, or at others where that is no initial state."""
+        diagrams, initial = self._plant.diagrams, self._plant.initial
+        known = ((diagrams.values(name), value) for name, value in values.items() if name in diagrams.bits)
+        like = diagrams.conjunction(where[value] for where, value in known if value is not None and value in where)
+        found = diagrams.pick(initial & like) or diagrams.pick(initial)
+        return None if found is None else self._begun(found)
+
+    def _taken_again(self, point: Point, kept: KeptStep) -> TraceStep | None:
+        automaton, steps, (name, *_) = self._plant.automaton, self._steps[True], (*kept.names, "")
+        match kept.kind:
+            case StepKind.TICK:
+                effects = [effect for effect in automaton.effects if effect.name in kept.names]
+                sensed = apply_effects(point.state, effects)
+                return None if sensed is None else steps.tick(point.state, known_values(sensed))
+            case StepKind.ACTIVITY:
+                return steps.turned(point.state, name)
+            case _:
+                return steps.start(point.state, name)
 
     def lead(self, point: Point, layers: Iterable[Function], steps: Sequence[Step], *, faults: bool) -> None:
         """Go on from `point` through one state of each of `layers`, by `steps`, which are faults only with `faults`."""
@@ -83,8 +136,7 @@ class Runs:
             changes = diagrams.exported(after).nearest(point.state)
             assert changes is not None
             known = {name: changes.get(name, point.state[name]) for name in diagrams.names}
-            wanted = {name: value for name, value in known.items() if value is not None}
-            point = self._extended(point, self._steps[faults].leading(point.state, wanted))
+            point = self._extended(point, self._steps[faults].leading(point.state, known_values(known)))
 
     def _extended(self, point: Point, step: TraceStep | None) -> Point:
         """The point one step on, which is known from now on."""
@@ -93,6 +145,7 @@ class Runs:
         safely = point.safely and (here & self._safe).satisfiable()
         faultless = point.faultless and self._faults.isdisjoint(step.names)
         after = Point(step.state, point, step, point.length + 1, safely, faultless)
+        self._taken.append(after)
         for supervised in (False, True) if safely else (False,):
             for faults in (False, True) if faultless else (True,):
                 self._points[supervised, faults].append(after)
@@ -110,3 +163,8 @@ class Runs:
     def _begun(self, values: State) -> Point:
         automaton = self._plant.automaton
         return Point(synchronise(automaton, {**automaton.initial_valuation, **values}))
+
+
+def known_values(state: State) -> Valuation:
+    """What is known of a state."""
+    return {name: value for name, value in state.items() if value is not None}

@@ -14,6 +14,7 @@ from sequence_planner.automaton.grounding.findings import without_arguments
 from sequence_planner.automaton.plain.events import event_of
 from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton
+from sequence_planner.checking.evidence import Evidence
 from sequence_planner.checking.far import from_afar
 from sequence_planner.checking.inquiry import Inquiry, bearing_on, bits
 from sequence_planner.checking.possibility import UNKNOWN, Finding, Possibility, Subject
@@ -26,22 +27,53 @@ MOST_EFFORT_IN_PARTS = 5_000_000
 MOST_TOO_WIDE = 3  # parts with too many variables: then no further ones are looked for
 
 
+class Asked:
+    """What is asked of `automaton` under a `supervision` that is possible, and what has been found by now.
+
+    `evidence` is what answers from afar rest on: of the model before an edit, and after them of this one.
+    """
+
+    def __init__(self, automaton: Automaton, supervision: Supervision, evidence: Evidence | None = None) -> None:
+        self.evidence = evidence
+        self._automaton = automaton
+        self._safe = supervision.plant.diagrams.exported(supervision.safe)
+        self._subjects = list(subjects_of(automaton))
+        self._found: list[Finding] = [Finding(UNKNOWN, subject, "") for subject in self._subjects]
+
+    @property
+    def left(self) -> list[Subject]:
+        """That of which nothing is known."""
+        return [each.subject for each in self._found if each.kind == UNKNOWN]
+
+    def look(self) -> None:
+        """Find out what does not take too much effort."""
+        self._found = list(exactly(self._automaton, self._subjects, self._safe))
+
+    def look_far(self, supervisor: Supervisor) -> None:
+        """Find out about what is left from afar, which takes longer."""
+        left = self.left
+        answers = from_afar(self._automaton, left, self._safe, supervisor, known=self.evidence)
+        self._found = [*(each for each in self._found if each.kind != UNKNOWN), *answers.findings]
+        self.evidence = answers.evidence
+
+    def warnings(self) -> list[ModelWarning]:
+        """What can never be done, by place, with traces; and what is not known."""
+        return sorted(_warnings(self._automaton, self._subjects, _without_consequences(self._found)))
+
+
 def check_supervision(
     automaton: Automaton, supervision: Supervision, supervisor: Supervisor | None = None
 ) -> list[ModelWarning]:
     """What can never be done in `automaton` under a `supervision` that is possible, by place, with traces.
 
-    What would take too much effort to find out is said not to be known. With its `supervisor` it is looked at from
-    afar first, which takes longer.
+    What would take too much effort to find out is said not to be known. With its `supervisor` it is then looked at from
+    afar, which takes longer.
     """
-    safe = supervision.plant.diagrams.exported(supervision.safe)
-    subjects = list(subjects_of(automaton))
-    found = list(exactly(automaton, subjects, safe))
-    left = [each.subject for each in found if each.kind == UNKNOWN]
-    if left and supervisor is not None:
-        found = [each for each in found if each.kind != UNKNOWN]
-        found += from_afar(automaton, left, safe, supervisor)
-    return sorted(_warnings(automaton, subjects, _without_consequences(found)))
+    asked = Asked(automaton, supervision)
+    asked.look()
+    if supervisor is not None and asked.left:
+        asked.look_far(supervisor)
+    return asked.warnings()
 
 
 def exactly(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet) -> Iterator[Finding]:

@@ -21,7 +21,12 @@ from sequence_planner.analysis.document import (
     read_supervisor,
     supervisor_document,
 )
-from sequence_planner.analysis.remembering import known_supervisor, remember_supervisor
+from sequence_planner.analysis.remembering import (
+    known_supervisor,
+    remember_evidence,
+    remember_supervisor,
+    remembered_evidence,
+)
 from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
@@ -32,6 +37,7 @@ from sequence_planner.memory_limit import USUAL
 if TYPE_CHECKING:  # what is kept from before is shown without them
     from sequence_planner.checking.checks import Looked
     from sequence_planner.checking.connections import Connections
+    from sequence_planner.checking.evidence import Evidence
     from sequence_planner.checking.warning import ModelWarning
 
 Deadline = Annotated[
@@ -80,7 +86,8 @@ def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Foun
         return known
     from sequence_planner.analysis.finding import analyses, without_numbers  # noqa: PLC0415
 
-    work = (analyses, automaton, _COUNTING, True) if counts else (without_numbers, automaton)
+    evidence = remembered_evidence(automaton) if counts else None
+    work = (analyses, automaton, _COUNTING, True, True, evidence) if counts else (without_numbers, automaton)
     return _found(automaton, limits, _Hearing(work, unwanted), far=counts)
 
 
@@ -91,7 +98,8 @@ def checked(automaton: Automaton, connections: Connections | None, limits: Limit
 
     unwanted = frozenset({GUARDS, COUNTING})
     known = _kept(automaton, unwanted)
-    hearing = _Hearing((everything, automaton, connections, known is None), unwanted, after=CONFLICTS)
+    evidence = remembered_evidence(automaton) if known is None else None
+    hearing = _Hearing((everything, automaton, connections, known is None, evidence), unwanted, after=CONFLICTS)
     found = _found(automaton, limits, hearing)
     return found if known is None else replace(known, unfinished=found.unfinished, suspicious=found.suspicious)
 
@@ -110,6 +118,8 @@ def _found(automaton: Automaton, limits: Limits, hearing: _Hearing, *, far: bool
     unfinished = hearing.hear(limits)
     analysis = hearing.analysis
     document = document_of(automaton, analysis)
+    if hearing.evidence is not None:
+        remember_evidence(automaton, hearing.evidence)
     known = far or all(each.kind != "too-many-states" for each in analysis.warnings or ())
     if analysis.pending in (None, GUARDS, COUNTING) and known:
         supervisor_kept = None if analysis.supervisor is None else supervisor_document(analysis.supervisor)
@@ -182,6 +192,7 @@ class _Hearing:
     after: str | None = None
     analysis: Analysis = field(default_factory=lambda: Analysis("the safe states"))
     suspicious: set[ModelWarning] = field(default_factory=set)
+    evidence: Evidence | None = None
     _pending: str | None = None
 
     def hear(self, limits: Limits) -> str | None:
@@ -200,7 +211,7 @@ class _Hearing:
 
     def _take(self, word: Looked | Analysis) -> None:
         if isinstance(word, Analysis):
-            self.analysis = word
+            self.analysis, self.evidence = word, word.evidence or self.evidence
         else:
             self.suspicious |= set(word.warnings)
         self._pending = word.pending

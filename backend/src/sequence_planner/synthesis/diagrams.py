@@ -241,6 +241,20 @@ class Diagrams:
             functions.append(self.disjunction(values[value] & functions[child] for value, child in pairs))
         return functions[states.root]
 
+    def recalled(self, states: StateSet) -> Function:
+        """The set that `states` says, which may be of other variables and values than these: what is not among these is
+        left out, whatever it is.
+        """
+        functions = [self.false, self.true]
+        for axis, children in states.nodes:
+            name, found = states.names[axis], [functions[child] for child in children]
+            if name in self.bits:
+                values = self.values(name)
+                pairs = zip(states.domains[axis], found, strict=True)
+                found = [values[value] & there for value, there in pairs if value in values]
+            functions.append(self.disjunction(found))
+        return functions[states.root]
+
     def _branch(self, node: Function, bits: Sequence[int], position: int) -> Function:
         for bit in bits:
             if node.node_var() == bit:

@@ -41,14 +41,22 @@ class Plant:
     """An automaton over the variables `names`, on which nothing that is asked of it depends further.
 
     Flags are functions of the variables. Restart abilities are left out: they are not counted on. Their `order` is one
-    that makes small what is forbidden, unless another one is given.
+    that makes small what is forbidden, unless another one is given, or `diagrams` that have it.
     """
 
-    def __init__(self, automaton: Automaton, names: Sequence[str], order: Sequence[str] | None = None) -> None:
+    def __init__(
+        self,
+        automaton: Automaton,
+        names: Sequence[str],
+        order: Sequence[str] | None = None,
+        diagrams: Diagrams | None = None,
+    ) -> None:
         self.automaton = automaton
-        order = _ordered(automaton, names) if order is None else order
-        afterwards = set(_written_afterwards(automaton, order))
-        self.diagrams = Diagrams({name: automaton.variables[name].type.domain for name in order}, afterwards)
+        if diagrams is None:
+            order = _ordered(automaton, names) if order is None else order
+            afterwards = written_afterwards(automaton, order)
+            diagrams = Diagrams({name: automaton.variables[name].type.domain for name in order}, afterwards)
+        self.diagrams = diagrams
         self.reader = _FlagReader(automaton, self.diagrams)
 
     def where(self, predicate: Expression) -> Function:
@@ -155,12 +163,14 @@ def _size(automaton: Automaton, order: Sequence[str]) -> float:
         return inf
 
 
-def _written_afterwards(automaton: Automaton, names: Sequence[str]) -> Iterator[str]:
+def written_afterwards(automaton: Automaton, names: Sequence[str]) -> frozenset[str]:
     """The variables that need bits for their value afterwards."""
+    found: set[str] = set()
     for transition in transitions(automaton):
         together = not automaton.one_at_a_time and transition.phase is not Phase.START
         if together or len([name for name in depends(transition.actions) if name in names]) > 1:
-            yield from transition.writes
+            found |= transition.writes
+    return frozenset(found)
 
 
 def together(automaton: Automaton) -> Iterator[frozenset[str]]:

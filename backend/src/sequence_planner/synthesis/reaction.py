@@ -61,6 +61,7 @@ class Reaction:
         self._to_after = diagrams.substitution((now, diagrams.bit(after)) for now, after in pairs)
         self._to_now = diagrams.substitution((after, diagrams.bit(now)) for now, after in pairs)
         ordered = self._ordered([*self._parts, *self._computed(finished)])
+        self.parts = tuple(ordered)
         self._backwards = [(part.relation, self._bits_after(part.decides)) for part in ordered]
         self._forwards = self._doing_away(ordered[::-1], [now for now, _ in pairs])
         self.top = diagrams.top([part.relation for part in ordered], [now for now, _ in pairs])

@@ -145,6 +145,14 @@ class Steps:
         """The start `name`, or the transition of a plain automaton; None where its guard does not hold."""
         return next((each for each in self._starts(state) if each.names == (name,)), None)
 
+    def turned(self, state: State, name: str) -> TraceStep | None:
+        """The operation `name` becomes active, or is so no longer; None if there is none."""
+        if name not in self.automaton.operations:
+            return None
+        activity = self.automaton.operations[name].activity
+        after = synchronise(self.automaton, {**state, activity: not state[activity]})
+        return self._step(StepKind.ACTIVITY, (name,), state, after)
+
     def _candidates(self, state: State, wanted: Valuation) -> Iterator[TraceStep]:
         for found in self._transitions(state) if self.automaton.one_at_a_time else self._of_station(state, wanted):
             if all(found.state[name] == value for name, value in wanted.items()):
@@ -170,8 +178,9 @@ class Steps:
         for operation in self.automaton.operations.values():
             activity = operation.activity
             if activity in wanted and state[activity] != wanted[activity]:
-                after = synchronise(self.automaton, {**state, activity: wanted[activity]})
-                yield self._step(StepKind.ACTIVITY, (operation.name,), state, after)
+                turned = self.turned(state, operation.name)
+                assert turned is not None
+                yield turned
         if (ticked := self.tick(state, wanted)) is not None:
             yield ticked
         yield from self._starts(state)

@@ -12,6 +12,7 @@ from pathlib import Path
 from sequence_planner.analysis.analysis import COUNTING
 from sequence_planner.analysis.document import FindingDocument, document_of, error_document, findings_of
 from sequence_planner.analysis.finding import without_numbers
+from sequence_planner.analysis.remembering import remembered_evidence
 from sequence_planner.checking.checks import check_automaton
 from sequence_planner.collection import collection_put_off
 from sequence_planner.model.source import ModelError
@@ -56,7 +57,8 @@ def _found(view: CheckView, start: StartNeeds) -> Iterator[CheckView]:
     with collection_put_off():
         warnings = findings_of(automaton, [*check_automaton(automaton, station.connections), *station.suspicions()])
     view = view.model_copy(update={"findings": listed(sorted(warnings, key=_place))})
-    for analysis in without_numbers(automaton):
+    evidence = remembered_evidence(automaton)  # of what `check` has answered from afar: then it is soon proven again
+    for analysis in without_numbers(automaton, far=evidence is not None, evidence=evidence):
         document = document_of(automaton, analysis)
         found = sorted([*warnings, *(document.findings or ())], key=_place)
         is_all = analysis.pending in (None, COUNTING)

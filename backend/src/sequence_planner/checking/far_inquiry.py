@@ -1,0 +1,243 @@
+"""An inquiry where the states that are reached are too many to be computed: `far` says how it answers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
+
+from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.checking.evidence import Again, Evidence, grown
+from sequence_planner.checking.inquiry import Inquiry
+from sequence_planner.checking.runs import Runs
+from sequence_planner.expressions.syntax import Expression
+from sequence_planner.planning.plan import PlanTick
+from sequence_planner.synthesis.approximation import around, composed
+from sequence_planner.synthesis.diagrams import Function
+from sequence_planner.synthesis.effort import Effort, TooMuchError
+from sequence_planner.synthesis.plant import Plant, together
+from sequence_planner.synthesis.shortest import Tracer
+from sequence_planner.synthesis.steps import Step
+from sequence_planner.synthesis.traces import Trace
+
+_SOON = 3_000_000  # of all effort; for what takes longer, something else is tried first
+_LARGER = (20, 26)  # bits of larger parts, and of those after them
+_MOST_NEAR = 3  # states that are looked at one by one
+
+
+class FarInquiry(Inquiry):
+    """An inquiry that takes less, and is soon answered where runs are known."""
+
+    def __init__(
+        self,
+        automaton: Automaton,
+        questions: Iterable[Expression],
+        safe: StateSet,
+        effort: Effort,
+        order: Sequence[str] = (),
+    ) -> None:
+        super().__init__(automaton, questions, safe, effort, order)
+        self._runs = Runs(self.plant, self.safe)
+        self._more: dict[bool, Function] = {}
+        self._level = {True: 0, False: 0}
+        self._ways: list[tuple[Function, Function]] = []
+        self._traps: list[Function] = []
+        self._bounds: list[Function] = []
+        self._again: Again | None = None
+        self.whole = effort  # for what serves all questions
+
+    def know(self, ticks: Iterable[PlanTick]) -> None:
+        """Take in a plan from the initial state."""
+        self._runs.follow(ticks)
+
+    def recall(self, known: Evidence) -> bool:
+        """Prove again what was `known` before an edit; returns whether all runs of it can still be taken.
+
+        Raises `TooMuchError` where what is reached has become too different.
+        """
+        plant = self.plant
+        self._again = again = Again(plant, known)
+        steps = [*plant.uncontrollable, *(step for steps in plant.starts.values() for step in steps)]
+        for supervised, states in known.reached.items():
+            within = self.safe if supervised else self.diagrams.valid
+            self._more[supervised] = grown(self.whole, plant.initial | again.states(states), steps, within)
+            self._level[supervised] = known.level[supervised]
+        self._ways = list(again.ways(self.perhaps_reached()))
+        self._traps = list(again.traps(self.perhaps_reached()))
+        self._bounds = list(again.bounds())
+        return self._runs.recall(known.runs)
+
+    def evidence(self) -> Evidence:
+        """What its answers rest on."""
+        return Evidence(
+            self.plant.automaton,
+            self.diagrams.names,
+            {supervised: self._exported(states) for supervised, states in self._more.items()},
+            dict(self._level),
+            self._runs.kept(),
+            tuple((self._exported(target), self._exported(states)) for target, states in self._ways),
+            tuple(map(self._exported, self._traps)),
+            tuple(map(self._exported, self._bounds)),
+        )
+
+    def _exported(self, states: Function) -> StateSet:
+        known = None if self._again is None else self._again.exported.get(states)
+        return self.diagrams.exported(states) if known is None else known
+
+    def perhaps_reached(self, *, supervised: bool = True) -> Function:
+        """All states that are reached with or without the supervisor, and perhaps more."""
+        if supervised not in self._more:
+            within = self.safe if supervised else self.diagrams.valid
+            asked, self.effort = self.effort, self.whole  # it serves all questions
+            try:
+                plant = self.plant
+                self._more[supervised] = self._composed(plant, plant.initial, plant.uncontrollable, within)
+            finally:
+                self.effort = asked
+        return self._more[supervised]
+
+    def _closer(self, supervised: bool) -> Iterator[None]:
+        """Each time say more closely what is reached, by larger parts; what is known by now comes first."""
+        yield
+        while (level := self._level[supervised]) < len(_LARGER):
+            plant, groups = self.plant, list(together(self.plant.automaton))
+            larger = [*groups, *around(self.diagrams, groups, _LARGER[level])]
+            within = self.perhaps_reached(supervised=supervised)
+            self.effort = self.whole
+            steps = self.limited(plant, plant.uncontrollable)
+            self._more[supervised] = composed(self.diagrams, plant.initial, steps, larger, within)
+            self._level[supervised] += 1
+            yield
+
+    def reached(self, target: Function, *, supervised: bool = True, faults: bool = True) -> Function:
+        """Some of the states of `target` that are reached; none only if none of them is."""
+        asked = self.effort
+        try:
+            for _ in self._closer(supervised):
+                self.effort = Effort(_SOON, whole=asked)
+                with suppress(TooMuchError):
+                    return self._gone_back(target, supervised, faults)
+            self.effort = asked
+            return self._gone_back(target, supervised, faults)
+        finally:
+            self.effort = asked
+
+    def _gone_back(self, target: Function, supervised: bool, faults: bool) -> Function:
+        within = self.perhaps_reached(supervised=supervised)
+        new = target & within
+        steps = self.limited(self.plant, self.plant.uncontrollable if faults else self.plant.helpful)
+        layers: list[Function] = []
+        seen = new
+        while new.satisfiable():
+            point = self._runs.nearest(new, supervised=supervised, faults=faults)
+            if point is not None:
+                self._runs.lead(point, reversed(layers), steps, faults=faults)
+                return target & self._runs.known(supervised=supervised, faults=faults)
+            layers.append(new)
+            new = self.diagrams.disjunction(step.before(new) for step in steps) & within & ~seen
+            seen |= new
+        if faults:  # so nothing of it is reached
+            self._more[supervised] = within & ~seen
+        return new
+
+    def way(self, target: Function, *, supervised: bool = True, faults: bool = True) -> Trace | None:
+        """A run that is known to lead to some of `target`, the shortest of them."""
+        point = self._runs.nearest(target, supervised=supervised, faults=faults)
+        return None if point is None else self._runs.trace(point)
+
+    def stuck(self, active: Function, goal: Function) -> Function:
+        """Some of the states that are reached, in which `active` is so, and from which `goal` cannot be brought about.
+
+        Where it takes long to know from which it can, those that are next to a known run are looked at first.
+        """
+        within = self.perhaps_reached()
+        left, known = active & within & ~goal, self._runs.known(supervised=True, faults=True)
+        for trap in self._traps:
+            if (trap & left & known).satisfiable() and not (trap & goal).satisfiable():
+                return trap & left & known
+        for states in (states for target, states in self._ways if not (target & ~goal).satisfiable()):
+            left &= ~states
+        if not left.satisfiable():
+            return left
+        whole, looked = self.effort, False
+        self.effort = Effort(_SOON, whole=whole)
+        growing = _Growing(self.seen(goal, within), within)
+        while (left := left & ~growing.seen).satisfiable():
+            try:
+                if not growing.go_on(self.limited(self.plant, self.plant.helpful)):
+                    break
+            except TooMuchError:
+                self.effort = whole
+                if looked:
+                    raise
+                looked = True
+                if (near := self._stuck_nearby(left, goal)) is not None:
+                    return near
+        self.effort = whole
+        found = self.reached(left)
+        if found.satisfiable():
+            self._traps.append(within & ~growing.seen)
+        else:
+            self._ways.append((goal & within, growing.seen))
+        return found
+
+    def _stuck_nearby(self, states: Function, goal: Function) -> Function | None:
+        """Some of `states` at most one step from a known run that surely do not lead to `goal`; None if none is met."""
+        known = self._runs.known(supervised=True, faults=True)
+        steps = self.limited(self.plant, self.plant.uncontrollable)
+        near = (known | self.diagrams.disjunction(step.after(known) for step in steps)) & states & self.safe
+        for _ in range(_MOST_NEAR):
+            if (values := self.diagrams.pick(near)) is None:
+                return None
+            one = self.diagrams.conjunction(self.diagrams.values(name)[value] for name, value in values.items())
+            with suppress(TooMuchError):
+                perhaps = self._composed(self.plant, one, self.plant.helpful, self.perhaps_reached())
+                if not (perhaps & goal).satisfiable():
+                    self._traps.append(perhaps)
+                    return self.reached(one)
+            near &= ~one
+        return None
+
+    def leads(self, states: Function, goal: Function) -> bool | None:
+        """Whether `goal` can be reached from `states` without faults, the supervisor not asked; None if unknown."""
+        if any(not ((states & ~bound) | (bound & goal)).satisfiable() for bound in self._bounds):
+            return False
+        if Tracer(self.plant, faults=False).leads(goal, states):
+            return True
+        with suppress(TooMuchError):
+            perhaps = self._composed(self.plant, states, self.plant.helpful, self.diagrams.valid)
+            if not (perhaps & goal).satisfiable():
+                self._bounds.append(perhaps)
+                return False
+        return None
+
+    def may_ever(self, predicate: Expression) -> bool:
+        """Whether it holds in any state that may be reached by any means."""
+        plant, perhaps = self.ever
+        if (plant.where(predicate) & perhaps).satisfiable():
+            raise TooMuchError  # it may: which it is would have to be found out
+        return False
+
+    def _closed(self, plant: Plant) -> Function:
+        return self._composed(plant, plant.initial, plant.uncontrollable, plant.diagrams.valid)
+
+    def _composed(self, plant: Plant, initial: Function, uncontrollable: Sequence[Step], within: Function) -> Function:
+        steps = self.limited(plant, uncontrollable)
+        return composed(plant.diagrams, initial, steps, together(plant.automaton), within)
+
+
+class _Growing:
+    """The states `begin`, and from where steps lead to them within a set; `new` is what has come last."""
+
+    def __init__(self, begin: Function, within: Function) -> None:
+        self.new = self.seen = begin & within
+        self._within = within
+
+    def go_on(self, steps: Sequence[Step]) -> bool:
+        """Go a step back, or several; False if there is nothing more."""
+        before = self.new
+        for step in steps:
+            before |= step.before(before) & self._within
+        self.new = before & ~self.seen
+        self.seen |= self.new
+        return self.new.satisfiable()

@@ -1,0 +1,55 @@
+"""Whether whatever some steps can do, others can as well: then all that the former lead to, the latter do, too."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from sequence_planner.synthesis.diagrams import Diagrams, Function
+from sequence_planner.synthesis.reaction import Reaction
+from sequence_planner.synthesis.steps import Change, Flip, Step, Stutter, Update, same
+
+
+def included(diagrams: Diagrams, some: Iterable[Step], others: Sequence[Step], states: Function) -> bool:
+    """Whether each of `some`, taken from any of `states`, is one of `others` as well.
+
+    False also where that is only not seen: a step is looked for among those of its kind that write the same.
+    """
+    return all(_is_one_of(diagrams, step, others, states) for step in some)
+
+
+def _is_one_of(diagrams: Diagrams, step: Step, others: Sequence[Step], states: Function) -> bool:
+    match step:
+        case Stutter():
+            return True  # it leads nowhere else
+        case Update(guard, values, written):
+            alike = (e.guard for e in others if isinstance(e, Update) and (e.values, e.written) == (values, written))
+            return not (states & guard & ~diagrams.disjunction(alike)).satisfiable()
+        case Change(relation, now, afterwards):
+            found = [e for e in others if isinstance(e, Change) and (e.now, e.afterwards) == (now, afterwards)]
+            return not (states & relation & ~diagrams.disjunction(e.relation for e in found)).satisfiable()
+        case Flip():
+            return any(isinstance(each, Flip) and each.top == step.top for each in others)
+        case Reaction():
+            return any(isinstance(each, Reaction) and _reacts(diagrams, step, each, states) for each in others)
+    return False
+
+
+def _reacts(diagrams: Diagrams, one: Reaction, other: Reaction, states: Function) -> bool:
+    """Whether `other` can bring about whatever `one` can; what a reaction says nothing of stays as it is."""
+    parts = {part.decides: part.relation for part in one.parts}
+    wanted = {part.decides: part.relation for part in other.parts}
+    if not parts.keys() <= wanted.keys():
+        return False
+    sensed = one.sensed(states)
+    for decides, relation in wanted.items():
+        if decides in parts:
+            brought = parts[decides]
+        else:
+            if not set(decides).isdisjoint(one.changed):
+                return False
+            brought = diagrams.conjunction(
+                same(diagrams, diagrams.values(name), diagrams.values_after(name)) for name in decides
+            )
+        if brought != relation and (sensed & brought & ~relation).satisfiable():
+            return False
+    return True
