@@ -45,9 +45,11 @@ QUESTIONS = {
     "POST /why-not/goal",
 }
 # They need another station than this one: at its first start, before production, a demonstration, with a provider, with
-# two people, with overrides, with a topic that is not in its model, with a recording, or with a checked revision.
+# two people, with an archive, with overrides, with a topic that is not in its model, with a recording, or with a checked
+# revision.
 ELSEWHERE = {
     "POST /corrections/confirm",
+    "POST /storage/archive",
     "PUT /outputs",
     "POST /production/start",
     "PUT /overrides/{name}",

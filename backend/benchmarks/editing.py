@@ -20,6 +20,7 @@ from ruamel.yaml import YAML
 from stations.large import ABILITIES, RESOURCES, files
 
 from sequence_planner.actor import SYSTEM
+from sequence_planner.start_needs import StartNeeds
 from sequence_planner.storage.database import Database
 from sequence_planner.workshop import draft as drafts
 from sequence_planner.workshop.checking import checked
@@ -132,7 +133,7 @@ def whole(model: dict[str, str], folder: Path) -> None:
     found.mkdir()
     told(
         "the check from scratch, until its warnings",
-        lambda: next(e for e in checked(1, model, None, found) if e.findings),
+        lambda: next(e for e in checked(1, model, None, StartNeeds(), found) if e.findings),
     )
 
 

@@ -6,7 +6,7 @@ which a state of rest can be reached inside it, without faults and without resta
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 from sequence_planner.automaton.cone import cone_of_influence
 from sequence_planner.automaton.state_set import StateSet, Supervisor
@@ -14,6 +14,7 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.expressions.syntax import TRUE, Expression, conjunction, conjuncts, variables
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.effort import Effort
+from sequence_planner.synthesis.nearness import Nearness
 from sequence_planner.synthesis.plant import Plant
 from sequence_planner.synthesis.saturation import reachable, reaching
 from sequence_planner.synthesis.steps import Step
@@ -130,19 +131,27 @@ def supervisor(supervision: Supervision) -> Supervisor:
     """What is handed on: the safe set, and for each ability where it allows its start."""
     diagrams = supervision.plant.diagrams
     guards: dict[str, StateSet] = {}
+    nearness = Nearness(supervision.plant.automaton, diagrams.names)
     for name in supervision.plant.starts:
         allowed, disallowed = supervision.guard(name)
         if disallowed.satisfiable():
-            guards[name] = diagrams.exported(separated(supervision.plant, allowed, disallowed))
+            guards[name] = diagrams.exported(separated(supervision.plant, allowed, disallowed, nearness.around(name)))
     return Supervisor(diagrams.exported(supervision.safe), guards)
 
 
-def separated(plant: Plant, yes: Function, no: Function) -> Function:
+def separated(plant: Plant, yes: Function, no: Function, around: Iterable[frozenset[str]]) -> Function:
     """A set over few variables that has all of `yes`, and nothing of `no`, which is apart from it.
 
-    Variables are left out greedily, the last declared first.
+    They are sought in the first of the sets `around`, the last of which has all variables, that is enough; there
+    variables are left out greedily, the last declared first.
     """
     diagrams = plant.diagrams
+    for names in around:
+        others = [name for name in diagrams.names if name not in names]
+        some_yes, some_no = diagrams.exists(yes, others), diagrams.exists(no, others)
+        if not (some_yes & some_no).satisfiable():
+            yes, no = some_yes, some_no
+            break
     needed = diagrams.support(yes) | diagrams.support(no)
     for name in reversed(list(plant.automaton.variables)):
         if name in needed:
