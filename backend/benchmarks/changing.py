@@ -45,8 +45,7 @@ QUESTIONS = {
     "POST /why-not/goal",
 }
 # They need another station than this one: at its first start, before production, a demonstration, with a provider, with
-# two people, with an archive, with overrides, with a topic that is not in its model, with a recording, or with a checked
-# revision.
+# two people, an archive, overrides, a topic that is not in its model, a recording, or a checked revision.
 ELSEWHERE = {
     "POST /corrections/confirm",
     "POST /storage/archive",
