@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence, Set
 from importlib import import_module
 from math import inf
-from types import MappingProxyType
 
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
@@ -28,6 +27,8 @@ LONG_FIRST_TURNS = {
     "relaxation": 2.0,
 }
 
+AS_USUAL: Mapping[str, float] = {}  # no proxy: lanes are sent to processes
+
 Factory = Callable[[Automaton, Supervisor], Engine]
 
 
@@ -46,7 +47,7 @@ class Lane(Immutable):
     engines: Mapping[Contract, tuple[str, ...]]
     niceness: int = 5  # ticks are not held up by planning
     first_turns: Mapping[str, float] = LONG_FIRST_TURNS  # of those whose first turn is not `FIRST_TURN`
-    fast_first_turns: Mapping[str, float] = MappingProxyType({})  # where it is another one then
+    fast_first_turns: Mapping[str, float] = AS_USUAL  # where it is another one then
     by_work: bool = False  # turns are seconds of the processor, however long others hold the process up
 
     def first_turn(self, engine: str, contract: Contract) -> float:
