@@ -45,6 +45,8 @@ lint: install-test
 
 typecheck: install-test
 	cd backend && .venv/bin/mypy --strict
+	cd backend && MYPYPATH=benchmarks:tests .venv/bin/mypy --strict --explicit-package-bases benchmarks
+	cd backend && MYPYPATH=campaigns:tests .venv/bin/mypy --strict --explicit-package-bases campaigns
 
 pytest: pytest-light pytest-heavy
 

@@ -146,7 +146,7 @@ def acts(client: httpx.Client) -> Iterator[tuple[str, float]]:
 
     def act(status: int, method: str, path: str, body: object = None, **more: Any) -> Any:  # noqa: ANN401 - JSON
         """Do it; what is answered."""
-        content = {} if body is None else {"json": body}
+        content: dict[str, Any] = {} if body is None else {"json": body}
         answer = expect(status, client.request(method, path, **content, **more))
         return answer.json() if answer.content else None
 

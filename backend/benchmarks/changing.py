@@ -12,7 +12,6 @@ import os
 import re
 import shutil
 import statistics
-import sys
 import tempfile
 import time
 from collections import defaultdict
@@ -99,7 +98,7 @@ class Acts:
         headers: dict[str, str] | None = None,
     ) -> Any:  # noqa: ANN401 - JSON
         """What `client` is answered, or the entity tag of that. Raises `RuntimeError` unless it was done."""
-        content = {"json": body} if body is not None else {}
+        content: dict[str, Any] = {"json": body} if body is not None else {}
         began = time.perf_counter()
         answer = client.request(method, path, headers=headers, **content)
         took = time.perf_counter() - began
@@ -296,4 +295,4 @@ def report(act: Acts) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

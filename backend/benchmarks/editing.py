@@ -106,7 +106,7 @@ def words(model: dict[str, str], folder: Path) -> None:
     told("errors after a guard was changed", changed("p0\n    start", "p9\n    start"), LOOKS)
     told("errors after a variable was added", changed("estimated:", "estimated:\n  extra_{n}: {type: bool}"), LOOKS)
     draft.take(model)
-    place = ["abilities", "step_1", "start", "when"]
+    place: list[str | int] = ["abilities", "step_1", "start", "when"]
     asked = PlaceInText(file=MACHINE, path=place, text="place == p1 and mach", offset=20)
 
     def ask(kind: LanguageQuestionKind) -> Callable[[], object]:

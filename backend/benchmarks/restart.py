@@ -69,14 +69,14 @@ def measure(automaton: Automaton, advisor: Advisor, moments: list[Moment]) -> No
                 drawn[kind].append((moment, chance.choice(some)))
         if all(len(some) == EACH for some in drawn.values()):
             break
-    for kind, some in drawn.items():
-        seconds, answers = zip(*(advised(automaton, advisor, *each) for each in some), strict=True)
+    for kind, chosen in drawn.items():
+        seconds, answers = zip(*(advised(automaton, advisor, *each) for each in chosen), strict=True)
         first = Counter(_first(answer) for answer in answers)
         goes_on = sum(any(not offer.left_out for offer in answer.offers) for answer in answers)
         complete = sum(answer.complete for answer in answers)
         kinds = ", ".join(f"{name} {number}" for name, number in first.most_common())
         times = f"{statistics.median(seconds):.2f} s | {max(seconds):.2f} s"
-        print(f"| {kind} | {len(some)} | {goes_on} | {complete} | {kinds} | {times} |", flush=True)
+        print(f"| {kind} | {len(chosen)} | {goes_on} | {complete} | {kinds} | {times} |", flush=True)
 
 
 def _first(advice: Advice) -> str:

@@ -9,6 +9,7 @@ else is CPU time of the controller's process.
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import json
 import os
 import random
@@ -22,7 +23,7 @@ from pathlib import Path
 from compared.message_peer import BARE_ANSWERED, BARE_ASKED
 from compared.message_station import ANSWERED, ASKED, NUMBER, NUMBERS, reports, write_station
 
-from sequence_planner.emulation.process import NODE
+from sequence_planner.emulation.node import NODE
 from sequence_planner.ros.choice import open_transport
 from sequence_planner.ros.transport import QualityOfService, Sample, Transport
 from sequence_planner.station import ReadyStation, prepare_station
@@ -89,7 +90,8 @@ class Peers:
         await asyncio.gather(self._looking, return_exceptions=True)
         self.transport.close()
         for process in self._processes:
-            process.terminate()
+            with contextlib.suppress(ProcessLookupError):  # it may have ended by itself
+                process.terminate()
             await process.wait()
 
     async def started(self) -> None:

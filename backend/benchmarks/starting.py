@@ -159,7 +159,7 @@ def started(name: str, cache: Path) -> Iterator[tuple[int, Start]]:
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
-    command = [PROGRAM, "run", str(STATIONS / name), "--port", str(port), "--emulator", "--demonstration"]
+    command = [str(PROGRAM), "run", str(STATIONS / name), "--port", str(port), "--emulator", "--demonstration"]
     began = time.perf_counter()
     environment = {**os.environ, "XDG_CACHE_HOME": str(cache)}
     launcher = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

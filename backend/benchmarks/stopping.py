@@ -86,7 +86,7 @@ def main() -> None:
             say_how_long([pause_after_kill(operator, launcher) for _ in range(KILLS)])
 
 
-def works(client: httpx.Client) -> dict[str, Callable[[int], None]]:
+def works(client: httpx.Client) -> dict[str, Callable[[int], object]]:
     """What is done again and again, by what it is."""
     many, bomb, entries = (Engineer(client, f"resources/{name}.yaml") for name in ("many", "bomb", "entries"))
 
@@ -99,19 +99,23 @@ def works(client: httpx.Client) -> dict[str, Callable[[int], None]]:
             "resources/entries.yaml"
         ]["text"]
 
+    def take_away(_: int) -> None:
+        bomb.write(None)
+        time.sleep(0.1)
+
     return {
         "nothing": lambda _: time.sleep(0.1),
         "an alias bomb is written": lambda turn: bomb.write(f"{BOMB}# {turn}\n"),
-        "and taken away": lambda _: (bomb.write(None), time.sleep(0.1))[0],
+        "and taken away": take_away,
         f"{VARIABLES} variables are written": lambda turn: many.write(variables(VARIABLES, f" {turn}")),
-        "all files are read": lambda _: client.get("/model/files").raise_for_status() and None,
-        "versions are compared": lambda _: client.get("/model/comparison?old=running").raise_for_status() and None,
-        "the graph is drawn": lambda _: client.get("/model/graph").raise_for_status() and None,
+        "all files are read": lambda _: client.get("/model/files").raise_for_status(),
+        "versions are compared": lambda _: client.get("/model/comparison?old=running").raise_for_status(),
+        "the graph is drawn": lambda _: client.get("/model/graph").raise_for_status(),
         f"{VARIABLES} variables are added as a value": add,
     }
 
 
-def measure(operator: httpx.Client, what: str, work: Callable[[int], None]) -> None:
+def measure(operator: httpx.Client, what: str, work: Callable[[int], object]) -> None:
     """Print how long stops take while `work` is done."""
     end, turns, wrong = time.monotonic() + SECONDS, [0], list[str]()
 
@@ -169,4 +173,4 @@ def say_how_long(times: list[float]) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

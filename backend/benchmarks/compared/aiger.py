@@ -7,7 +7,6 @@ been reached by allowed choices, so that a trace of n steps is a plan of n ticks
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 
 from compared.declaring import UNSUPERVISED, Problem
@@ -38,11 +37,6 @@ class _Gates(Circuit):
     def require(self, *literals: int) -> None:
         """Demand that at least one of `literals` is true."""
         self.demanded.append(literals)
-
-    @property
-    def gates(self) -> Iterable[tuple[int, tuple[int, ...]]]:
-        """Each gate with what it is the conjunction of, none before its parts."""
-        return ((gate, parts) for parts, gate in self._gates.items())
 
 
 @dataclass(frozen=True)
@@ -121,7 +115,7 @@ def _allowed(circuit: _Gates, latches: dict[int, _Latch], reached: list[int]) ->
 
 def _written(circuit: _Gates, latches: tuple[_Latch, ...], output: int) -> bytes:
     """Inputs, latches and gates are numbered in this order; a gate of many parts becomes a chain."""
-    gates = tuple(circuit.gates)
+    gates = tuple((gate, parts) for parts, gate in circuit.gates.items())
     inner = {gate for gate, _ in gates} | {latch.literal for latch in latches}
     inputs = [variable for variable in range(2, circuit.top + 1) if variable not in inner]
     numbers = {Circuit.TRUE: 1}

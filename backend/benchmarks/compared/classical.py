@@ -59,13 +59,13 @@ def blocks_document(blocks: int, seed: int = 1) -> Document:
     transitions: list[Document] = []
     for name in names:
         free = f"clear_{name} and on_{name}"
-        taken = {f"on_{name}": "hand", "holding": True}
+        taken: dict[str, str | bool] = {f"on_{name}": "hand", "holding": True}
         transitions.append(_event(f"pick_{name}", f"not holding and {free} == table", taken))
         transitions.append(_event(f"put_{name}", f"on_{name} == hand", {f"on_{name}": "table", "holding": False}))
     for name, other in permutations(names, 2):
         below = f"clear_{other}"
-        off = {f"on_{name}": "hand", "holding": True, below: True}
-        on = {f"on_{name}": other, "holding": False, below: False}
+        off: dict[str, str | bool] = {f"on_{name}": "hand", "holding": True, below: True}
+        on: dict[str, str | bool] = {f"on_{name}": other, "holding": False, below: False}
         guard = f"not holding and clear_{name} and on_{name} == {other}"
         transitions.append(_event(f"take_{name}_{other}", guard, off))
         transitions.append(_event(f"stack_{name}_{other}", f"on_{name} == hand and {below} and on_{other} != hand", on))

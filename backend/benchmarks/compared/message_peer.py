@@ -15,6 +15,7 @@ from pathlib import Path
 
 from compared.message_station import NUMBER
 from cyclonedds.core import InstanceState, ReadCondition, SampleState, ViewState, WaitSet
+from cyclonedds.internal import InvalidSample
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
@@ -47,7 +48,7 @@ def echo(folder: Path) -> None:
     while True:
         waiting.wait(duration(infinite=True))
         for sample in reader.take(100):
-            if sample.sample_info.valid_data:
+            if not isinstance(sample, InvalidSample):
                 writer.write(raw(sample.data))
 
 
@@ -62,7 +63,7 @@ async def controller(folder: Path, socket: Path) -> None:
 
     asking = asyncio.create_task(_tell_memory())
     database = f"sqlite:///{socket.parent}/station.sqlite"
-    running = Running(station, socket, connect, emulated=True, start=True, database=database)
+    running = Running(station, folder, socket, connect, emulated=True, start=True, database=database)
     living = asyncio.create_task(control(running))
     await asyncio.wait({asking, living}, return_when=asyncio.FIRST_COMPLETED)
     living.cancel()
