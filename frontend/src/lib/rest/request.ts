@@ -17,8 +17,8 @@ export interface Rest {
 	readonly idempotencyKey?: string;
 	/** Milliseconds after which an answer is no longer waited for. */
 	readonly patience?: number;
-	/** Aborted when somebody does not want the answer any more. */
-	readonly stop?: AbortSignal;
+	/** Aborted when the answer is no longer waited for, where `patience` does not say all of that. */
+	readonly signal?: AbortSignal;
 }
 
 export type Answer<Value> =
@@ -52,15 +52,13 @@ export function aheadOf(header: string | null, now: number): number {
 export async function request<Value = undefined>(
 	method: Method,
 	path: string,
-	{ body, ifMatch, idempotencyKey, patience = PATIENCE, stop }: Rest = {}
+	{ body, ifMatch, idempotencyKey, patience = PATIENCE, signal = AbortSignal.timeout(patience) }: Rest = {}
 ): Promise<Answer<Value>> {
 	const headers: Record<string, string> = {};
 	if (body !== undefined) headers['Content-Type'] = 'application/json';
 	if (ifMatch !== undefined) headers['If-Match'] = ifMatch;
 	if (idempotencyKey !== undefined) headers['Idempotency-Key'] = idempotencyKey;
 	try {
-		const late = AbortSignal.timeout(patience);
-		const signal = stop === undefined ? late : AbortSignal.any([late, stop]);
 		const sent = body === undefined ? {} : { body: JSON.stringify(body) };
 		const answer = await fetch(path, { method, headers, signal, ...sent });
 		const text = await answer.text();
