@@ -13,7 +13,7 @@ export const door = {
 		title: 'Sign in',
 		under: 'Signing in',
 		missing: 'Name and password are both needed.',
-		help: 'No name yet, or the password forgotten? An administrator of this station can help.',
+		help: 'No name yet, or the password forgotten? Ask an administrator of this station.',
 		pair: 'Pair a watch'
 	},
 	provider: {
@@ -24,7 +24,7 @@ export const door = {
 		back: 'Back to sign-in',
 		signOut: (provider: string): string => `Sign out of ${provider} as well`,
 		stillThere: (provider: string): string =>
-			`You are signed out here. At ${provider} you may still be signed in: on a device that others use, sign out there too.`
+			`You are signed out here, but perhaps not at ${provider}. On a device that others use, sign out there too.`
 	},
 	name: { label: 'Name', missing: 'Enter your name.' },
 	password: {
@@ -35,7 +35,7 @@ export const door = {
 		capsLock: 'Caps Lock is on.',
 		missingAbove: 'Something is missing above.',
 		rules: (shortest: number): string =>
-			`At least ${shortest} characters, any characters; a few words are well. It must not contain the name, nor be one character over and over.`,
+			`At least ${shortest} characters, such as a few words; without the name, and not one character over and over.`,
 		short: (length: number, shortest: number): string =>
 			`The password has ${length} characters; it needs at least ${shortest}.`,
 		long: (length: number, longest: number): string =>
@@ -44,13 +44,13 @@ export const door = {
 		repeated: 'The password is one character over and over.'
 	},
 	demonstration: {
-		about: 'This is a demonstration on emulated devices, which can be used without a name.',
+		about: 'A demonstration on emulated devices. It needs no name.',
 		open: 'Open the demonstration'
 	},
 	first: {
 		title: 'First start',
-		over: 'This station has an administrator already, so no link makes another one.',
-		become: 'You become the first administrator of this station, who decides who else may do what.',
+		over: 'This station has an administrator already.',
+		become: 'You become the first administrator: you decide who else may do what.',
 		make: 'Make the administrator',
 		nobody: 'Nobody can sign in yet: this station has no administrator.',
 		openLink: 'Open the link that the station showed on its terminal as it started. It works once and for 15 minutes; after that',
