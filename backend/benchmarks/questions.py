@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from sequence_planner.checking.far import MOST_EFFORT, begun, from_afar
+from sequence_planner.checking.inquiry import Questions
 from sequence_planner.checking.possibility import UNKNOWN, Finding
 from sequence_planner.checking.supervised import exactly, subjects_of
 from sequence_planner.cli.loading import load_model
@@ -50,7 +51,7 @@ def measure(folder: Path) -> None:
         far = from_afar(automaton, left, safe, made).findings
         took, memory = time.process_time() - at_once, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
         print(f"  from afar {len(left)} questions {took:.1f} s, {memory:.0f} MiB at most, findings {kinds(far)}")
-        inquiry = begun(automaton, left, safe, Effort(MOST_EFFORT))
+        inquiry = begun(Questions(automaton, [e for each in left for e in each.expressions], safe), Effort(MOST_EFFORT))
         if inquiry is not None:
             print(
                 f"  at most {inquiry.diagrams.count(inquiry.perhaps_reached())} states are reached with the supervisor"

@@ -18,14 +18,17 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking import far_inquiry
 from sequence_planner.checking.evidence import Evidence
 from sequence_planner.checking.far import FarAnswers, from_afar
+from sequence_planner.checking.far_inquiry import FarInquiry
+from sequence_planner.checking.inquiry import Questions
 from sequence_planner.checking.possibility import UNKNOWN
 from sequence_planner.checking.supervised import subjects_of
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import Variable, conjunction
 from sequence_planner.synthesis.approximation import around, composed
+from sequence_planner.synthesis.effort import Effort
 from sequence_planner.synthesis.plant import Plant, together
-from sequence_planner.synthesis.saturation import reachable
-from sequence_planner.synthesis.supervision import SynthesisError, supervised, supervisor
+from sequence_planner.synthesis.saturation import reachable, reaching
+from sequence_planner.synthesis.supervision import Supervision, SynthesisError, supervised, supervisor
 
 
 def asked(made: Automaton, known: Evidence | None = None) -> FarAnswers:
@@ -128,6 +131,42 @@ def test_after_an_edit_what_was_known_leads_to_what_the_definition_says(versions
             UnsatisfiedAssumption, SynthesisError
         ):  # it has no supervisor: what is known is of the one before
             known = hold(made, known) or known
+
+
+@examples(80)
+@given(made_by(with_edits))
+def test_after_an_edit_no_step_leads_out_of_a_trap_and_ways_lead_on(versions: list[Automaton]) -> None:
+    """Whatever the answers are that rest on them: for each goal there is one of the two."""
+    made, *others = versions
+    known = proven(made)
+    for other in others:
+        inquiry = FarInquiry(about(other), Effort(1 << 30), known.ordered(other.variables))
+        inquiry.recall(known)
+        within, steps = inquiry.perhaps_reached(), inquiry.limited(inquiry.plant, inquiry.plant.helpful)
+        for trap in inquiry.traps:
+            assert not any((step.after(trap) & within & ~trap).satisfiable() for step in steps)
+        for target, states in inquiry.ways:
+            assert not (states & within & ~reaching(inquiry.diagrams, target & within, steps, within)).satisfiable()
+
+
+def proven(made: Automaton) -> Evidence:
+    """What leads to the goal of each operation, and what does not."""
+    inquiry = FarInquiry(about(made), Effort(1 << 30), tuple(made.variables))
+    within, steps = inquiry.perhaps_reached(), inquiry.limited(inquiry.plant, inquiry.plant.helpful)
+    for operation in made.operations.values():
+        goal = inquiry.plant.where(operation.goal)
+        leading = reaching(inquiry.diagrams, goal & within, steps, within)
+        inquiry.ways.append((goal, leading))
+        inquiry.traps.append(within & ~leading)
+    return inquiry.evidence()
+
+
+def about(made: Automaton) -> Questions:
+    """All that is asked of it, with all its states called safe where it has no supervisor."""
+    supervision = Supervision(Plant(made, tuple(made.variables)))
+    safe = supervision.safe if supervision.possible else supervision.plant.diagrams.valid
+    questions = [Variable(name, variable.type) for name, variable in made.variables.items()]
+    return Questions(made, questions, supervision.plant.diagrams.exported(safe))
 
 
 @examples(60)

@@ -188,6 +188,10 @@ class Builder:
             pending.pop()
         return StateSet(names, domains, tuple(kept), number[root])
 
+    def whole(self, names: tuple[str, ...], domains: tuple[tuple[Value, ...], ...], root: int) -> StateSet:
+        """The same where all nodes were made for it, each right after its children in their order."""
+        return StateSet(names, domains, tuple(self._references), root)
+
 
 class Supervisor(Immutable):
     """Which starts are safe: a start must lead from a safe state into one.

@@ -9,19 +9,22 @@ can do in them whatever the former could, which is found out by comparing the st
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, reduce
+from operator import or_
 
 from sequence_planner.automaton.state_set import StateSet
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.runs import KeptStep
 from sequence_planner.synthesis.diagrams import Function
-from sequence_planner.synthesis.effort import Effort
+from sequence_planner.synthesis.effort import Effort, TooMuchError
 from sequence_planner.synthesis.inclusion import included
 from sequence_planner.synthesis.plant import Plant, written_afterwards
 from sequence_planner.synthesis.steps import Step
 
 MOST_ADDED = 6_000_000  # nodes, see `synthesis.effort`, for what an edit adds to what is reached
+_MOST_OF_TRAP = 1_000_000  # the same for what it adds to a trap
 
 
 @dataclass(frozen=True)
@@ -48,12 +51,11 @@ class Evidence:
         return tuple(sorted(names, key=lambda name: place.get(name, len(place))))
 
 
-def closed(states: Function, steps: Sequence[Step], within: Function) -> Function:
-    """`states`, and all that `steps` lead to from there within a set; quick where these are few.
+def closed(states: Function, new: Function, steps: Sequence[Step], within: Function) -> Function:
+    """`states`, and all that `steps` lead to within a set; out of them they lead from those that are `new` only.
 
-    Raises what the steps raise when that is too much.
+    It is quick where these are few. Raises what the steps raise when that is too much.
     """
-    new = states
     while new.satisfiable():
         after = new
         for step in steps:
@@ -61,6 +63,21 @@ def closed(states: Function, steps: Sequence[Step], within: Function) -> Functio
         new = after & ~states
         states |= after
     return states
+
+
+def joining(states: Function, target: Function, steps: Sequence[Step]) -> Function:
+    """Those of `states` from which `steps` lead to `target` without leaving them; quick where they are few."""
+    images = [step.after(states) for step in steps]
+    left, new = states & ~target, target
+    while new.satisfiable():
+        reached = (
+            step.before(there)
+            for step, image in zip(steps, images, strict=True)
+            if (there := image & new).satisfiable()
+        )
+        new = left & reduce(or_, reached, left & ~left)
+        left &= ~new
+    return states & ~left
 
 
 class Again:
@@ -89,19 +106,26 @@ class Again:
             return
         if included(self._plant.diagrams, self._before, self._now, self._there):
             for target, states in self.kept.ways:
-                yield self.states(target) & self._there, self.states(states) & self._there
+                yield self.states(target), self.states(states) & self._there
+
+    def added(self, within: Function) -> Function:
+        """What this model may reach of `within` and the other did not; nothing where the two differ too much."""
+        return self._plant.diagrams.false if self._before is None else within & ~self._there
 
     def traps(self, within: Function) -> Iterator[Function]:
-        """The traps of the other model that nothing leads out of in this one; only what has changed is tried."""
-        steps, entering = self._now, self._plant.diagrams.false
+        """The traps of the other model, with all that leads out of them in this one; only what has changed is tried."""
+        diagrams, changed, leaving = self._plant.diagrams, self._now, self._plant.diagrams.false
         if self._before is not None:
-            steps = [each for each in steps if not included(self._plant.diagrams, [each], self._before, within)]
-            if (added := within & ~self._there).satisfiable():
-                entering = self._plant.diagrams.disjunction(step.before(added) for step in self._now)
+            changed = [each for each in changed if not included(diagrams, [each], self._before, within)]
+            if (added := self.added(within)).satisfiable():
+                leaving = diagrams.disjunction(step.before(added) for step in self._now)
         for kept in self.kept.traps:
             states = self.states(kept) & within
-            if not (states & entering).satisfiable() and _is_closed(states, steps, within):
-                yield states
+            edge = states & leaving
+            new = diagrams.disjunction([*(s.after(states) for s in changed), *(s.after(edge) for s in self._now)])
+            new &= within & ~states
+            with suppress(TooMuchError):
+                yield closed(states | new, new, Effort(_MOST_OF_TRAP).limited(self._now), within)
 
     def bounds(self) -> Iterator[Function]:
         """The same without the supervisor."""
@@ -140,4 +164,5 @@ def _is_closed(states: Function, steps: Iterable[Step], within: Function) -> boo
 
 def grown(effort: Effort, kept: Function, steps: Sequence[Step], within: Function) -> Function:
     """What is reached, and perhaps more, as far as `kept` has it, and all that steps add to it."""
-    return closed(kept & within, Effort(MOST_ADDED, whole=effort).limited(steps), within)
+    states = kept & within
+    return closed(states, states, Effort(MOST_ADDED, whole=effort).limited(steps), within)

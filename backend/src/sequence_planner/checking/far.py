@@ -18,7 +18,7 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.automaton.tick import initial_state
 from sequence_planner.checking.evidence import Evidence
 from sequence_planner.checking.far_inquiry import FarInquiry
-from sequence_planner.checking.inquiry import bearing_on, bits
+from sequence_planner.checking.inquiry import Questions, bits
 from sequence_planner.checking.possibility import UNKNOWN, Finding, Possibility, Subject
 from sequence_planner.planning.plan import Contract, PlanRequest, PlanTick, goals_of
 from sequence_planner.synthesis.effort import MOST_BITS, Effort, TooMuchError
@@ -51,19 +51,20 @@ def from_afar(
     No more than so many seconds are spent on `planning`: what is not known by a plan is found out otherwise. What is
     `known` of the model before an edit is proven again; where that leaves something open, all is found out anew.
     """
+    asked = Questions(automaton, [each for subject in subjects for each in subject.expressions], safe)
+    work = partial(_work, automaton, supervisor, planning)
     if known is not None:
-        again = _answers(automaton, subjects, partial(_resumed, known, supervisor, planning), safe)
+        again = _answers(automaton, subjects, partial(_resumed, asked, work, known))
         if not any(each.kind == UNKNOWN for each in again.findings):
             return again
-    return _answers(automaton, subjects, partial(_anew, supervisor, planning), safe)
+    return _answers(automaton, subjects, partial(_anew, asked, work))
 
 
-_Beginning = Callable[[Automaton, Sequence[Subject], StateSet, Effort], "FarInquiry | None"]
-
-
-def _answers(automaton: Automaton, subjects: Sequence[Subject], begin: _Beginning, safe: StateSet) -> FarAnswers:
+def _answers(
+    automaton: Automaton, subjects: Sequence[Subject], begin: Callable[[Effort], FarInquiry | None]
+) -> FarAnswers:
     whole = Effort(MOST_EFFORT)
-    inquiry = begin(automaton, subjects, safe, whole)
+    inquiry = begin(whole)
     if inquiry is None:
         return FarAnswers([Finding(UNKNOWN, subject, "") for subject in subjects], None)
     possibility = Possibility(automaton, inquiry)
@@ -77,49 +78,35 @@ def _answers(automaton: Automaton, subjects: Sequence[Subject], begin: _Beginnin
     return FarAnswers(found, inquiry.evidence())
 
 
-def _anew(
-    supervisor: Supervisor,
-    planning: float,
-    automaton: Automaton,
-    subjects: Sequence[Subject],
-    safe: StateSet,
-    whole: Effort,
-) -> FarInquiry | None:
-    inquiry = begun(automaton, subjects, safe, whole)
+_Work = Callable[[], tuple[PlanTick, ...]]
+
+
+def _anew(asked: Questions, work: _Work, whole: Effort) -> FarInquiry | None:
+    inquiry = begun(asked, whole)
     if inquiry is not None:
-        inquiry.know(_work(automaton, supervisor, planning))
+        inquiry.know(work())
     return inquiry
 
 
-def _resumed(
-    known: Evidence,
-    supervisor: Supervisor,
-    planning: float,
-    automaton: Automaton,
-    subjects: Sequence[Subject],
-    safe: StateSet,
-    whole: Effort,
-) -> FarInquiry | None:
+def _resumed(asked: Questions, work: _Work, known: Evidence, whole: Effort) -> FarInquiry | None:
     """An inquiry that goes on from what was `known`; None where that is not soon proven again."""
-    questions = [each for subject in subjects for each in subject.expressions]
     with suppress(TooMuchError):
-        names = known.ordered(bearing_on(automaton, questions))
-        inquiry = FarInquiry(automaton, questions, safe, whole, names)
+        inquiry = FarInquiry(asked, whole, known.ordered(asked.bearing))
         if not inquiry.recall(known):
-            inquiry.know(_work(automaton, supervisor, planning))
+            inquiry.know(work())
         return inquiry
     return None
 
 
-def begun(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet, whole: Effort) -> FarInquiry | None:
+def begun(asked: Questions, whole: Effort) -> FarInquiry | None:
     """An inquiry in the first order of variables in which it soon begins, or begins at all."""
-    questions = [each for subject in subjects for each in subject.expressions]
-    names = sorted(bearing_on(automaton, questions), key=list(automaton.variables).index)
+    automaton = asked.automaton
+    names = sorted(asked.bearing, key=list(automaton.variables).index)
     if bits(automaton, names) > MOST_BITS:
         return None
     for most in (_FIRST, MOST_EFFORT):
         for order in orders(automaton, names):
-            inquiry = FarInquiry(automaton, questions, safe, Effort(most, whole=whole), order)
+            inquiry = FarInquiry(asked, Effort(most, whole=whole), order)
             with suppress(TooMuchError):
                 inquiry.perhaps_reached()
                 inquiry.whole = whole

@@ -6,9 +6,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 
 from sequence_planner.automaton.state_set import StateSet
-from sequence_planner.automaton.structure import Automaton
-from sequence_planner.checking.evidence import Again, Evidence, grown
-from sequence_planner.checking.inquiry import Inquiry
+from sequence_planner.checking.evidence import Again, Evidence, grown, joining
+from sequence_planner.checking.inquiry import Inquiry, Questions
 from sequence_planner.checking.runs import Runs
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.planning.plan import PlanTick
@@ -28,22 +27,17 @@ _MOST_NEAR = 3  # states that are looked at one by one
 class FarInquiry(Inquiry):
     """An inquiry that takes less, and is soon answered where runs are known."""
 
-    def __init__(
-        self,
-        automaton: Automaton,
-        questions: Iterable[Expression],
-        safe: StateSet,
-        effort: Effort,
-        order: Sequence[str] = (),
-    ) -> None:
-        super().__init__(automaton, questions, safe, effort, order)
+    def __init__(self, asked: Questions, effort: Effort, order: Sequence[str] = ()) -> None:
+        super().__init__(asked, effort, order)
         self._runs = Runs(self.plant, self.safe)
         self._more: dict[bool, Function] = {}
         self._level = {True: 0, False: 0}
-        self._ways: list[tuple[Function, Function]] = []
-        self._traps: list[Function] = []
+        # States, and others from which some of them can be reached; and such as nothing leads out of.
+        self.ways: list[tuple[Function, Function]] = []
+        self.traps: list[Function] = []
         self._bounds: list[Function] = []
         self._again: Again | None = None
+        self._added = self.diagrams.false  # to what may be reached, by an edit
         self.whole = effort  # for what serves all questions
 
     def know(self, ticks: Iterable[PlanTick]) -> None:
@@ -62,21 +56,23 @@ class FarInquiry(Inquiry):
             within = self.safe if supervised else self.diagrams.valid
             self._more[supervised] = grown(self.whole, plant.initial | again.states(states), steps, within)
             self._level[supervised] = known.level[supervised]
-        self._ways = list(again.ways(self.perhaps_reached()))
-        self._traps = list(again.traps(self.perhaps_reached()))
+        self.ways = list(again.ways(self.perhaps_reached()))
+        self.traps = list(again.traps(self.perhaps_reached()))
         self._bounds = list(again.bounds())
+        self._added = again.added(self.perhaps_reached())
         return self._runs.recall(known.runs)
 
     def evidence(self) -> Evidence:
         """What its answers rest on."""
+        within = self.perhaps_reached()  # in the end; no step leads out of it, so what holds of more holds within it
         return Evidence(
             self.plant.automaton,
             self.diagrams.names,
             {supervised: self._exported(states) for supervised, states in self._more.items()},
             dict(self._level),
             self._runs.kept(),
-            tuple((self._exported(target), self._exported(states)) for target, states in self._ways),
-            tuple(map(self._exported, self._traps)),
+            tuple((self._exported(target), self._exported(states & within)) for target, states in self.ways),
+            tuple(self._exported(trap & within) for trap in self.traps),
             tuple(map(self._exported, self._bounds)),
         )
 
@@ -152,16 +148,18 @@ class FarInquiry(Inquiry):
         """
         within = self.perhaps_reached()
         left, known = active & within & ~goal, self._runs.known(supervised=True, faults=True)
-        for trap in self._traps:
+        for trap in self.traps:
             if (trap & left & known).satisfiable() and not (trap & goal).satisfiable():
                 return trap & left & known
-        for states in (states for target, states in self._ways if not (target & ~goal).satisfiable()):
-            left &= ~states
-        if not left.satisfiable():
+        begin = self._known_to_lead(goal, within)
+        if (left & ~begin).satisfiable():
+            begin |= self._newly_leading(goal, begin)
+        if not (left := left & ~begin).satisfiable():
+            self._learn_way(goal, begin)
             return left
         whole, looked = self.effort, False
         self.effort = Effort(_SOON, whole=whole)
-        growing = _Growing(self.seen(goal, within), within)
+        growing = _Growing(begin | self.seen(goal, within), within)
         while (left := left & ~growing.seen).satisfiable():
             try:
                 if not growing.go_on(self.limited(self.plant, self.plant.helpful)):
@@ -176,10 +174,36 @@ class FarInquiry(Inquiry):
         self.effort = whole
         found = self.reached(left)
         if found.satisfiable():
-            self._traps.append(within & ~growing.seen)
+            self.traps.append(within & ~growing.seen)
         else:
-            self._ways.append((goal & within, growing.seen))
+            self._learn_way(goal, growing.seen)
         return found
+
+    def _newly_leading(self, goal: Function, known: Function) -> Function:
+        """What an edit has added of states from which `goal` can be brought about; those `known` are from before."""
+        added, within = self._added & ~known, self.perhaps_reached()
+        asked, self.effort = self.effort, Effort(_SOON, whole=self.effort)
+        try:
+            steps = self.limited(self.plant, self.plant.helpful)
+            near = added | self.diagrams.disjunction(step.after(added) for step in steps)
+            return joining(added, known | self.seen(goal & near, within), steps)
+        except TooMuchError:
+            return self.diagrams.false
+        finally:
+            self.effort = asked
+
+    def _learn_way(self, target: Function, states: Function) -> None:
+        """Know that `states` lead to `target`, and forget what says no more than that."""
+
+        def says_more(way: tuple[Function, Function]) -> bool:
+            return (target & ~way[0]).satisfiable() or (way[1] & ~states).satisfiable()
+
+        self.ways = [*filter(says_more, self.ways), (target, states)]
+
+    def _known_to_lead(self, goal: Function, within: Function) -> Function:
+        """The states of `within` from which it is known that `goal` can be brought about."""
+        known = (states for target, states in self.ways if not (target & within & ~goal).satisfiable())
+        return self.diagrams.disjunction(known) & within
 
     def _stuck_nearby(self, states: Function, goal: Function) -> Function | None:
         """Some of `states` at most one step from a known run that surely do not lead to `goal`; None if none is met."""
@@ -193,7 +217,7 @@ class FarInquiry(Inquiry):
             with suppress(TooMuchError):
                 perhaps = self._composed(self.plant, one, self.plant.helpful, self.perhaps_reached())
                 if not (perhaps & goal).satisfiable():
-                    self._traps.append(perhaps)
+                    self.traps.append(perhaps)
                     return self.reached(one)
             near &= ~one
         return None

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from sequence_planner.automaton.state_set import StateSet
@@ -22,28 +22,35 @@ from sequence_planner.synthesis.supervision import with_initial
 from sequence_planner.synthesis.traces import Trace
 
 
+@dataclass(frozen=True)
+class Questions:
+    """What is asked of an automaton, whose supervisor keeps to the states that are `safe`."""
+
+    automaton: Automaton
+    expressions: Sequence[Expression]
+    safe: StateSet
+
+    @property
+    def bearing(self) -> frozenset[str]:
+        """The variables that an inquiry is over."""
+        return frozenset(with_initial(self.automaton, [*_given(self.automaton), *self.expressions]))
+
+
 class Inquiry:
-    """An automaton over what can influence `questions` and `safe`, the states that its supervisor keeps to.
+    """An automaton over what can influence what is `asked` of it, and what is safe.
 
     All initial states must be safe. Raises `TooMuchError` when answers take more than `effort`. An `order` of these
     variables can be given.
     """
 
-    def __init__(
-        self,
-        automaton: Automaton,
-        questions: Iterable[Expression],
-        safe: StateSet,
-        effort: Effort,
-        order: Sequence[str] = (),
-    ) -> None:
+    def __init__(self, asked: Questions, effort: Effort, order: Sequence[str] = ()) -> None:
         self._order = order
-        self._questions = [*_given(automaton), *questions]
+        self._questions = [*_given(asked.automaton), *asked.expressions]
         self.effort = effort
         self._reached: dict[tuple[bool, bool], Function] = {}
-        self.plant = self._plant(automaton)
+        self.plant = self._plant(asked.automaton)
         self.diagrams = self.plant.diagrams
-        self.safe = self.diagrams.imported(safe) & self.diagrams.valid
+        self.safe = self.diagrams.imported(asked.safe) & self.diagrams.valid
 
     def _plant(self, automaton: Automaton) -> Plant:
         names = with_initial(automaton, self._questions)
@@ -138,11 +145,6 @@ class Inquiry:
 def bits(automaton: Automaton, names: Iterable[str]) -> int:
     """How many bits there are in the values of `names`."""
     return sum((len(automaton.variables[name].type.domain) - 1).bit_length() for name in names)
-
-
-def bearing_on(automaton: Automaton, questions: Iterable[Expression]) -> frozenset[str]:
-    """The variables that an inquiry about `questions` is over."""
-    return frozenset(with_initial(automaton, [*_given(automaton), *questions]))
 
 
 def _given(automaton: Automaton) -> list[Expression]:

@@ -16,7 +16,7 @@ from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Ability, Automaton
 from sequence_planner.checking.evidence import Evidence
 from sequence_planner.checking.far import from_afar
-from sequence_planner.checking.inquiry import Inquiry, bearing_on, bits
+from sequence_planner.checking.inquiry import Inquiry, Questions, bits
 from sequence_planner.checking.possibility import UNKNOWN, Finding, Possibility, Subject
 from sequence_planner.checking.warning import ModelWarning, listed, place
 from sequence_planner.synthesis.effort import MOST_BITS, Effort, TooMuchError
@@ -86,7 +86,9 @@ def exactly(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet) -
 
 def _asked(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet, effort: Effort) -> Iterator[Finding]:
     """What an inquiry about `subjects` says. Raises `TooMuchError`."""
-    inquiry = Inquiry(automaton, [each for subject in subjects for each in subject.expressions], safe, effort)
+    inquiry = Inquiry(
+        Questions(automaton, [each for subject in subjects for each in subject.expressions], safe), effort
+    )
     possibility = Possibility(automaton, inquiry)
     for subject in subjects:
         yield from possibility.findings(subject)
@@ -115,7 +117,7 @@ def _in_parts(automaton: Automaton, subjects: Sequence[Subject], safe: StateSet)
         if names is not None and bits(automaton, names) > MOST_BITS:
             names = None
         if names is None and too_wide < MOST_TOO_WIDE:
-            names = bearing_on(automaton, subject.expressions)
+            names = Questions(automaton, subject.expressions, safe).bearing
             too_wide += bits(automaton, names) > MOST_BITS
         parts.setdefault(frozenset(automaton.variables) if names is None else names, []).append(subject)
     effort = Effort(MOST_EFFORT_IN_PARTS)

@@ -225,12 +225,10 @@ class Diagrams:
                 return EVERYTHING if node.valid() else NOTHING
             if node not in memo:
                 name = self._name_of[bit]
-                positions = range(len(self.domains[name]))
-                children = [reference(self._branch(node, self.bits[name], position)) for position in positions]
-                memo[node] = builder.node(axis[name], tuple(children))
+                memo[node] = builder.node(axis[name], tuple(map(reference, self._by_value(node, name))))
             return memo[node]
 
-        return builder.built(over, tuple(self.domains[name] for name in over), reference(states))
+        return builder.whole(over, tuple(self.domains[name] for name in over), reference(states))
 
     def imported(self, states: StateSet) -> Function:
         """The set that `states` says, all of whose variables are among these; not only of valid states."""
@@ -255,10 +253,13 @@ class Diagrams:
             functions.append(self.disjunction(found))
         return functions[states.root]
 
-    def _branch(self, node: Function, bits: Sequence[int], position: int) -> Function:
-        for bit in bits:
-            if node.node_var() == bit:
-                cofactors = node.cofactors()
-                assert cofactors is not None
-                node = cofactors[0] if self.digit(bits, bit, position) else cofactors[1]
-        return node
+    def _by_value(self, node: Function, name: str) -> list[Function]:
+        """What is left of `node`, which tests no variable before this one, at each of its values."""
+        left = [node]
+        for bit in self.bits[name]:
+            split: list[Function] = []
+            for each in left:
+                cofactors = each.cofactors() if each.node_var() == bit else None
+                split += (each, each) if cofactors is None else reversed(cofactors)
+            left = split
+        return left[: len(self.domains[name])]
