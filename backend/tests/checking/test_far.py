@@ -14,6 +14,7 @@ from core.budget import examples
 from core.choices import Choices, made_by
 from core.random_expressions import equality
 from core.replaying import replay
+from sequence_planner.analysis.finding import without_numbers
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking import far_inquiry
 from sequence_planner.checking.evidence import Evidence
@@ -167,6 +168,16 @@ def about(made: Automaton) -> Questions:
     safe = supervision.safe if supervision.possible else supervision.plant.diagrams.valid
     questions = [Variable(name, variable.type) for name, variable in made.variables.items()]
     return Questions(made, questions, supervision.plant.diagrams.exported(safe))
+
+
+@examples(60)
+@given(made_by(with_operations))
+def test_no_more_states_are_reached_than_is_said_where_they_are_not_counted(made: Automaton) -> None:
+    whole = Supervision(Plant(made, tuple(made.variables)))
+    assume(whole.possible)
+    *_, found = without_numbers(made, far=True, evidence=proven(made))
+    assert found.supervised_at_most is not None
+    assert found.supervised_at_most >= whole.plant.diagrams.count(whole.reachable(supervised=True))
 
 
 @examples(60)

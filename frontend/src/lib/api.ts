@@ -3034,7 +3034,8 @@ export interface components {
          * AnalysisDocument
          * @description An `Analysis`: what is null has not been computed, or there is none.
          *
-         *     `supervised` says whether there is a supervisor; `guarded` are the abilities that it restricts, and `guards` what it
+         *     `supervised` says whether there is a supervisor. Where the states that are reached with it are not counted, they are
+         *     no more than `supervised_at_most`. `guarded` are the abilities that it restricts, and `guards` what it
          *     adds to them, by ability, and in a plain automaton by event.
          */
         AnalysisDocument: {
@@ -3052,6 +3053,8 @@ export interface components {
             reachable_states: number | null;
             /** Supervised */
             supervised: boolean | null;
+            /** Supervised At Most */
+            supervised_at_most: number | null;
             /** Supervised States */
             supervised_states: number | null;
         };

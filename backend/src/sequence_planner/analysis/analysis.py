@@ -23,8 +23,9 @@ class Analysis:
     """What has been found. Of what has not been computed yet, and of what cannot be, it says None.
 
     `pending` is what is being computed, and None when that is all. Without a supervisor in the end, `warnings` say why
-    there is none. Counts are of the states of all variables that can be reached, without and with the supervisor;
-    `guarded` are the starts that it restricts, `guards` what it adds to them for people to read, by ability or event.
+    there is none. Counts are of the states of all variables that can be reached, without and with the supervisor; where
+    the latter are not counted, they are no more than `supervised_at_most`. `guarded` are the starts that it restricts,
+    `guards` what it adds to them for people to read, by ability or event.
     `evidence` is what answers from afar rest on; it is said once.
     """
 
@@ -34,5 +35,6 @@ class Analysis:
     guards: Mapping[str, Guard] | None = None
     reachable_states: int | None = None
     supervised_states: int | None = None
+    supervised_at_most: int | None = None
     warnings: tuple[ModelWarning, ...] | None = None
     evidence: Evidence | None = None

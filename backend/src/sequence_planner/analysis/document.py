@@ -94,7 +94,8 @@ class SupervisorDocument(Document):
 class AnalysisDocument(Document):
     """An `Analysis`: what is null has not been computed, or there is none.
 
-    `supervised` says whether there is a supervisor; `guarded` are the abilities that it restricts, and `guards` what it
+    `supervised` says whether there is a supervisor. Where the states that are reached with it are not counted, they are
+    no more than `supervised_at_most`. `guarded` are the abilities that it restricts, and `guards` what it
     adds to them, by ability, and in a plain automaton by event.
     """
 
@@ -102,6 +103,7 @@ class AnalysisDocument(Document):
     supervised: bool | None
     reachable_states: int | None
     supervised_states: int | None
+    supervised_at_most: int | None
     guarded: list[str] | None
     guards: dict[str, GuardDocument] | None
     findings: list[FindingDocument] | None
@@ -115,6 +117,7 @@ def document_of(automaton: Automaton, analysis: Analysis) -> AnalysisDocument:
         supervised=True if analysis.supervisor is not None else None if analysis.warnings is None else False,
         reachable_states=analysis.reachable_states,
         supervised_states=analysis.supervised_states,
+        supervised_at_most=analysis.supervised_at_most,
         guarded=None if analysis.guarded is None else list(analysis.guarded),
         guards=None if analysis.guards is None else {name: _guard(guard) for name, guard in analysis.guards.items()},
         findings=None if warnings is None else findings_of(automaton, warnings),

@@ -5,8 +5,10 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 from dataclasses import replace
+from math import prod
 
 from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis
+from sequence_planner.analysis.remembering import remembered_evidence
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.checks import Looked, conflicting, looked
 from sequence_planner.checking.connections import Connections
@@ -59,6 +61,8 @@ def analyses(
         if asked.left:
             asked.look()
         found = replace(found, warnings=tuple(asked.warnings()))
+        if not asked.left:
+            found = _bounded(found, automaton, asked.evidence)
         yield replace(found, evidence=None if asked.left else asked.evidence)
         restrictions = Restrictions(supervision)
         found = replace(found, guarded=tuple(start for starts in restrictions.starts.values() for start in starts))
@@ -70,14 +74,17 @@ def analyses(
             found = replace(found, pending=FAR)
             yield found
             asked.look_far(made)
-            found = replace(found, warnings=tuple(asked.warnings()))
+            found = _bounded(replace(found, warnings=tuple(asked.warnings())), automaton, asked.evidence)
             yield replace(found, evidence=asked.evidence)
         if not guards:
             yield replace(found, pending=GUARDS)
             return
     found = replace(found, pending=COUNTING)
     yield found
-    yield replace(_counted(found, supervision, counting), pending=None)
+    found = _counted(found, supervision, counting)
+    if found.supervisor is not None and found.supervised_states is None and found.supervised_at_most is None:
+        found = _bounded(found, automaton, remembered_evidence(automaton))
+    yield replace(found, pending=None)
 
 
 def without_numbers(
@@ -121,8 +128,20 @@ def _counted(found: Analysis, supervision: Supervision, most: int) -> Analysis:
         if found.reachable_states is None:
             found = replace(found, reachable_states=count(whole.reachable(supervised=False, effort=effort)))
         if found.supervisor is not None:
-            found = replace(found, supervised_states=count(whole.reachable(supervised=True, effort=effort)))
+            found = replace(
+                found, supervised_at_most=None, supervised_states=count(whole.reachable(supervised=True, effort=effort))
+            )
     return found
+
+
+def _bounded(found: Analysis, automaton: Automaton, evidence: Evidence | None) -> Analysis:
+    """With what `evidence` of this very automaton says of how many states are reached, where that is not known."""
+    if found.supervised_states is not None or evidence is None or evidence.automaton != automaton:
+        return found
+    if (reached := evidence.reached.get(True)) is None:
+        return found
+    others = (each for name, each in automaton.variables.items() if name not in reached.names)
+    return replace(found, supervised_at_most=reached.count * prod(len(each.type.domain) for each in others))
 
 
 def _of_all_variables(supervision: Supervision) -> Supervision:

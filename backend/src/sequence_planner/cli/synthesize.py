@@ -26,9 +26,9 @@ def synthesize(
     """Compute the supervisor of a model: how many states can be reached with and without it, and the guards it adds.
 
     Each guard is added to the one that is written; it holds for the states that can be reached. With --json: {model,
-    reachable_states, supervised_states, guards: {ability or event: condition}, origins: {...}, findings: [...]}; null
-    is what has not been computed, and a guard that only the states themselves say. The exit code is 1 when there are
-    findings.
+    reachable_states, supervised_states, supervised_at_most, guards: {ability or event: condition}, origins: {...},
+    findings: [...], unfinished}; null is what has not been computed, and a guard that only the states themselves say.
+    The exit code is 1 when there are findings.
     """
     limits = Limits(deadline, memory)
     automaton = usable_automaton(model)
@@ -48,6 +48,7 @@ def _document(automaton: Automaton, found: Found) -> dict[str, object]:
         "model": automaton.name,
         "reachable_states": document.reachable_states,
         "supervised_states": document.supervised_states,
+        "supervised_at_most": document.supervised_at_most,
         "guards": guards,
         "origins": None if document.guards is None else {n: g.model_dump() for n, g in document.guards.items()},
         "findings": None if document.findings is None else [each.model_dump() for each in document.findings],
@@ -86,9 +87,13 @@ def _lines(automaton: Automaton, found: Found) -> Iterator[str]:
 def _counts(document: AnalysisDocument) -> str:
     if document.supervised is False:
         return "there is no supervisor"
+    bound = document.supervised_at_most
+    limited = "" if bound is None else f", at most {bound} of them with the supervisor"
     if document.reachable_states is None and document.pending is None:
-        return "more states can be reached than could be counted"
+        return f"more states can be reached than could be counted{limited}"
     reachable = "? states" if document.reachable_states is None else counted(document.reachable_states, "state")
+    if bound is not None:
+        return f"{reachable} can be reached{limited}"
     supervised = "?" if document.supervised_states is None else f"{document.supervised_states}"
     return f"{reachable} can be reached, {supervised} of them with the supervisor"
 

@@ -55,6 +55,7 @@ _UNSUPERVISED = AnalysisDocument(
     supervised=False,
     reachable_states=None,
     supervised_states=None,
+    supervised_at_most=None,
     guarded=None,
     guards=None,
     findings=[],

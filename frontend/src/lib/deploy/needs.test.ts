@@ -8,6 +8,7 @@ const UNMET: StationView['analysis'] = {
 	supervised: false,
 	reachable_states: null,
 	supervised_states: null,
+	supervised_at_most: null,
 	guarded: null,
 	guards: null,
 	findings: []

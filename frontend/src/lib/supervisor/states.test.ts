@@ -7,6 +7,7 @@ const NOTHING: Analysis = {
 	supervised: null,
 	reachable_states: null,
 	supervised_states: null,
+	supervised_at_most: null,
 	guarded: null,
 	guards: null,
 	findings: null
@@ -27,6 +28,9 @@ test('the states are told as far as they are known', () => {
 	expect(statesText({ ...NOTHING, supervised: true, reachable_states: 180 })).toBe('180 states can be reached.');
 	const all = { ...NOTHING, pending: null, supervised: true, reachable_states: 180, supervised_states: 148 };
 	expect(statesText(all)).toBe('180 states can be reached, 148 of them with the supervisor.');
+	expect(statesText({ ...NOTHING, supervised: true, supervised_at_most: 22_512 })).toBe(
+		'At most 22\u202f512 states can be reached with the supervisor.'
+	);
 	expect(statesText({ ...NOTHING, supervised: false, reachable_states: 180 })).toBe(
 		'There is no supervisor, so nothing is started.'
 	);

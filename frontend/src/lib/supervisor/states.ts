@@ -11,10 +11,11 @@ export function countText(states: number): string {
 
 /** What is known of the states by now; nothing before anything is. */
 export function statesText(analysis: Analysis): string {
-	const { supervised, reachable_states: reachable, supervised_states: allowed } = analysis;
+	const { supervised, reachable_states: reachable, supervised_states: allowed, supervised_at_most: most } = analysis;
 	if (supervised === false) return say().operate.supervisor.none;
-	if (reachable === null) return '';
-	const { reached, supervised: some } = say().operate.supervisor;
+	const { reached, supervised: some, atMost } = say().operate.supervisor;
+	const limit = most === null ? '' : `${atMost(countText(most))}.`;
+	if (reachable === null) return limit;
 	const all = reached(countText(reachable), reachable === 1);
-	return allowed === null ? `${all}.` : `${all}, ${some(countText(allowed))}.`;
+	return allowed === null ? `${all}. ${limit}`.trim() : `${all}, ${some(countText(allowed))}.`;
 }

@@ -7,6 +7,7 @@ const ANALYSIS: NonNullable<ModelCheck['analysis']> = {
 	supervised: true,
 	reachable_states: null,
 	supervised_states: null,
+	supervised_at_most: null,
 	guarded: null,
 	guards: {},
 	findings: null

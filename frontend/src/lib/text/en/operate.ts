@@ -192,6 +192,7 @@ export const operate = {
 		about: (number: string): string => `about ${number}`,
 		reached: (number: string, one: boolean): string => `${number} ${one ? 'state' : 'states'} can be reached`,
 		supervised: (number: string): string => `${number} of them with the supervisor`,
+		atMost: (number: string): string => `At most ${number} states can be reached with the supervisor`,
 		fromBeginning: 'It is so from the beginning',
 		howItComes: (n: number): string => `How it comes about, in ${n} ${n === 1 ? 'step' : 'steps'}`,
 		kind: { tick: 'Tick', start: 'Start', activity: 'Operation', transition: 'Step' } as Readonly<Record<string, string>>,

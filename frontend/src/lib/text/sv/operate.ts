@@ -191,6 +191,7 @@ export const operate: Text['operate'] = {
 		about: (number) => `cirka ${number}`,
 		reached: (number) => `${number} tillstånd kan nås`,
 		supervised: (number) => `${number} av dem med övervakaren`,
+		atMost: (number) => `Högst ${number} tillstånd kan nås med övervakaren`,
 		fromBeginning: 'Det är så från början',
 		howItComes: (n) => `Hur det uppstår, i ${n} steg`,
 		kind: { tick: 'Tick', start: 'Start', activity: 'Operation', transition: 'Steg' },
