@@ -6,6 +6,7 @@ import asyncio
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from shutil import copytree
 
 import pytest
 
@@ -46,6 +47,13 @@ def test_the_deadline_is_that_of_everything_and_what_is_left_is_said() -> None:
     assert found.unfinished.startswith(
         "the safe states and finishes that conflict could not be computed within 0.001 s"
     )
+
+
+def test_a_model_that_cannot_be_read_in_time_is_one_of_which_nothing_was_found_out(tmp_path: Path) -> None:
+    """It may be usable, for all that is known."""
+    station = copytree(TRUCK.with_name("truck_engine_station"), tmp_path / "truck_engine_station")
+    late = f"{station}: it could not be read within 0.1 s: allow more with --deadline\n"
+    assert command("check", station, "--deadline", "0.1") == (1, "", late)
 
 
 def test_a_question_that_is_too_hard_ends_with_the_deadline(tmp_path: Path) -> None:

@@ -3,8 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from shutil import copytree
+
+import pytest
 
 from cli.commands import CELL, EXAMPLE, TRUCK, as_json, command, plain
+from sequence_planner.analysis.store import kept
+from sequence_planner.cli.loading import load_model
 
 
 def test_one_ability_and_its_effects() -> None:
@@ -86,6 +91,24 @@ uncontrollable ask
     set         user := waits
 """
     )
+
+
+def test_the_guard_of_one_ability_is_the_same_as_among_all(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    _, alone, _ = command("show", TRUCK, "operator.place_bolt_pair(bolt_pair_1)")
+    assert kept(load_model(TRUCK).automaton) is None  # nothing else was found out for it
+    _, everything, _ = command("show", TRUCK)
+    lines = [line for line in alone.splitlines() if "supervisor" in line or "because" in line]
+    assert len(lines) == 2
+    assert set(lines) <= set(everything.splitlines())
+
+
+def test_where_time_is_short_it_says_so(tmp_path: Path) -> None:
+    station = copytree(TRUCK.with_name("truck_engine_station"), tmp_path / "truck_engine_station")
+    code, out, err = command("show", station, "robot.move_to_position(HomeJOINTPose)", "--deadline", "0.1")
+    late = "the safe states could not be computed within 0.1 s: allow more with --deadline\n"
+    assert (code, "ability robot.move_to_position" in out) == (1, True)
+    assert err == f"the guards of the supervisor are not shown: {late}"
 
 
 def test_pipelines_are_shown_with_the_types_on_their_edges() -> None:

@@ -9,6 +9,7 @@ from math import prod
 
 from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis
 from sequence_planner.analysis.remembering import remembered_evidence
+from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.checks import Looked, conflicting, looked
 from sequence_planner.checking.connections import Connections
@@ -95,6 +96,21 @@ def without_numbers(
         yield found
         if found.pending == COUNTING:
             return
+
+
+def guards_of(automaton: Automaton, names: frozenset[str], known: Supervisor | None = None) -> Iterator[Analysis]:
+    """The guards that the supervisor, which may be `known`, adds to the abilities of these names, and nothing else."""
+    found = Analysis("the safe states")
+    yield found
+    supervision = Supervision(Plant(automaton, relevant(automaton)), None if known is None else known.safe)
+    if not supervision.possible:
+        yield replace(found, pending=None, warnings=(_unmet(supervision),))
+        return
+    found = replace(found, pending=GUARDS, supervisor=known or supervisor(supervision))
+    yield found
+    restrictions = Restrictions(supervision)
+    wanted = [name for name, starts in restrictions.starts.items() if not names.isdisjoint(starts)]
+    yield replace(found, pending=None, guards={name: restrictions.guard(name) for name in wanted})
 
 
 def everything(

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from sequence_planner.analysis.analysis import COUNTING, GUARDS, Analysis
+from sequence_planner.analysis.analysis import COUNTING, FINDINGS, GUARDS, Analysis
 from sequence_planner.analysis.document import (
     AnalysisDocument,
     document_of,
@@ -31,7 +31,8 @@ from sequence_planner.analysis.store import Kept, keep, kept
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.cli.loading import usable_automaton
-from sequence_planner.cli.options import FINDINGS, refuse
+from sequence_planner.cli.options import FINDINGS as FOUND
+from sequence_planner.cli.options import refuse
 from sequence_planner.memory_limit import USUAL
 
 if TYPE_CHECKING:  # what is kept from before is shown without them
@@ -91,6 +92,22 @@ def analysed(automaton: Automaton, limits: Limits, counts: bool = False) -> Foun
     return _found(automaton, limits, _Hearing(work, unwanted), far=counts)
 
 
+def guarded(automaton: Automaton, names: frozenset[str], limits: Limits) -> Found:
+    """The guards that the supervisor adds to the abilities of these names, found within `limits`, if not kept."""
+    known = _kept(automaton, {COUNTING})
+    if known is not None:
+        return known
+    from sequence_planner.analysis.finding import guards_of  # noqa: PLC0415
+
+    supervisor = known_supervisor(automaton)
+    hearing = _Hearing((guards_of, automaton, names, supervisor), {COUNTING})
+    unfinished = hearing.hear(limits)
+    found = hearing.analysis
+    if supervisor is None and found.supervisor is not None:
+        remember_supervisor(automaton, found.supervisor)
+    return Found(document_of(automaton, found), found.supervisor, unfinished)
+
+
 def checked(automaton: Automaton, connections: Connections | None, limits: Limits) -> Found:
     """What synthesis and all checks find within `limits`; `connections` are those of a station to its topics."""
     from sequence_planner.analysis.finding import everything  # noqa: PLC0415
@@ -146,9 +163,9 @@ def supervisor_of(automaton: Automaton, limits: Limits | None = None) -> Supervi
             remember_supervisor(automaton, found)
     except TimeoutError:
         late = f"the safe states could not be computed within {limits.deadline:g} s"
-        refuse(f"{late}: allow more with --deadline, or let fewer variables bear on them", FINDINGS)
+        refuse(f"{late}: allow more with --deadline, or let fewer variables bear on them", FOUND)
     except SynthesisEndedError as ended:
-        refuse(f"the safe states could not be computed: {ended}", FINDINGS)
+        refuse(f"the safe states could not be computed: {ended}", FOUND)
     assert isinstance(found, Supervisor)
     return found
 
@@ -159,7 +176,7 @@ def read_within(path: Path, limits: Limits) -> Automaton:
         with within(limits.left):
             return usable_automaton(path)
     except TimeoutError:
-        refuse(f"{path}: it could not be read within {limits.deadline:g} s: allow more with --deadline", FINDINGS)
+        refuse(f"{path}: it could not be read within {limits.deadline:g} s: allow more with --deadline", FOUND)
 
 
 @contextmanager
@@ -204,7 +221,7 @@ class _Hearing:
                 self._take(word)
                 self._tell(time.monotonic() - limits.began)
         except TimeoutError:
-            return f"{self._left()} could not be computed within {limits.deadline:g} s: allow more with --deadline"
+            return f"{self._left()} could not be computed within {limits.deadline:g} s: {self._advice()}"
         except SynthesisEndedError as ended:
             return f"{self._left()} could not be computed: {ended}"
         return None
@@ -218,8 +235,14 @@ class _Hearing:
 
     def _left(self) -> str:
         """What has not been found."""
-        left = [self._pending or self.analysis.pending, self.analysis.pending, self.after]
+        pending = self.analysis.pending
+        left = [self._pending or pending, pending, GUARDS if pending == FINDINGS else None, self.after]
         return " and ".join(dict.fromkeys(each for each in left if each is not None and each not in self.unwanted))
+
+    def _advice(self) -> str:
+        if self._pending == COUNTING:
+            return "allow ten more with --deadline; if that is not enough either, there are too many to be counted"
+        return "allow more with --deadline"
 
     def _tell(self, seconds: float) -> None:
         if sys.stderr.isatty() and seconds > _QUIET and self._pending is not None:

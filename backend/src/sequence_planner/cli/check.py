@@ -119,7 +119,7 @@ def check_model(path: Path, limits: Limits, *, emulator: bool = False) -> Checke
             if wrong:
                 raise ModelError(wrong)
     except TimeoutError:
-        refuse(f"{path}: it could not be read within {limits.deadline:g} s: allow more with --deadline")
+        refuse(f"{path}: it could not be read within {limits.deadline:g} s: allow more with --deadline", FINDINGS)
     automaton = model.automaton
     found = checked(automaton, model.connections, limits)
     warnings = [*found.suspicious, *([] if station is None else station.suspicions())]

@@ -10,10 +10,10 @@ import typer
 
 from sequence_planner.analysis.document import GuardDocument
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, Kind, Operation, VariableDeclaration
-from sequence_planner.cli.analysing import Deadline, Limits, analysed
+from sequence_planner.cli.analysing import Deadline, Limits, analysed, guarded
 from sequence_planner.cli.describing import described_automaton, guard_lines
 from sequence_planner.cli.loading import Model, usable_automaton, usable_model
-from sequence_planner.cli.options import USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
+from sequence_planner.cli.options import FINDINGS, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.cli.pipelines import chosen, pipeline_lines
 from sequence_planner.control.pipeline_graph import pipelines_view
 from sequence_planner.expressions.printing import print_assignment, print_expression, print_value
@@ -41,6 +41,7 @@ def show(
 
     A NAME shows what bears it and what begins with it: `robot` is all of the robot, `robot.move` all its instances.
     The guard that the supervisor adds to a start stands apart from those that are written, with where it comes from.
+    The exit code is 1 when these could not be found out in the time or memory there is.
     With --json also the transitions of each phase of the tick, with what they read and write.
     With --pipelines instead the typed graph of each topic and flow, of which a NAME is also one: the fields on each
     edge, where a stage adds or changes some, and what becomes of them.
@@ -55,11 +56,13 @@ def show(
     for name in wanted:
         if not any(_bears(each, name) for each in known):
             refuse(f"{model}: there is nothing called `{name}`{suggestion(name, known)}")
-    guards = _guards(automaton, wanted, limits)
+    guards, unfinished = _guards(automaton, wanted, limits)
     if json:
         print_json(described_automaton(automaton, guards, lambda name: _chosen(name, wanted)))
-        return
-    typer.echo("\n".join(_lines(automaton, guards, wanted)).strip("\n"))
+    else:
+        typer.echo("\n".join(_lines(automaton, guards, wanted)).strip("\n"))
+    if unfinished:
+        raise typer.Exit(FINDINGS)
 
 
 def _show_pipelines(path: Path, model: Model, wanted: list[str], json: bool) -> None:
@@ -77,18 +80,18 @@ def _show_pipelines(path: Path, model: Model, wanted: list[str], json: bool) -> 
         typer.echo("\n".join(pipeline_lines(view)))
 
 
-def _guards(automaton: Automaton, wanted: list[str], limits: Limits) -> Guards:
-    """The guard that the supervisor adds to each ability, if any of them are to be shown."""
-    if not automaton.specifications and automaton.rest is None:
-        return {}
-    if not any(_chosen(name, wanted) for name in automaton.abilities):
-        return {}
-    found = analysed(automaton, limits)
+def _guards(automaton: Automaton, wanted: list[str], limits: Limits) -> tuple[Guards, bool]:
+    """The guard that the supervisor adds to each ability that is to be shown, and whether time or memory were short."""
+    shown = frozenset(name for name in automaton.abilities if _chosen(name, wanted))
+    if not shown or (not automaton.specifications and automaton.rest is None):
+        return {}, False
+    found = guarded(automaton, shown, limits) if wanted else analysed(automaton, limits)
     if found.document.supervised is False:
         typer.echo("there is no supervisor: `check` says why", err=True)
     elif found.document.guards is None:
         typer.echo(f"the guards of the supervisor are not shown: {found.unfinished}", err=True)
-    return {start: guard for guard in (found.document.guards or {}).values() for start in guard.starts}
+    guards = {start: guard for guard in (found.document.guards or {}).values() for start in guard.starts}
+    return guards, found.unfinished is not None
 
 
 def _names(automaton: Automaton) -> list[str]:
