@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
 
@@ -26,8 +27,31 @@ def test_warnings() -> None:
         "`ignore` if a message has it [never-read]\n"
         f"{CELL}/station.yaml:8:3: warning: no ability writes `parts`: it stays `empty`. Write the action that is "
         "missing, or leave it out [never-written]\n"
+        "3 findings: 2 never-read, 1 never-written\n"
         "cell: 6 variables, 2 abilities, 2 operations; the supervisor guards 0 abilities\n"
     )
+
+
+def test_of_a_long_run_its_length_is_told_and_all_of_it_where_it_is_asked_for(tmp_path: Path) -> None:
+    """The devices count to twenty by themselves, and what may not be comes at the end."""
+    document = {
+        "name": "clock",
+        "variables": {"n": {"min": 0, "max": 20}},
+        "initial": "n == 0",
+        "transitions": [{"event": "ticks", "controllable": False, "guard": "n < 20", "set": {"n": "n + 1"}}],
+        "forbidden": ["n == 20"],
+    }
+    file = tmp_path / "clock.efa.json"
+    file.write_text(json.dumps(document), encoding="utf-8")
+    code, out, _ = command("check", file)
+    warning, run, counts, summary = out.splitlines()
+    assert (code, run) == (1, "  a run of 20 steps shows it, which `check --runs` prints")
+    assert counts == "1 finding: 1 specification-cannot-be-met"
+    _, out, _ = command("check", file, "--runs")
+    first, *steps, last, end = out.splitlines()
+    assert (first, last, end) == (warning, counts, summary)
+    assert [step.partition(":")[0] for step in steps] == [f"  step {number}" for number in range(1, 21)]
+    assert steps[-1].endswith("which forbidden_1 forbids")
 
 
 def test_one_of_each_is_told_as_one(tmp_path: Path) -> None:

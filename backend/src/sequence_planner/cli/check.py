@@ -12,7 +12,7 @@ from sequence_planner.analysis.document import Document, FindingDocument, error_
 from sequence_planner.analysis.read_before import content_key
 from sequence_planner.analysis.remembering import cache, read, write
 from sequence_planner.cli.analysing import USUAL_DEADLINE, Deadline, Found, Limits, checked, within
-from sequence_planner.cli.findings import finding_lines
+from sequence_planner.cli.findings import counts_line, finding_lines
 from sequence_planner.cli.loading import Model, load_model
 from sequence_planner.cli.options import FINDINGS, UNUSABLE, USUAL_MEMORY, AnyModel, AsJson, Memory, print_json, refuse
 from sequence_planner.counting import counted
@@ -47,6 +47,9 @@ def check(
     emulator: Annotated[
         bool, typer.Option("--emulator", help="Emulated devices must be possible, as for `run --emulator`.")
     ] = False,
+    runs: Annotated[
+        bool, typer.Option("--runs", help="Print also long runs that show something, step by step.")
+    ] = False,
     json: AsJson = False,
 ) -> None:
     """Check a model: its documents, its pipelines, that its specifications can be met, and what is suspicious in it.
@@ -54,7 +57,8 @@ def check(
     The examples of the pipelines are carried out; one that fails is an error.
     Errors make a model unusable: they go to standard error, and the exit code is 2. Warnings, also that the
     specifications cannot be met, go to standard output, and the exit code is 1. Without either it is 0.
-    A trace shows how something comes about, step by step; it is indented below the warning.
+    A trace shows how something comes about, step by step; it is indented below the warning. Of one with more than ten
+    steps only their number is printed without --runs.
     With --json: {model, findings: [{severity, kind, file, line, column, message, trace}], summary}; a trace is
     {initial, forbidden_by, steps: [{kind, names, finished, changes, forbidden_by, text}]}, or null.
     """
@@ -64,7 +68,9 @@ def check(
         findings = [each.model_dump() for each in told.findings]
         print_json({"model": str(model), "findings": findings, "summary": told.summary})
     else:
-        typer.echo("\n".join([*(line for each in told.findings for line in finding_lines(each)), told.line]))
+        lines = [line for each in told.findings for line in finding_lines(each, runs)]
+        counts = [counts_line(told.findings)] if told.findings else []
+        typer.echo("\n".join([*lines, *counts, told.line]))
     if told.findings:
         raise typer.Exit(FINDINGS)
 
