@@ -15,6 +15,7 @@ from core.choices import Choices, made_by
 from core.random_expressions import equality
 from core.replaying import replay
 from sequence_planner.analysis.finding import without_numbers
+from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking import far_inquiry
 from sequence_planner.checking.evidence import Evidence
@@ -29,7 +30,7 @@ from sequence_planner.synthesis.approximation import around, composed
 from sequence_planner.synthesis.effort import Effort
 from sequence_planner.synthesis.plant import Plant, together
 from sequence_planner.synthesis.saturation import reachable, reaching
-from sequence_planner.synthesis.supervision import Supervision, SynthesisError, supervised, supervisor
+from sequence_planner.synthesis.supervision import Supervision, SynthesisError, alike, supervised, supervisor
 
 
 def asked(made: Automaton, known: Evidence | None = None) -> FarAnswers:
@@ -150,6 +151,18 @@ def test_after_an_edit_no_step_leads_out_of_a_trap_and_ways_lead_on(versions: li
             assert not (states & within & ~reaching(inquiry.diagrams, target & within, steps, within)).satisfiable()
 
 
+@examples(80)
+@given(made_by(with_edits))
+def test_what_is_alike_has_the_same_safe_states(versions: list[Automaton]) -> None:
+    made, *others = versions
+    untold = replace(made, operations={}, title="another")
+    assert alike(made, untold)
+    sets = [Supervision(Plant(each, tuple(made.variables))) for each in (made, untold, *others)]
+    safe = [each.plant.diagrams.exported(each.safe) for each in sets]
+    for other, states in zip((untold, *others), safe[1:], strict=True):
+        assert not alike(made, other) or states == safe[0]
+
+
 def proven(made: Automaton) -> Evidence:
     """What leads to the goal of each operation, and what does not."""
     inquiry = FarInquiry(about(made), Effort(1 << 30), tuple(made.variables))
@@ -159,7 +172,7 @@ def proven(made: Automaton) -> Evidence:
         leading = reaching(inquiry.diagrams, goal & within, steps, within)
         inquiry.ways.append((goal, leading))
         inquiry.traps.append(within & ~leading)
-    return inquiry.evidence()
+    return inquiry.evidence(Supervisor(inquiry.diagrams.exported(inquiry.safe), {}))
 
 
 def about(made: Automaton) -> Questions:

@@ -20,7 +20,7 @@ from sequence_planner.checking.warning import ModelWarning, place
 from sequence_planner.synthesis.effort import Effort, TooMuchError
 from sequence_planner.synthesis.guards import Restrictions
 from sequence_planner.synthesis.plant import Plant
-from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor
+from sequence_planner.synthesis.supervision import Supervision, alike, relevant, supervisor
 from sequence_planner.synthesis.unmeetable import why_unmeetable
 
 FAR = "the findings that too many states bear on"
@@ -44,13 +44,14 @@ def analyses(
     """
     found = Analysis("the safe states")
     yield found
-    supervision = Supervision(Plant(automaton, relevant(automaton)))
+    known = evidence.supervisor if evidence is not None and alike(evidence.automaton, automaton) else None
+    supervision = Supervision(Plant(automaton, relevant(automaton)), None if known is None else known.safe)
     if not supervision.possible:
         found = replace(found, pending="why they are none")
         yield found
         found = replace(found, warnings=(_unmet(supervision),))
     else:
-        found = replace(found, supervisor=supervisor(supervision), pending=FINDINGS)
+        found = replace(found, supervisor=known or supervisor(supervision), pending=FINDINGS)
         yield found
         found = _counted(found, supervision, min(counting, _SOON))
         yield found

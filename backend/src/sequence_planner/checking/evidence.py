@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property, reduce
 from operator import or_
 
-from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.checking.runs import KeptStep
 from sequence_planner.synthesis.diagrams import Function
@@ -29,7 +29,7 @@ _MOST_OF_TRAP = 1_000_000  # the same for what it adds to a trap
 
 @dataclass(frozen=True)
 class Evidence:
-    """What was found of `automaton`, over the variables of `order`.
+    """What was found of `automaton` under its `supervisor`, over the variables of `order`.
 
     `reached` has at least what is reached with the supervisor (True) and without, as found with parts of so large a
     `level`. `ways` are states, and more from which some of these can be reached within the former set without faults.
@@ -37,6 +37,7 @@ class Evidence:
     """
 
     automaton: Automaton
+    supervisor: Supervisor
     order: tuple[str, ...]
     reached: Mapping[bool, StateSet]
     level: Mapping[bool, int]

@@ -54,20 +54,23 @@ def from_afar(
     asked = Questions(automaton, [each for subject in subjects for each in subject.expressions], safe)
     work = partial(_work, automaton, supervisor, planning)
     if known is not None:
-        again = _answers(automaton, subjects, partial(_resumed, asked, work, known))
+        again = _answers(asked, subjects, supervisor, partial(_resumed, asked, work, known))
         if not any(each.kind == UNKNOWN for each in again.findings):
             return again
-    return _answers(automaton, subjects, partial(_anew, asked, work))
+    return _answers(asked, subjects, supervisor, partial(_anew, asked, work))
 
 
 def _answers(
-    automaton: Automaton, subjects: Sequence[Subject], begin: Callable[[Effort], FarInquiry | None]
+    asked: Questions,
+    subjects: Sequence[Subject],
+    supervisor: Supervisor,
+    begin: Callable[[Effort], FarInquiry | None],
 ) -> FarAnswers:
     whole = Effort(MOST_EFFORT)
     inquiry = begin(whole)
     if inquiry is None:
         return FarAnswers([Finding(UNKNOWN, subject, "") for subject in subjects], None)
-    possibility = Possibility(automaton, inquiry)
+    possibility = Possibility(asked.automaton, inquiry)
     found: list[Finding] = []
     for subject in subjects:
         inquiry.effort = Effort(MOST_FOR_EACH, whole=whole)
@@ -75,7 +78,7 @@ def _answers(
             found += list(possibility.findings(subject))
         except TooMuchError:
             found.append(Finding(UNKNOWN, subject, ""))
-    return FarAnswers(found, inquiry.evidence())
+    return FarAnswers(found, inquiry.evidence(supervisor))
 
 
 _Work = Callable[[], tuple[PlanTick, ...]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 
-from sequence_planner.automaton.state_set import StateSet
+from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.checking.evidence import Again, Evidence, grown, joining
 from sequence_planner.checking.inquiry import Inquiry, Questions
 from sequence_planner.checking.runs import Runs
@@ -62,11 +62,12 @@ class FarInquiry(Inquiry):
         self._added = again.added(self.perhaps_reached())
         return self._runs.recall(known.runs)
 
-    def evidence(self) -> Evidence:
-        """What its answers rest on."""
+    def evidence(self, supervisor: Supervisor) -> Evidence:
+        """What its answers under the `supervisor` rest on."""
         within = self.perhaps_reached()  # in the end; no step leads out of it, so what holds of more holds within it
         return Evidence(
             self.plant.automaton,
+            supervisor,
             self.diagrams.names,
             {supervised: self._exported(states) for supervised, states in self._more.items()},
             dict(self._level),

@@ -7,10 +7,11 @@ which a state of rest can be reached inside it, without faults and without resta
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 
 from sequence_planner.automaton.cone import cone_of_influence
 from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.structure import Automaton, Timeouts
 from sequence_planner.expressions.syntax import TRUE, Expression, conjunction, conjuncts, variables
 from sequence_planner.synthesis.diagrams import Function
 from sequence_planner.synthesis.effort import Effort
@@ -159,6 +160,29 @@ def separated(plant: Plant, yes: Function, no: Function, around: Iterable[frozen
             if not (some_yes & some_no).satisfiable():
                 yes, no = some_yes, some_no
     return min(yes, diagrams.valid_of(diagrams.support(no)) & ~no, ~no, key=lambda f: f.node_count())
+
+
+def alike(one: Automaton, other: Automaton) -> bool:
+    """Whether the safe states of both are the same for certain: they differ at most in what does not bear on these."""
+    return _bearing_on_safety(one) == _bearing_on_safety(other)
+
+
+def _bearing_on_safety(automaton: Automaton) -> Automaton:
+    """`automaton` without texts, times, and what it is to do: any operation may become active in any tick anyway."""
+    untimed = Timeouts()
+    return replace(
+        automaton,
+        title="",
+        description="",
+        resources={},
+        operations={},
+        work_masters={},
+        abilities={
+            name: replace(each, title="", timeouts=untimed, duration=None, human=None)
+            for name, each in automaton.abilities.items()
+        },
+        effects=tuple(replace(each, shortest=0.0, longest=0.0) for each in automaton.effects),
+    )
 
 
 def relevant(automaton: Automaton) -> tuple[str, ...]:
