@@ -31,6 +31,7 @@ HEAVY = (
     "web/test_stream.py",
     "web/test_watches.py",
     "analysis/test_process.py",
+    "checking/test_edited_station.py",
     "checking/test_speed.py",
     "core/test_race.py",
     "history/test_controller.py",

@@ -21,6 +21,7 @@ from sequence_planner.synthesis.traces import Trace
 
 _SOON = 3_000_000  # of all effort; for what takes longer, something else is tried first
 _LARGER = (20, 26)  # bits of larger parts, and of those after them
+_KEPT = 60  # ways, and traps, for the next edit: those that have served last
 _MOST_NEAR = 3  # states that are looked at one by one
 
 
@@ -72,8 +73,8 @@ class FarInquiry(Inquiry):
             {supervised: self._exported(states) for supervised, states in self._more.items()},
             dict(self._level),
             self._runs.kept(),
-            tuple((self._exported(target), self._exported(states & within)) for target, states in self.ways),
-            tuple(self._exported(trap & within) for trap in self.traps),
+            tuple((self._exported(target), self._exported(states & within)) for target, states in self.ways[-_KEPT:]),
+            tuple(self._exported(trap & within) for trap in self.traps[-_KEPT:]),
             tuple(map(self._exported, self._bounds)),
         )
 
@@ -151,6 +152,8 @@ class FarInquiry(Inquiry):
         left, known = active & within & ~goal, self._runs.known(supervised=True, faults=True)
         for trap in self.traps:
             if (trap & left & known).satisfiable() and not (trap & goal).satisfiable():
+                self.traps.remove(trap)
+                self.traps.append(trap)
                 return trap & left & known
         begin = self._known_to_lead(goal, within)
         if (left & ~begin).satisfiable():
