@@ -20,7 +20,7 @@ from sequence_planner.planning.engines import Engines
 from sequence_planner.planning.racing.race import Race
 
 ALONE_FOR = 2.0  # seconds of a question, and half of its time at most, until lanes are started for it
-PATIENCE = 2.0  # seconds an engine may take to come back from its turn; then this process ends
+PATIENCE = 5.0  # seconds an engine may take to come back from its turn, on a busy machine too; then this process ends
 RESTS_AFTER = 30.0  # seconds without such a question, after which the lanes end
 
 
