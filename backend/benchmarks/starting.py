@@ -4,7 +4,8 @@ Run with `make bench`. Each station runs as its users run it, as a demonstration
 its page is open and shows what its controller says, and ready when its safe states are known, too, and it may command
 its devices (`/readyz`), for which it listens for 1.5 s whether somebody else does: with nothing known of its model, and
 with all that an earlier run has found. How much of a core it takes at rest is measured before production is started,
-once nothing is looked for any more. Commands are measured as whole processes, the first time on a model and again.
+once nothing is looked for any more; at work, while it makes one engine, with devices as slow as real ones. Commands are
+measured as whole processes, the first time on a model and again.
 """
 
 from __future__ import annotations
@@ -25,16 +26,19 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from stations.at_work import Person
 from stations.processes import Process, station_processes
 
 STATIONS = Path(__file__).parents[2] / "models"
-NAMES = ("bolt_tightening", "truck_engine_station")
+MADE = {"bolt_tightening": "new_engine", "truck_engine_station": "release_engine"}  # what ends with an engine
 SMALL = "single_bolt"
 COMMANDS = ("plan", "show", "check")
 STARTS = 5
 AT_REST = 5  # processes, of a station of which all is known and nobody asks anything
 LONGEST = 400.0  # seconds until it is at rest
 LOOK = 30.0  # seconds for which it is looked what it takes
+LONGEST_WORK = 600.0  # seconds until an engine is made
+LOOK_EVERY = 1.0  # seconds, at work
 ASK_EVERY = 0.02  # seconds: who asks all the time takes a core from it
 PROGRAM = Path(sys.executable).with_name("sequence-planner")
 PATIENCE = 60.0
@@ -45,7 +49,7 @@ def main() -> None:
     os.environ["ROS_DOMAIN_ID"] = str(1 + (os.getpid() + 15) % 100)
     os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
     with tempfile.TemporaryDirectory() as folder:
-        for name in NAMES:
+        for name in MADE:
             station(name, Path(folder) / name)
         for command in COMMANDS:
             small(command, Path(folder) / command)
@@ -57,20 +61,21 @@ def station(name: str, cache: Path) -> None:
     cold = []
     for _ in range(STARTS):
         shutil.rmtree(cache, ignore_errors=True)
-        with started(name, cache) as (_, start):
+        with started(name, cache) as (_, _, start):
             cold.append(start)
     print(f"  {told(cold)}, with nothing known")
     shutil.rmtree(cache, ignore_errors=True)
-    with started(name, cache) as (launcher, _):
+    with started(name, cache) as (launcher, port, _):
         before = time.monotonic()
         at_rest(launcher)
         print(
             f"  all is found {time.monotonic() - before:.0f} s later, with {used(launcher):.1f} s of a processor in all"
         )
         look(launcher)
+        work(launcher, port, MADE[name])
     known = []
     for _ in range(STARTS):
-        with started(name, cache) as (_, start):
+        with started(name, cache) as (_, _, start):
             known.append(start)
     print(f"  {told(known)}, with all known", flush=True)
 
@@ -120,6 +125,34 @@ def look(launcher: int) -> None:
         print(f"    {shares[each.number]:6.1%} {memory[each.number]:4.0f} MB  {called(each)}", flush=True)
 
 
+def work(launcher: int, port: int, made: str) -> None:
+    """Print what a station takes while it makes one engine, and each of its processes, with the most memory it had."""
+    person = Person(port)
+    person.begin()
+    before = {each.number: each.seconds for each in station_processes(launcher)}
+    began, looks = time.monotonic(), list[tuple[int, float]]()  # how many processes, and their memory
+    found: dict[int, tuple[Process, float]] = {}
+    while person.completed(made) == 0 and time.monotonic() - began < LONGEST_WORK:
+        person.acknowledge()
+        if time.monotonic() - began < len(looks) * LOOK_EVERY:
+            continue
+        with contextlib.suppress(OSError):  # one of them has ended just now
+            now = {each: each.megabytes for each in station_processes(launcher)}
+            looks.append((len(now), sum(now.values())))
+            for each, memory in now.items():
+                found[each.number] = each, max(memory, found[each.number][1] if each.number in found else 0.0)
+    took = time.monotonic() - began
+    person.leave()
+    shares = {number: (each.seconds - before.get(number, 0.0)) / took for number, (each, _) in found.items()}
+    counts, memories = zip(*looks, strict=True)
+    print(
+        f"  at work for {took:.0f} s {sum(shares.values()):.1%} of a core, {statistics.median(memories):.0f} MB "
+        f"({max(memories):.0f} at most) in {statistics.median(counts):.0f} processes ({max(counts)} at most)"
+    )
+    for number, (each, memory) in found.items():
+        print(f"    {shares[number]:6.1%} {memory:4.0f} MB  {called(each)}", flush=True)
+
+
 def called(process: Process) -> str:
     """What a process is called: its command, or its title."""
     for name in ("run", "controller", "server", "emulate"):
@@ -154,8 +187,8 @@ def taken(command: str, cache: Path) -> tuple[float, float]:
 
 
 @contextmanager
-def started(name: str, cache: Path) -> Iterator[tuple[int, Start]]:
-    """A station that is ready: the number of its launcher, and what it took."""
+def started(name: str, cache: Path) -> Iterator[tuple[int, int, Start]]:
+    """A station that is ready: the number of its launcher, its port, and what it took."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         port = probe.getsockname()[1]
@@ -172,7 +205,7 @@ def started(name: str, cache: Path) -> Iterator[tuple[int, Start]]:
         return time.perf_counter() - began, used(launcher.pid)
 
     try:
-        yield launcher.pid, Start(heard=when("/healthz"), ready=when("/readyz"))
+        yield launcher.pid, port, Start(heard=when("/healthz"), ready=when("/readyz"))
     finally:
         launcher.terminate()
         launcher.wait(PATIENCE)

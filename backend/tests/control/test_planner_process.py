@@ -10,10 +10,12 @@ import subprocess
 import sys
 import threading
 import time
-from collections.abc import Awaitable, Callable
+from collections.abc import Awaitable, Callable, Iterator
 from dataclasses import dataclass, field
 from functools import partial
+from multiprocessing.connection import Connection
 from pathlib import Path
+from queue import SimpleQueue
 
 import pytest
 
@@ -25,10 +27,11 @@ from sequence_planner.expressions.syntax import Variable
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.forking.child import Child
 from sequence_planner.forking.starting import children
+from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.engines import LANES
 from sequence_planner.planning.plan import Circumstances, Goal, PlanAnswer, PlanRequest, Verdict, goals_of
 from sequence_planner.planning.questions import Answer
-from sequence_planner.planning.racing.companion import Companion, Ended, Word
+from sequence_planner.planning.racing.companion import Companion, Ended, Question, Ready, Word, stand_by
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest, correction_text, member_text
 from sequence_planner.planning.worker import work
 
@@ -232,13 +235,38 @@ def test_a_question_that_is_called_off_is_not_answered_and_the_next_one_is() -> 
     run(scenario)
 
 
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="only Linux says which process started which")
+def test_after_one_that_has_died_over_a_question_engines_are_in_processes_of_their_own() -> None:
+    async def scenario(asking: Asking) -> None:
+        asking.ask()
+        await until(lambda: bool(asking.answers))
+        (first,) = processes()
+        assert first.pid is not None
+        os.kill(first.pid, signal.SIGSTOP)
+        asking.ask()
+        first.kill()
+        await until(lambda: bool(asking.failures))
+        assert asking.failures == [("the planner has ended and is started again", True)]
+        await until(lambda: not asking.planner.busy)
+        asking.ask()
+        await until(lambda: len(asking.answers) == 2)
+        (cautious,) = processes()
+        assert cautious.pid != first.pid
+        titles = set(map(title, descendants(os.getpid())))
+        assert {f"sequence-planner: planner {lane.name}" for lane in LANES} <= titles
+
+    run(scenario)
+
+
 # The process of a planner that is asked something, and all that it has started, as its parent sees them.
 PARENT = f"""
 import signal, threading, time
 from pathlib import Path
-from sequence_planner.planning.racing.companion import Companion
+from sequence_planner.automaton.tick import initial_state
+from sequence_planner.planning.plan import PlanRequest, goals_of
+from sequence_planner.planning.racing.companion import Answered, Companion, Question
 from sequence_planner.planning.reasons.diagnoser import Model
-from sequence_planner.planning.worker import work
+from sequence_planner.planning.worker import Planning, work
 from sequence_planner.station import prepare_station
 from sequence_planner.synthesis.fewer import FewerSpecifications
 from sequence_planner.synthesis.supervision import synthesise
@@ -247,9 +275,12 @@ if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
     automaton = prepare_station(Path({str(CELL)!r})).automaton
     ready = threading.Event()
+    hear = lambda word: ready.set() if isinstance(word, Answered) else None
     supervisor = synthesise(automaton)
     model = Model(automaton, supervisor, FewerSpecifications(automaton, supervisor))
-    planner = Companion(work, model, lambda word: ready.set(), "planner")
+    planner = Companion(work, Planning(model, cautious=True), hear, "planner")
+    request = PlanRequest(dict(initial_state(automaton)), goals_of(automaton, ("fetch(left)",)))
+    planner.ask(Question(1, 30.0, request))
     ready.wait()
     print("ready", flush=True)
     time.sleep(60)
@@ -272,6 +303,11 @@ def descendants(pid: int) -> set[int]:
     return found
 
 
+def title(pid: int) -> str:
+    """What `ps` shows of a process."""
+    return Path(f"/proc/{pid}/cmdline").read_text().strip("\0 ")
+
+
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="only Linux says which process started which")
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_nothing_is_left_of_it_when_its_parent_is_killed(how: signal.Signals) -> None:
@@ -285,6 +321,26 @@ def test_nothing_is_left_of_it_when_its_parent_is_killed(how: signal.Signals) ->
     while any(Path(f"/proc/{pid}").exists() for pid in left):
         assert time.monotonic() < end, "it has not ended"
         time.sleep(0.05)
+
+
+def forgetful(connection: Connection) -> None:
+    """The life of a process that has no memory left for any answer."""
+
+    def prepare(model: object) -> Callable[[object, Budget], Iterator[object]]:
+        def answer(content: object, budget: Budget) -> Iterator[object]:
+            raise MemoryError
+
+        return answer
+
+    stand_by(connection, prepare)
+
+
+def test_without_memory_it_ends_and_the_question_may_be_asked_of_another_one() -> None:
+    heard: SimpleQueue[Word] = SimpleQueue()
+    process: Companion[str, str] = Companion(forgetful, "nothing", heard.put, "planner")
+    process.ask(Question(1, 5.0, "what comes next?"))
+    assert [type(heard.get(timeout=30)) for _ in range(2)] == [Ready, Ended]
+    process.close()
 
 
 def test_a_word_that_cannot_be_sent_ends_the_process_so_that_nobody_waits_for_ever() -> None:

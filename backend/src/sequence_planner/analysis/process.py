@@ -24,7 +24,9 @@ from sequence_planner.memory_limit import LOOK, MemoryLimit, memory_limit
 if TYPE_CHECKING:  # a command that asks for less has no need of all that finds it
     from sequence_planner.analysis.analysis import Analysis
 
-_NICENESS = 5  # ticks come first
+# After ticks and the page, beside plans, and before all that is done in the background (10 and more): a station does
+# nothing without its safe states. A command has no ticks, but a station may be at work on the same machine.
+_NICENESS = 5
 
 Word = TypeVar("Word")
 

@@ -55,13 +55,15 @@ class Listener(Generic[Request, Answer]):
 class Work(Generic[Model, Request]):
     """What the process does: it is called `name` and lives `serve`, beginning with `model`.
 
-    A request over which it has died is asked `again` where that is said.
+    A request over which it has died is asked `again` where that is said, and the next one begins with `cautious`, if
+    that is another model.
     """
 
     name: str
     serve: Callable[[Connection], None]
     model: Model
     again: Callable[[Request], bool]
+    cautious: Model | None = None
 
 
 class AnsweringProcess(Generic[Model, Request, Answer]):
@@ -147,7 +149,8 @@ class AnsweringProcess(Generic[Model, Request, Answer]):
         try:
             hear = partial(self._tell, self._generation)
             work = self._work
-            self._companion = Companion(work.serve, work.model, hear, work.name)
+            model = work.model if work.cautious is None or not self._owes else work.cautious
+            self._companion = Companion(work.serve, model, hear, work.name)
         except OSError as error:
             self._timer = self._loop.call_soon(self._replace, f"cannot be started ({error})")
             return

@@ -11,20 +11,21 @@ from sequence_planner.control.answering_process import Listener as AnyListener
 from sequence_planner.planning.plan import PlanRequest
 from sequence_planner.planning.questions import Answer, Request
 from sequence_planner.planning.reasons.diagnoser import Model
-from sequence_planner.planning.worker import work
+from sequence_planner.planning.worker import Planning, work
 from sequence_planner.synthesis.fewer import FewerSpecifications
 
 Listener = AnyListener[Request, Answer]
 
 
-class PlannerProcess(AnsweringProcess[Model, Request, Answer]):
+class PlannerProcess(AnsweringProcess[Planning, Request, Answer]):
     """Asks a planner in another process. Used from one event loop."""
 
     def __init__(
         self, automaton: Automaton, supervisor: Supervisor, loop: asyncio.AbstractEventLoop, listener: Listener
     ) -> None:
         model = Model(automaton, supervisor, FewerSpecifications(automaton, supervisor))
-        super().__init__(Work("planner", work, model, _again), loop, listener)
+        serving = Work("planner", work, Planning(model), _again, Planning(model, cautious=True))
+        super().__init__(serving, loop, listener)
 
 
 def _again(request: Request) -> bool:

@@ -131,6 +131,8 @@ ALONE = Lane(
             "pdr",
         ),
     },
+    fast_first_turns={"goal by goal": 0.12, "projection": 0.05},  # what they find soon they find by then
+    by_work=True,
 )
 
 

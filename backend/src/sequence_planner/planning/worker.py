@@ -1,21 +1,31 @@
-"""The planner in a process of its own: requests in, answers out. It, and its lanes with it, can be killed any time."""
+"""The planner in a process of its own: requests in, answers out. It, and lanes with it, can be killed any time."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from multiprocessing.connection import Connection
 
+from sequence_planner.immutable import Immutable
 from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engines import ALONE, Engines
 from sequence_planner.planning.plan import PlanRequest, WayBackRequest
 from sequence_planner.planning.planner import Planner, PlannerError
 from sequence_planner.planning.questions import Answer, Request
 from sequence_planner.planning.racing.companion import stand_by
-from sequence_planner.planning.racing.race import Race
+from sequence_planner.planning.racing.escalation import Escalation
+from sequence_planner.planning.racing.lane import stand_back
+from sequence_planner.planning.racing.race import MEMORY, Race
 from sequence_planner.planning.reasons.diagnoser import Diagnoser, Model
 from sequence_planner.planning.reasons.diagnosis import DiagnosisRequest
 from sequence_planner.planning.way_back import WaysBack
 
-STARTING = 30.0  # seconds the lanes may take to start before questions are answered by those that have
+
+class Planning(Immutable):
+    """What the process works with; `cautious` where one before it has ended over a question, as an engine may do."""
+
+    model: Model
+    cautious: bool = False
 
 
 def work(connection: Connection) -> None:
@@ -23,10 +33,12 @@ def work(connection: Connection) -> None:
     stand_by(connection, _prepared)
 
 
-def _prepared(model: Model) -> Callable[[Request, Budget], Iterator[Answer | str]]:
-    race = Race(model.automaton, model.supervisor)
-    race.wait(Budget.seconds(STARTING))
-    planner = Planner(model.automaton, model.supervisor, race)
+def _prepared(planning: Planning) -> Callable[[Request, Budget], Iterator[Answer | str]]:
+    stand_back(ALONE.niceness, MEMORY)
+    model = planning.model
+    engines = None if planning.cautious else Engines(model.automaton, model.supervisor, ALONE)
+    solvers = Escalation(engines, partial(Race, model.automaton, model.supervisor))
+    planner = Planner(model.automaton, model.supervisor, solvers)
     diagnoser = Diagnoser(model)
     ways = WaysBack(model.automaton, model.supervisor.safe)
 

@@ -7,9 +7,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Sequence
 from itertools import count
+from typing import TYPE_CHECKING
 
-from pysat.card import ITotalizer
-from pysat.solvers import Solver
+if TYPE_CHECKING:  # a controller that begins has no use for it, and waits for it
+    from pysat.solvers import Solver
 
 Missed = Callable[[frozenset[int]], Collection[int] | None]
 
@@ -32,6 +33,8 @@ def least_hitting(
     earliest members of those that are least. `known` meets all; where the effort is too great, the best set found.
     `family` are sets that are known to have to be met.
     """
+    from pysat.solvers import Solver  # noqa: PLC0415 - see above
+
     clauses = [[member + 1 for member in each] for each in family]
     with Solver("glucose4", bootstrap_with=clauses) as solver:
         return _Search(solver, len(criteria[0]), missed).least(known, criteria, earliest)
@@ -58,6 +61,8 @@ class _Search:
         self, best: frozenset[int], weights: Sequence[int], held: Sequence[int]
     ) -> tuple[frozenset[int], list[int]]:
         """A set of least weight, and what says that no heavier ones are wanted."""
+        from pysat.card import ITotalizer  # noqa: PLC0415 - see above
+
         weight = sum(weights[member] for member in best)
         counted = [member + 1 for member, each in enumerate(weights) for _ in range(each)]
         if weight == len(counted):  # nothing heavier exists, and with one more there is always a bound to set

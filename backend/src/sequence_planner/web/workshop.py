@@ -40,7 +40,7 @@ from sequence_planner.workshop.pipelines.questions import (
 from sequence_planner.workshop.pipelines.view import RecordedView
 from sequence_planner.workshop.processes import worked
 from sequence_planner.workshop.questions import LanguageQuestionKind, TextAt
-from sequence_planner.workshop.revisions import Revision
+from sequence_planner.workshop.revision import Revision
 from sequence_planner.workshop.showing import change_view, marks, revisions_view
 from sequence_planner.workshop.view import DraftView, FileMark, RevisionsView, RevisionView, WorkshopView
 

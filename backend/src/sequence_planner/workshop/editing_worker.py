@@ -18,7 +18,8 @@ from sequence_planner.workshop.bodies import read_body
 from sequence_planner.workshop.draft import Change, Differences, Draft, Proposal
 from sequence_planner.workshop.edits import ChangeBody, Edit
 from sequence_planner.workshop.files import Files
-from sequence_planner.workshop.revisions import Revision, Revisions, tree_of
+from sequence_planner.workshop.revision import Revision
+from sequence_planner.workshop.revisions import Revisions, tree_of
 from sequence_planner.workshop.showing import Reader
 
 # Files that are others since the last question, none for those that are gone; what is asked, and about what.

@@ -9,7 +9,6 @@ from __future__ import annotations
 import re
 import stat
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
 from dulwich.index import commit_tree
@@ -22,24 +21,13 @@ from dulwich.repo import Repo
 from sequence_planner.actor import SYSTEM, Actor
 from sequence_planner.model.paths import EditError
 from sequence_planner.workshop.files import Files
+from sequence_planner.workshop.revision import Revision
 
 BRANCH = Ref(b"refs/heads/main")
 LONGEST_NAME = 100  # characters
 BEFORE = "As the station was"
 _ID = re.compile("[0-9a-f]{40}")
 _UNWRITABLE = re.compile(r"[<>\x00-\x1f]")
-
-
-@dataclass(frozen=True)
-class Revision:
-    """A saved revision: `id` is the hash of its commit, `tree` that of its files. Times are seconds since the epoch."""
-
-    id: str
-    name: str
-    message: str
-    by: str
-    time: float
-    tree: str
 
 
 class Revisions:

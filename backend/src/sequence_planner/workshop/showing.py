@@ -13,7 +13,7 @@ from sequence_planner.model.editing import plain
 from sequence_planner.model.reading import read_text
 from sequence_planner.model.source import ModelError
 from sequence_planner.workshop.draft import Change, Draft, digest
-from sequence_planner.workshop.revisions import Revision
+from sequence_planner.workshop.revision import Revision
 from sequence_planner.workshop.view import ChangeView, FileMark, FileState, FileView, RevisionsView, RevisionView
 
 MOST_READ, MOST_CHARACTERS = 5000, 50_000_000  # files whose content is remembered, and what they may take together

@@ -140,7 +140,7 @@ def stand_by(connection: Connection, prepare: Callable[[Any], Callable[[Any, Bud
             try:
                 for each in answer(question.content, budget):
                     connection.send(Answered(question.number, each))
-            except ConnectionError:
+            except (ConnectionError, MemoryError):  # another process may have enough of it
                 raise
             except Exception as error:
                 traceback.print_exc()

@@ -33,9 +33,14 @@ def work(connection: Connection) -> None:
 
 
 def _prepared(model: LaneModel) -> Callable[[Task, Budget], Iterator[Report]]:
-    os.nice(model.lane.niceness)
-    with contextlib.suppress(ValueError, OSError):  # where the system knows no such limit, or has a lower one
-        resource.setrlimit(resource.RLIMIT_DATA, (model.memory, model.memory))
+    stand_back(model.lane.niceness, model.memory)
     engines = Engines(model.automaton, model.supervisor, model.lane, model.factories)
     engines.prepare()
     return engines.work
+
+
+def stand_back(niceness: int, memory: int) -> None:
+    """Have this process be as nice as that to others, and have no more than so many bytes of data."""
+    os.nice(niceness)
+    with contextlib.suppress(ValueError, OSError):  # where the system knows no such limit, or has a lower one
+        resource.setrlimit(resource.RLIMIT_DATA, (memory, memory))
