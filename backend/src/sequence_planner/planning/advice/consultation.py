@@ -90,7 +90,7 @@ class Consultation:
         """
         self.budget.require()
         prover = self.prover.counting if helped else self.prover
-        finding = prover.find(task, self.budget.part(share))
+        finding = prover.find(task, self.budget.part_of_work(share))
         self.undecided = self.undecided or (last and not finding.decided)
         return finding
 
