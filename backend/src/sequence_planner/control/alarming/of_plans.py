@@ -80,11 +80,11 @@ class PlanAlarms:
             yield Cause(
                 f"{LATE}{ability.name}",
                 Priority.MEDIUM,
-                f"{ability.title} {late}",
+                f"{resource}: {ability.title} {late}",
                 self._consequences.waiting(self._consequences.held_up({ability.resource}), " until it does"),
                 receives if "begun" in late else f"Look after {resource}.",
                 follows=(*self._silences(ability), f"{_STILL}{ability.resource}", *others),
-                past=f"{ability.title} {in_the_past(late)}",
+                past=f"{resource}: {ability.title} {in_the_past(late)}",
                 of=frozenset({ability.resource}),
                 waits=not self._still.has_to_act(ability),
             )
