@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 
-from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.control.offer_view import (
     EffortView,
     OfferView,
@@ -30,7 +30,7 @@ def offer_view(automaton: Automaton, offer: Offer, id_: str, revision: int, obst
         revision=revision,
         kind=str(offer.kind),
         title=offer_title(automaton, offer),
-        physical=_changes(offer.physical),
+        physical=_changes(told(automaton, offer.physical)),
         online=list(offer.online),
         in_service=list(offer.in_service),
         assumed=_changes(offer.assumed),
@@ -87,7 +87,7 @@ def _parts(automaton: Automaton, offer: Offer) -> Iterator[str]:
         yield f"bring {' and '.join(returning)} back"
     if offer.physical:
         records = f", so that {_each(offer.records, 'counts as')}" if offer.records else ""
-        yield f"see to it that {_each(offer.physical, 'is')}{records}"
+        yield f"see to it that {_each(told(automaton, offer.physical), 'is')}{records}"
     if offer.only_if_checked:
         yield _each(offer.corrections, "is")
     elif offer.corrections:
@@ -104,6 +104,24 @@ def _parts(automaton: Automaton, offer: Offer) -> Iterator[str]:
         safe = ["the station is back in its safe states"] if offer.into_safe else []
         condition = end_text(offer.goal, offer.into_safe)
         yield f"wait until {' and '.join([*safe, *([condition] if condition else [])])}"
+
+
+def told(automaton: Automaton, changes: Sequence[Change]) -> list[Change]:
+    """The changes that somebody brings about; the others come with these, as they do whenever a device changes them.
+
+    A variable that remembers where a robot has been last is no more than that: it becomes what the pose becomes.
+    """
+    return [change for change in changes if not any(_comes_with(automaton, change, other) for other in changes)]
+
+
+def _comes_with(automaton: Automaton, change: Change, other: Change) -> bool:
+    """Whether nothing gives its variable a value but together with the `other` one, which can change alone."""
+    if change.name == other.name or change.new != other.new:
+        return False
+    writes = [{target(action): action.value for action in effect.actions} for effect in automaton.effects]
+    both = [each for each in writes if change.name in each]
+    alone = any(other.name in each and change.name not in each for each in writes)
+    return alone and bool(both) and all(each.get(other.name) == each[change.name] for each in both)
 
 
 def _each(changes: Iterable[Change], word: str) -> str:

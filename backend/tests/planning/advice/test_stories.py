@@ -117,6 +117,9 @@ def test_one_that_stands_still_is_sent_back_or_moved_by_hand(station: Automaton,
     by_hand = offers[OfferKind.PHYSICAL][0]
     assert Change("robot.pose", "unknown", "bolt_pair_1") in by_hand.physical
     assert Change("robot.previous_pose", "above_engine", "bolt_pair_1") in by_hand.physical
+    title = offer_title(station, by_hand)
+    assert "robot.pose is bolt_pair_1" in title
+    assert "previous_pose" not in title
     assert all({c.name for c in o.physical} & {"robot.pose"} for o in offers[OfferKind.PHYSICAL])
     said = [offer for offer in offers[OfferKind.CORRECTION] if offer.only_if_checked]
     assert [offer.corrections for offer in said] == [(Change("bolts[bolt_pair_1]", "placed", "tightened"),)]
