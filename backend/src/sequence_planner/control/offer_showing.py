@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator
 
-from sequence_planner.automaton.structure import Automaton, target
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.along import is_along
 from sequence_planner.control.offer_view import (
     EffortView,
     OfferView,
@@ -106,22 +107,15 @@ def _parts(automaton: Automaton, offer: Offer) -> Iterator[str]:
         yield f"wait until {' and '.join([*safe, *([condition] if condition else [])])}"
 
 
-def told(automaton: Automaton, changes: Sequence[Change]) -> list[Change]:
-    """The changes that somebody brings about; the others come with these, as they do whenever a device changes them.
-
-    A variable that remembers where a robot has been last is no more than that: it becomes what the pose becomes.
-    """
-    return [change for change in changes if not any(_comes_with(automaton, change, other) for other in changes)]
+def told(automaton: Automaton, changes: Iterable[Change]) -> list[Change]:
+    """The changes that somebody brings about; the others come along with these."""
+    every = list(changes)
+    return [each for each in every if not is_along(automaton, each.name, _as_new(each, every))]
 
 
-def _comes_with(automaton: Automaton, change: Change, other: Change) -> bool:
-    """Whether nothing gives its variable a value but together with the `other` one, which can change alone."""
-    if change.name == other.name or change.new != other.new:
-        return False
-    writes = [{target(action): action.value for action in effect.actions} for effect in automaton.effects]
-    both = [each for each in writes if change.name in each]
-    alone = any(other.name in each and change.name not in each for each in writes)
-    return alone and bool(both) and all(each.get(other.name) == each[change.name] for each in both)
+def _as_new(change: Change, changes: Iterable[Change]) -> list[str]:
+    """The variables that become the same."""
+    return [each.name for each in changes if each.new == change.new]
 
 
 def _each(changes: Iterable[Change], word: str) -> str:

@@ -53,9 +53,7 @@ def test_a_robot_that_is_stuck_is_one_alarm_of_the_robot() -> None:
     lasting = {key: alarm for key, alarm in rig.shown.items() if alarm.ended is None}
     assert lasting.keys() == {ROBOT_IS_STILL}
     alarm = lasting[ROBOT_IS_STILL]
-    assert alarm.text.startswith(
-        "Robot UR10 does not do what it should: it still says robot.moving, robot.pose == unknown"
-    )
+    assert alarm.text == "Robot UR10 does not do what it should: it still says robot.moving and robot.pose == unknown"
     assert "“Tighten bolt pair 3”" in alarm.consequence
     assert "Robot UR10: Move to bolt pair 3 has not finished within 30 s" in alarm.parts
     assert alarm.priority is Priority.HIGH, "it led outside the safe states"
