@@ -1,57 +1,78 @@
-"""What a supervisor may allow where variables have gathered values, beside every state that they make up."""
+"""What the relaxation says that a supervisor never allows, it never allows."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Set
-from itertools import product
+import pytest
+from hypothesis import assume, given
 
-from hypothesis import given
+from sequence_planner.automaton.structure import Automaton
+from sequence_planner.automaton.tick import initial_state
+from sequence_planner.expressions.types import BOOLEAN, EnumerationType, IntegerRange
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.plan import goals_of
+from sequence_planner.planning.relaxed.relaxing import Relaxing
+from sequence_planner.synthesis.plant import Plant
+from sequence_planner.synthesis.supervision import Supervision, relevant, supervisor, synthesise
 
-from sequence_planner.automaton.state_set import StateSet, Supervisor
-from sequence_planner.automaton.structure import target
-from sequence_planner.automaton.transitions import Phase, Transition
-from sequence_planner.expressions.syntax import TRUE, Assignment, Constant, Variable
-from sequence_planner.expressions.types import BOOLEAN, Value
-from sequence_planner.planning.relaxed.permission import Permission
-
+from .breadth_first import shortest
 from .budget import examples
+from .building import Does, automaton
 from .choices import Choices, made_by
-from .test_state_set import Domains, Member, a_set, diagram
 
-Possible = dict[str, set[Value | None]]
-Asked = list[tuple[Possible, Transition]]
+OFF = (BOOLEAN, False)
+PLACE = EnumerationType(("home", "work"))
 
-
-def growing(choices: Choices) -> tuple[Domains, set[Member], Asked]:
-    """A set of states, and moves that are asked about while more and more values are possible; one may be unknown."""
-    domains, members = a_set(choices)
-    names = list(domains)
-    unknown = {name for name in names if choices.chance(5)}
-    possible: Possible = {n: {None} if n in unknown else {choices.pick(domain)} for n, domain in domains.items()}
-    asked: Asked = []
-    for _ in range(choices.number(1, 6)):
-        written = {name: choices.pick(domains[name]) for name in choices.different(names, 0, 2)}
-        actions = tuple(Assignment(Variable(name, BOOLEAN), Constant(value)) for name, value in written.items())
-        asked.append(({n: set(values) for n, values in possible.items()}, Transition("m", Phase.START, TRUE, actions)))
-        for name in choices.different(sorted(set(names) - unknown), 0, 2):
-            possible[name].add(choices.pick(domains[name]))
-    return domains, members, asked
+COUNTS = automaton(
+    {"go": Does(start=("a := true", "x := x + 1"), when="not a and x == 0")},
+    estimated={"a": OFF, "x": (IntegerRange(0, 1), 0)},
+    forbidden={"none": "a and x == 0"},
+    goals={"a": "a"},
+)
+COPIES = automaton(
+    {"go": Does(start=("a := true", "pose := aim"), when="not a")},
+    estimated={"a": OFF, "pose": (PLACE, "home")},
+    output={"aim": (PLACE, "work")},
+    forbidden={"there": "a and pose == home"},
+    goals={"a": "a"},
+)
 
 
-@examples(300)
-@given(made_by(growing))
-def test_a_move_is_permitted_where_a_safe_state_may_lead_to_one(given_: tuple[Domains, set[Member], Asked]) -> None:
-    domains, members, asked = given_
-    supervisor = Supervisor(diagram(domains, members), {})
-    permission = Permission(supervisor)
-    for possible, move in asked:
-        allowed = permission.may(move, possible)
-        assert allowed == Permission(supervisor).may(move, possible)
-        if all(None not in values for values in possible.values()):
-            written = {target(a): {a.value.value} for a in move.actions if isinstance(a.value, Constant)}
-            assert allowed == (_met(supervisor.safe, possible) and _met(supervisor.safe, {**possible, **written}))
+@pytest.mark.parametrize("station", [COUNTS, COPIES])
+def test_what_depends_on_the_state_may_be_written(station: Automaton) -> None:
+    task = Task(initial_state(station), goals_of(station, station.operations))
+    assert Relaxing(station, synthesise(station)).solve(task, Budget.seconds(60)).proof is None
 
 
-def _met(safe: StateSet, possible: Mapping[str, Set[Value | None]]) -> bool:
-    combinations = product(*(possible[name] for name in safe.names))
-    return any(safe.includes(dict(zip(safe.names, values, strict=True))) for values in combinations)
+def counting(choices: Choices) -> Automaton:
+    """A few abilities that count, copy and set, under a specification."""
+
+    def start() -> str:
+        return choices.pick(("x := x + 1", "x := y", "y := x", "y := 2", "x := 0", "a := true", "a := x == y"))
+
+    def asked() -> str:
+        return "x < 2 and " + choices.pick(("true", "x == y", "not a", "a", "y == 0", "x != y"))
+
+    abilities = {
+        f"go_{number}": Does(start=tuple({(each := start()).split()[0]: each for _ in range(2)}.values()), when=asked())
+        for number in range(choices.number(1, 4))
+    }
+    number = IntegerRange(0, 2)
+    kept = choices.pick(("a and x == 0", "x == 2 and y == 0", "a and x == y", "y == 2 and not a and x == 1"))
+    return automaton(
+        abilities,
+        estimated={"a": OFF, "x": (number, choices.number(0, 1)), "y": (number, choices.number(0, 1))},
+        forbidden={"kept": kept},
+        goals={"there": choices.pick(("a", "x == 2", "y == 2 and a", "x == y and a"))},
+    )
+
+
+@examples(200)
+@given(made_by(counting))
+def test_nothing_is_proven_where_there_is_a_plan(station: Automaton) -> None:
+    state = initial_state(station)
+    supervision = Supervision(Plant(station, relevant(station)))
+    assume(supervision.possible)
+    known, goals = supervisor(supervision), goals_of(station, station.operations)
+    assume(shortest(station, known, state, goals, 6) is not None)
+    assert Relaxing(station, known).solve(Task(state, goals), Budget.seconds(60)).proof is None
