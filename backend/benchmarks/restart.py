@@ -41,6 +41,8 @@ class OwnTime(Budget):
         """Nobody calls it off."""
         return OwnTime(share * self.remaining)
 
+    part_of_work = part
+
 
 def main() -> None:
     """Measure and print a table for each station."""

@@ -18,7 +18,7 @@ SUBJECT = Subject(
     f"{', '.join(KINDS)}; of measured variables that they are wrong, or changed by hand; that a person holds\n"
     "the station, or takes a resource out of service. If somebody is told within\n"
     f"{TOLD_WITHIN:g} s, advice is asked for at once: it must answer within {PROPOSED_WITHIN:g} s with proposals or\n"
-    "reasons, and propose nothing at a device that would not stay so.",
+    "reasons, and propose nothing at a device that would not stay so. Where nobody is told, the work must go on.",
     {"faults": Kind(one_fault, 60, kept_every=1)},
 )
 

@@ -23,7 +23,7 @@ from core.random_expressions import equality, rare
 from core.random_plain import document
 from core.random_stations import automaton as random_automaton
 from core.replaying import replay
-from sequence_planner.automaton.structure import Ability, Automaton, Operation
+from sequence_planner.automaton.structure import Ability, Automaton, HumanTask, Operation
 from sequence_planner.checking import far
 from sequence_planner.checking import supervised as checking
 from sequence_planner.checking.supervised import check_supervision
@@ -268,6 +268,24 @@ def test_faults_and_abilities_for_restarts_can_enable_but_are_not_counted_on() -
     assert found(made((), restart=False)) == []
     for unreliable in (made(("wears",), restart=False), made((), restart=True)):
         assert kinds_of(found(unreliable)) == [("repaired", "goal-out-of-reach")]
+
+
+def test_a_goal_that_only_a_fault_puts_out_of_reach_is_said_to_be_so_and_that_a_person_may_have_meant_it() -> None:
+    made = automaton(
+        {"work": Does(start=("done := true",), enabled="not away")},
+        measured={"away": OFF},
+        estimated={"done": OFF},
+        effects={"leaves": ("not away", ("away := true",))},
+        faults=("leaves",),
+        goals={"made": "done"},
+    )
+    (warning,) = found(made)
+    assert (name_of(warning), warning.kind) == ("made", "goal-out-of-reach")
+    assert "once there was the fault `leaves`, which nobody counts on" in warning.message
+    by_hand = {name: replace(each, human=HumanTask("Do it.", "away")) for name, each in made.abilities.items()}
+    (warning,) = found(replace(made, abilities=by_hand))
+    assert "once a person has done `leaves`" in warning.message
+    assert "That is as it should be where the person meant it" in warning.message
 
 
 def test_the_events_and_goals_of_a_plain_automaton() -> None:

@@ -297,3 +297,28 @@ def test_a_station_that_never_comes_to_rest_is_said_and_paced() -> None:
 
     with journal() as database:
         asyncio.run(scenario(database))
+
+
+@pytest.mark.parametrize("why", ["its node has gone", "it says nothing more"])
+def test_a_value_that_is_unknown_and_the_alarm_of_its_device_are_in_one_view(
+    why: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Soon after the start only a node that has gone is known to be silent: it is looked for once it is missed."""
+    monkeypatch.setattr("sequence_planner.control.devices.GRAPH_EVERY", 60.0)
+
+    async def scenario(on: Bench) -> None:
+        arm = Arm(on.network)
+        arm.say("home")
+        await on.until(lambda: value(on, "arm.pose") == "home")
+        on.controller.devices.see_network()
+        if why == "its node has gone":
+            arm.transport.close()
+        else:
+            monkeypatch.setattr("sequence_planner.control.alarming.of_devices.GRACE", 0.0)
+        while (view := on.controller.view()).variables["arm.pose"].value is not None:
+            assert not view.alarms
+            on.controller.changed.clear()
+            await asyncio.wait_for(on.controller.changed.wait(), 20)
+        assert list(view.alarms) == ["silent:arm"]
+
+    run(scenario)

@@ -86,7 +86,7 @@ def test_what_is_not_heard_or_was_told_nothing_yet_is_not_waited_for() -> None:
     assert still.late(105.1).keys() == {"go.arrives"}
 
 
-def shared() -> tuple[Execution, StandingStill]:
+def shared(takes: float = 0.5) -> tuple[Execution, StandingStill]:
     """A cart that has a minute for its way, and a gripper with five seconds, which feels what is where the cart is."""
     cart = automaton(
         {
@@ -112,7 +112,10 @@ def shared() -> tuple[Execution, StandingStill]:
         cart,
         resources={"cart": "Cart", "gripper": "Gripper"},
         abilities=abilities,
-        effects=tuple(replace(each, resource=of.get(each.name, "gripper")) for each in cart.effects),
+        effects=tuple(
+            replace(each, resource=of.get(each.name, "gripper"), longest=takes if each.name == "arrives" else 0.5)
+            for each in cart.effects
+        ),
         variables={n: replace(each, resource=of.get(n, "gripper")) for n, each in cart.variables.items()},
     )
     execution = Execution(cart, synthesise(cart))
@@ -152,3 +155,15 @@ def test_a_device_that_is_late_by_itself_is_to_blame_itself() -> None:
     shared_tick(execution, "work", False, 4.5)
     assert still.late(6.0) == {"feels": frozenset()}
     assert still.devices(6.0) == {"gripper": {"felt"}}
+
+
+def test_a_device_that_takes_much_longer_than_it_ever_does_is_noticed_before_its_run_is_overdue() -> None:
+    """The state is safe, the run may take a minute, and the way of the cart four seconds."""
+    for takes, told in ((4.0, 12.0), (0.5, 10.0), (45.0, 90.0)):
+        execution, still = shared(takes)
+        execution.start_production()
+        execution.state = {**execution.state, "target": "work"}
+        shared_tick(execution, "between", False, 1.0)
+        assert still.late(0.9 + told) == {}
+        assert still.late(1.1 + told) == {"arrives": frozenset()}
+        assert still.devices(1.1 + told) == {"cart": {"at"}}

@@ -65,3 +65,14 @@ def test_nobody_is_interrupted_who_is_done_before() -> None:
     with Budget.seconds(0.05).interrupting(interrupted.set):
         pass
     assert not interrupted.wait(0.1)
+
+
+def test_a_share_of_the_work_ends_by_the_clock_too_and_never_after_the_whole() -> None:
+    budget = Budget.seconds(LONG).part_of_work(0.01)
+    before = budget.remaining
+    assert before <= 0.01 * LONG
+    time.sleep(0.05)
+    assert budget.remaining > before - 0.04  # this process has not worked
+    assert budget.until < time.monotonic() + 0.1 * LONG
+    assert Budget.seconds(LONG).working(0.5).part_of_work(0.5).remaining <= 0.25
+    assert Budget.seconds(1.0).part_of_work(0.9).until <= time.monotonic() + 1.0

@@ -7,7 +7,7 @@ import shutil
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cache
@@ -34,18 +34,26 @@ KINDS = ("offline", "silent", "stuck", "slow 10000", "restarted", "garbage")
 TOLD_WITHIN = 40.0  # seconds; what nobody needs to be told within that does not keep anything waiting
 LONGEST_WAY = 60.0  # seconds until the work has come to a moment
 PROPOSED_WITHIN = 2.0  # seconds
-URGENT = ("medium", "high")
+URGENT, NOTICES = ("medium", "high"), ("low",)
 
 
 @dataclass(frozen=True)
 class Seen:
-    """What came of a fault: the `alarm` after so many seconds, and then what is proposed; None where nobody is told."""
+    """What came of a fault: the `alarm` after so many seconds, and then what is proposed.
+
+    Where nobody is told, `alarm` is None: how many operations were `completed` all the same, what a `notice` says that
+    nobody has to acknowledge, which tasks wait for a person, and whether the fault changed nothing, as it `was_so`.
+    """
 
     fault: str
     alarm: str | None = None
     told: float = 0.0
     proposed: float = 0.0
     advice: Any = None  # JSON
+    completed: int = 0
+    notice: str | None = None
+    tasks: int = 0
+    was_so: bool = False
 
 
 @cache
@@ -102,17 +110,21 @@ class _NoHands:
 
 def after(person: Person, place: Floor, fault: str) -> Seen:
     """What comes of it at a station that works."""
-    before = set(_urgent(person))
+    before, noticed = set(_alarms(person, URGENT)), set(_alarms(person, NOTICES))
+    completed, was_so = person.completed(), _is_so(person, fault)
     began = time.monotonic()
     _begin(person, place, fault)
     found: dict[str, Any] = {}
 
     def told() -> bool:
-        found.update({key: alarm for key, alarm in _urgent(person).items() if key not in before})
+        found.update({key: alarm for key, alarm in _alarms(person, URGENT).items() if key not in before})
         return bool(found) or (fault == "hold" and time.monotonic() - began > 1)
 
     if not person.until(told, TOLD_WITHIN):
-        return Seen(fault)
+        notice = next((alarm["text"] for key, alarm in _alarms(person, NOTICES).items() if key not in noticed), None)
+        tasks = len(person.get("tasks")["tasks"])
+        done = person.completed() - completed
+        return Seen(fault, completed=done, notice=notice, tasks=tasks, was_so=was_so)
     seconds = time.monotonic() - began
     asked = time.monotonic()
     advice = person.get("advice")
@@ -120,9 +132,15 @@ def after(person: Person, place: Floor, fault: str) -> Seen:
     return Seen(fault, text, seconds, time.monotonic() - asked, advice)
 
 
-def _urgent(person: Person) -> dict[str, Any]:
+def _alarms(person: Person, priorities: Collection[str]) -> dict[str, Any]:
     alarms = person.get("alarms")["alarms"].items()
-    return {key: alarm for key, alarm in alarms if alarm["ended"] is None and alarm["priority"] in URGENT}
+    return {key: alarm for key, alarm in alarms if alarm["ended"] is None and alarm["priority"] in priorities}
+
+
+def _is_so(person: Person, fault: str) -> bool:
+    """Whether a variable has the value already that the fault gives it."""
+    name, given, value = fault.removeprefix("by hand ").partition(" := " if fault.startswith("by hand ") else " wrong ")
+    return bool(given) and str(person.value(name)).lower() == value.lower()
 
 
 def _begin(person: Person, place: Floor, fault: str) -> None:
@@ -139,15 +157,22 @@ def _begin(person: Person, place: Floor, fault: str) -> None:
 
 
 def judged(seen: Seen, state: dict[str, Any]) -> Counter[str]:
-    """What was met. AssertionError where the proposals come late, or are nothing that anybody would do."""
+    """What was met. AssertionError where proposals come late, or are nothing that anybody would do, and where nobody is
+    told anything though the work does not go on.
+    """
     if seen.alarm is None:
-        return Counter({f"{seen.fault}: nobody is told, the work goes on or waits for a person": 1})
+        assert seen.completed or seen.tasks, f"{seen.fault}: nobody is told anything, and the work does not go on"
+        goes_on = "the work goes on" if seen.completed else "a task waits for a person"
+        so = ", as it was so already" if seen.was_so else ""
+        told = f", and a notice says “{seen.notice}”" if seen.notice else so or " all the same"
+        return Counter({f"{seen.fault}: {goes_on}{told}": 1})
     offers = seen.advice["offers"]
     told = f"{seen.fault}: “{seen.alarm}” after {seen.told:.1f} s"
     searched = f"{seen.advice['seconds']:.1f} s of them looked for"
     assert seen.proposed <= PROPOSED_WITHIN, f"{told}; proposals after {seen.proposed:.1f} s, {searched}"
     titles = [offer["title"] for offer in offers]
-    assert offers or seen.advice["if_checked"] or seen.advice["reasons"], f"{told}: nothing is proposed, and not why"
+    why = (seen.advice["reasons"] or {}).get("members")
+    assert offers or seen.advice["if_checked"] or why, f"{told}: nothing is proposed, and not why"
     passing = [offer["title"] for offer in offers if _passes(offer, state)]
     assert len(passing) in (0, len(offers)), f"{told}: what would not stay is proposed: {passing}"
     first = titles[0] if titles else "nothing but what has to be checked" if seen.advice["if_checked"] else "reasons"

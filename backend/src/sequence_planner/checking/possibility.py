@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 from sequence_planner.automaton.grounding.findings import without_arguments
 from sequence_planner.automaton.plain.events import event_of
-from sequence_planner.automaton.structure import Ability, Automaton, Operation
+from sequence_planner.automaton.structure import Ability, Automaton, Effect, Operation
 from sequence_planner.checking.growth import Growth
 from sequence_planner.checking.inquiry import Inquiry
 from sequence_planner.expressions.printing import print_expression
@@ -204,6 +204,9 @@ class Possibility:
     def _out_of_reach(self, subject: Subject, goal: Function, bad: Function) -> Finding:
         inquiry = self._inquiry
         trace = inquiry.way(bad)
+        fault = self._last_fault(trace)
+        if fault is not None and (without := inquiry.way(bad, faults=False)) is not None:
+            trace, fault = without, None
         leads = inquiry.leads(bad if trace is None else inquiry.diagrams.states(trace.last), goal)
         if leads is None:
             cause = "nothing that the supervisor allows leads there"
@@ -211,12 +214,35 @@ class Possibility:
             cause = "the supervisor forbids all that would lead there"
         else:
             cause = "no ability and no effect leads there, with or without the supervisor"
+        if fault is not None:
+            return Finding("goal-out-of-reach", subject, self._after_a_fault(fault, cause), trace)
         where = "in the initial state" if trace is not None and not trace.steps else "after some steps"
         message = (
             f"cannot always be completed: {where} its precondition holds, and its goal cannot be reached any more, as "
             f"{cause}. Let the precondition exclude that, or add what is missing"
         )
         return Finding("goal-out-of-reach", subject, message, trace)
+
+    def _last_fault(self, trace: Trace | None) -> Effect | None:
+        """The last thing on it that nobody counts on."""
+        faults = {effect.name: effect for effect in self._automaton.effects if effect.fault}
+        steps = () if trace is None else reversed(trace.steps)
+        return next((faults[name] for step in steps for name in step.names if name in faults), None)
+
+    def _after_a_fault(self, fault: Effect, cause: str) -> str:
+        """What is said where no way without a fault leads there: a person may have meant it."""
+        abilities = [each for each in self._automaton.abilities.values() if each.resource == fault.resource]
+        by_person = bool(abilities) and all(each.human is not None for each in abilities)
+        what = "a person has done" if by_person else "there was the fault"
+        meant = (
+            "That is as it should be where the person meant it; let the precondition exclude it where not"
+            if by_person
+            else "Let the precondition exclude that, or add what is missing, unless that much is lost with the fault"
+        )
+        return (
+            f"cannot be completed once {what} `{fault.name}`, which nobody counts on: its precondition holds, "
+            f"and its goal cannot be reached any more, as {cause}. {meant}"
+        )
 
 
 def _quoted(names: Iterable[str]) -> str:

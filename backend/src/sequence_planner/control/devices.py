@@ -44,6 +44,7 @@ class Devices:
         self.overrides = Overrides(pipelines, self.feeds, self.commander, self.clients)
         self._observing = Observing()
         self._next_graph = 0.0
+        self._awaited = frozenset(self.feeds.expected)
         transport.watch(self._hear_quality)
         for pipeline in pipelines.incoming.values():
             transport.subscribe(pipeline.topic.name, pipeline.topic.type_name, pipeline.topic.quality, self._hear)
@@ -90,8 +91,9 @@ class Devices:
         self.clients.heed(released, now)
 
     def look(self, moment: Moment) -> None:
-        """Look at the network, every so often."""
-        if moment.monotonic >= self._next_graph:
+        """Look at the network, every so often and when something is not heard in time: then it is known at once why."""
+        before, self._awaited = self._awaited, frozenset(self.feeds.awaited(moment.monotonic))
+        if moment.monotonic >= self._next_graph or not self._awaited <= before:
             self._next_graph = moment.monotonic + GRAPH_EVERY
             self.see_network()
 

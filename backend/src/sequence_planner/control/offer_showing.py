@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Iterator
 
 from sequence_planner.automaton.structure import Automaton
+from sequence_planner.control.along import is_along
 from sequence_planner.control.offer_view import (
     EffortView,
     OfferView,
@@ -30,7 +31,7 @@ def offer_view(automaton: Automaton, offer: Offer, id_: str, revision: int, obst
         revision=revision,
         kind=str(offer.kind),
         title=offer_title(automaton, offer),
-        physical=_changes(offer.physical),
+        physical=_changes(told(automaton, offer.physical)),
         online=list(offer.online),
         in_service=list(offer.in_service),
         assumed=_changes(offer.assumed),
@@ -87,7 +88,7 @@ def _parts(automaton: Automaton, offer: Offer) -> Iterator[str]:
         yield f"bring {' and '.join(returning)} back"
     if offer.physical:
         records = f", so that {_each(offer.records, 'counts as')}" if offer.records else ""
-        yield f"see to it that {_each(offer.physical, 'is')}{records}"
+        yield f"see to it that {_each(told(automaton, offer.physical), 'is')}{records}"
     if offer.only_if_checked:
         yield _each(offer.corrections, "is")
     elif offer.corrections:
@@ -104,6 +105,17 @@ def _parts(automaton: Automaton, offer: Offer) -> Iterator[str]:
         safe = ["the station is back in its safe states"] if offer.into_safe else []
         condition = end_text(offer.goal, offer.into_safe)
         yield f"wait until {' and '.join([*safe, *([condition] if condition else [])])}"
+
+
+def told(automaton: Automaton, changes: Iterable[Change]) -> list[Change]:
+    """The changes that somebody brings about; the others come along with these."""
+    every = list(changes)
+    return [each for each in every if not is_along(automaton, each.name, _as_new(each, every))]
+
+
+def _as_new(change: Change, changes: Iterable[Change]) -> list[str]:
+    """The variables that become the same."""
+    return [each.name for each in changes if each.new == change.new]
 
 
 def _each(changes: Iterable[Change], word: str) -> str:

@@ -119,7 +119,9 @@ class Offers:
                 deadline = LONGER  # there was too little time: asked once more, there is more of it
             elif all(offer.id in self._kept for offer in (*view.offers, *view.if_checked)):
                 return view
-        advice = await self._adviser.answer(replace(request, deadline=deadline), deadline + WAITING)
+        until = Moment.now().monotonic + deadline
+        asked = replace(request, deadline=deadline, until=until)
+        advice = await self._adviser.answer(asked, deadline + WAITING)
         kept = self._keep(advice.offers, revision)
         view = AdviceView(
             revision=revision,

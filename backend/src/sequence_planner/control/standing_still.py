@@ -1,14 +1,13 @@
-"""What devices should have done by themselves, and have not for longer than anything of theirs may take.
+"""What devices should have done by themselves, and have not for several times as long as it ever takes.
 
-A run that is overdue says that its device does not react. A device can stand still without any: a robot that was pushed
-off its pose, for instance, when nothing was about to move it. And what is late can be so because of another device:
-then that one is, however much patience there would be with it.
+A run that is overdue says that its device does not react, but only once the run has had all the time that it may take.
+And a device can stand still without any: a robot that was pushed off its pose, for instance, when nothing was about to
+move it. What is late can be so because of another device: then that one is, however much patience there would be.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import inf
 
 from sequence_planner.automaton.structure import Ability, Automaton, Effect, State, reads, target
 from sequence_planner.automaton.tick import effect_writes
@@ -21,7 +20,9 @@ from sequence_planner.control.view import Production
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.planning.advice.stalling import changes_something
 
-_HURRY = 5.0  # seconds of patience with a device while the state is unsafe
+# The patience with a device: seconds at least, and times as long as what it does ever takes.
+_EASE = 10.0, 3.0
+_HURRY = 5.0, 2.0  # while the state is unsafe
 _SAYS_WITHIN = 1.0  # seconds in which a device says what has become of it
 
 
@@ -56,8 +57,8 @@ class StandingStill:
         """The effects that are to blame for what is late, each with those that it explains: these should have happened
         by now too, but would not have to if it had.
         """
-        most = _HURRY if self._unsafe() else inf
-        over = self._for_longer(monotonic, lambda each: max(min(most, self._patience[each.resource]), 2 * each.longest))
+        least, times = _HURRY if self._unsafe() else _EASE
+        over = self._for_longer(monotonic, lambda each: min(max(least, times * each.longest), self._most(each)))
         runs = self._overdue(monotonic)
         if not over and not runs:
             return {}
@@ -112,6 +113,10 @@ class StandingStill:
     def has_to_act(self, ability: Ability) -> bool:
         """Whether there is something that the ability's own device should do so that a run of it goes on."""
         return self._culprits.has_to_act(ability, self._execution.state)
+
+    def _most(self, effect: Effect) -> float:
+        """The seconds after which its resource is late whatever else is so."""
+        return max(self._patience[effect.resource], 2 * effect.longest)
 
     def _for_longer(self, monotonic: float, patience: Callable[[Effect], float]) -> frozenset[str]:
         since = self._since.items()

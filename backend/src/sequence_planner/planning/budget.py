@@ -8,6 +8,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from math import inf
 
+_HELD_UP = 4.0  # times as long as without others on the machine
+
 
 class SpentError(Exception):
     """The time is over, or nobody waits for the answer any more."""
@@ -82,6 +84,12 @@ class Budget:
     def working(self, seconds: float) -> Budget:
         """As much of it as this process works for so many seconds, however long others hold it up."""
         return self._of_this(self.until, min(time.process_time() + seconds, self._worked_until))
+
+    def part_of_work(self, share: float) -> Budget:
+        """A share of the time that is left, counted as `working` does; by the clock it may take some times as long."""
+        seconds = share * self.remaining
+        working = min(time.process_time() + seconds, self._worked_until)
+        return self._of_this(min(time.monotonic() + _HELD_UP * seconds, self.until), working)
 
     def _of_this(self, until: float, worked_until: float) -> Budget:
         part = Budget(until, worked_until)

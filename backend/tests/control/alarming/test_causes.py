@@ -74,7 +74,7 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     late = "overdue:nutrunner.run_nut"
     assert late not in shown.current(None, Moment(rig.now + 4, rig.now + 4))
     told = shown.current(None, Moment(rig.now + 6, rig.now + 6))[late]
-    assert told.text == "Run the nutrunner has not begun within 5 s"
+    assert told.text == "Smart nutrunner: Run the nutrunner has not begun within 5 s"
     assert told.consequence == "“Tighten bolt pair 3” waits until it does."
 
     assert rig.run(5, until=lambda: rig.value("nutrunner.run_nut.executing") is True)
@@ -85,7 +85,7 @@ def test_an_ability_that_does_not_begin_in_time_is_noticed() -> None:
     )  # nor has the robot moved, for which the tool waits
     (robot,) = (alarm for key, alarm in both.items() if key.startswith("overdue:robot") and alarm.ended is None)
     assert robot.state is AlarmState.UNACKNOWLEDGED
-    assert any(part.startswith("Run the nutrunner has not finished within ") for part in robot.parts)
+    assert any(part.startswith("Smart nutrunner: Run the nutrunner has not finished within ") for part in robot.parts)
 
 
 def test_a_specification_that_is_broken_for_certain_is_an_alarm_whatever_else_is_unknown() -> None:

@@ -97,3 +97,37 @@ def test_where_no_operation_is_active_because_values_are_unknown_their_resource_
     assert [offer.kind for offer in Advisor(station, supervisor).advise(replace(alone, waiting=())).offers] == [
         OfferKind.REPLAN
     ]
+
+
+def test_what_is_wrong_is_repaired_before_somebody_takes_over() -> None:
+    """The tool is to be left at its place: nobody hears of the planning scene, or the tool is not let go of."""
+    station = prepare_station(MODEL).automaton
+    advisor = Advisor(station, synthesise(station))
+    bolts = [name for name in station.names(Kind.ESTIMATED) if name.startswith("bolts[")]
+    poses = ("robot.pose", "robot.previous_pose", "robot.target_pose")
+    state: dict[str, Value | None] = {
+        **initial_state(station),
+        **dict.fromkeys(bolts, "placed"),
+        **dict.fromkeys(poses, "AttachLFToolTCPPose"),
+        "ladder_frame": "on_engine",
+        "engine.tag_is_read": True,
+        "end_effector.tool": "LFTOOL",
+        "nutrunner.activate_lift": False,
+        "nutrunner.lift_state": "floats",
+    }
+    goals = goals_of(station, ["take_nutrunner"])
+    unheard = AdviceRequest(
+        synchronise(station, {**state, "scene.attached": None}),
+        goals,
+        Circumstances(offline=frozenset({"scene"})),
+        last={"scene.attached": "LFTOOL"},
+        deadline=10,
+    )
+    first, *others = advisor.advise(unheard).offers
+    assert first.online == ("scene",)
+    assert any(each.physical for each in others)
+    held = {**state, "end_effector.rsp_is_locked": True, "scene.attached": "LFTOOL", "scene.wanted": "LFTOOL"}
+    given_up = Circumstances(barred=frozenset({"end_effector.unlock"}))
+    first, *others = advisor.advise(AdviceRequest(synchronise(station, held), goals, given_up, deadline=10)).offers
+    assert [(change.name, change.new) for change in first.physical] == [("end_effector.rsp_is_locked", False)]
+    assert any(change.name == "operator.takes_over" for each in others for change in each.physical)

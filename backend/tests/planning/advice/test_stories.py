@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from queue import SimpleQueue
@@ -14,6 +16,7 @@ from sequence_planner.automaton.structure import Automaton, Kind, State
 from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.control.offer_showing import offer_title
 from sequence_planner.expressions.printing import print_expression
+from sequence_planner.expressions.syntax import FALSE
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import replace
 from sequence_planner.planning.advice.advisor import Advisor
@@ -22,7 +25,9 @@ from sequence_planner.planning.advice.questions import Answer, Request
 from sequence_planner.planning.advice.request import AdviceRequest, ErrandRequest
 from sequence_planner.planning.advice.stalling import stalled_effects, stalling, stalls
 from sequence_planner.planning.advice.worker import work
-from sequence_planner.planning.plan import Circumstances, PlanAnswer, PlanRequest, goals_of
+from sequence_planner.planning.budget import Budget
+from sequence_planner.planning.engine import Task
+from sequence_planner.planning.plan import Circumstances, Goal, PlanAnswer, PlanRequest, goals_of
 from sequence_planner.planning.racing.companion import Answered, Companion, Question, Word
 from sequence_planner.planning.reasons.diagnoser import Model
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest
@@ -112,6 +117,9 @@ def test_one_that_stands_still_is_sent_back_or_moved_by_hand(station: Automaton,
     by_hand = offers[OfferKind.PHYSICAL][0]
     assert Change("robot.pose", "unknown", "bolt_pair_1") in by_hand.physical
     assert Change("robot.previous_pose", "above_engine", "bolt_pair_1") in by_hand.physical
+    title = offer_title(station, by_hand)
+    assert "robot.pose is bolt_pair_1" in title
+    assert "previous_pose" not in title
     assert all({c.name for c in o.physical} & {"robot.pose"} for o in offers[OfferKind.PHYSICAL])
     said = [offer for offer in offers[OfferKind.CORRECTION] if offer.only_if_checked]
     assert [offer.corrections for offer in said] == [(Change("bolts[bolt_pair_1]", "placed", "tightened"),)]
@@ -260,3 +268,18 @@ def test_the_process_answers_all_that_it_can_be_asked(station: Automaton, asked:
     advice = asked.answer(nothing)
     assert isinstance(advice, Advice)
     assert all(offer.left_out or offer.online for offer in advice.offers)
+
+
+def test_advice_on_which_work_begins_late_takes_less_than_it_might(station: Automaton, supervisor: Supervisor) -> None:
+    given: list[float] = []
+
+    def explain(task: Task, budget: Budget) -> Diagnosis:
+        given.append(budget.remaining)
+        return Diagnosis(None, ())
+
+    advisor = Advisor(station, supervisor, explain)
+    hopeless = replace(tightening(station, {}), goals=(Goal("never", FALSE),), deadline=100.0)
+    for until in (math.inf, time.monotonic() + 60.0, 0.0):
+        assert not advisor.advise(replace(hopeless, until=until)).offers
+    in_time, late, latest = given
+    assert in_time > 60.0 >= late > 40.0 >= latest > 0.0

@@ -10,6 +10,7 @@ from sequence_planner.control.alarming.cause import Cause
 from sequence_planner.control.alarming.consequence import Consequences, listed
 from sequence_planner.control.alarming.following import LATE
 from sequence_planner.control.alarming.of_devices import MANY, UNHEARD, silent_key
+from sequence_planner.control.along import is_along
 from sequence_planner.control.conduct import OutOfService
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
@@ -80,11 +81,11 @@ class PlanAlarms:
             yield Cause(
                 f"{LATE}{ability.name}",
                 Priority.MEDIUM,
-                f"{ability.title} {late}",
+                f"{resource}: {ability.title} {late}",
                 self._consequences.waiting(self._consequences.held_up({ability.resource}), " until it does"),
                 receives if "begun" in late else f"Look after {resource}.",
                 follows=(*self._silences(ability), f"{_STILL}{ability.resource}", *others),
-                past=f"{ability.title} {in_the_past(late)}",
+                past=f"{resource}: {ability.title} {in_the_past(late)}",
                 of=frozenset({ability.resource}),
                 waits=not self._still.has_to_act(ability),
             )
@@ -126,7 +127,8 @@ class PlanAlarms:
     def _says(self, names: Collection[str]) -> str:
         """What is said of these variables."""
         automaton, state = self._execution.automaton, self._execution.state
-        known = {each: value for each in sorted(names) if (value := state[each]) is not None}
+        told = (each for each in sorted(names) if not is_along(automaton, each, names))
+        known = {each: value for each in told if (value := state[each]) is not None}
         return listed(value_text(automaton, each, value) for each, value in known.items()) or "nothing"
 
     def _failures(self, resources: Collection[str]) -> tuple[str, ...]:

@@ -30,6 +30,7 @@ from sequence_planner.planning.way_back import WaysBack
 Explain = Callable[[Task, Budget], Diagnosis]
 
 _SHARE = 0.85  # of the time, for offers; if there is none, reasons have the rest
+_LEAST = 0.4  # of it, however late work on a question begins
 _PREPARING = 10.0  # seconds
 _MOST_KEPT = 3  # stations with and without stalled effects
 
@@ -63,7 +64,7 @@ class Advisor:
     def advise(self, request: AdviceRequest, budget: Budget | None = None) -> Advice:
         """Offers until the deadline. `budget` can be called off from another thread."""
         began = time.monotonic()
-        budget = budget or Budget.seconds(request.deadline)
+        budget = (budget or Budget.seconds(request.deadline)).part(_share_left(request, began))
         here = self._situation(request)
         station = self._station(stalls(self._automaton, here.state, request.stalled))
         awaited = written_by(self._automaton, request.stalled - request.explained)
@@ -151,3 +152,11 @@ class Advisor:
                 self._kept.pop(next(each for each in self._kept if each))
         self._kept.move_to_end(stalled)
         return self._kept[stalled]
+
+
+def _share_left(request: AdviceRequest, now: float) -> float:
+    """The share of the time that is left for a question on which work begins late."""
+    late = now + request.deadline - request.until
+    if late <= 0.0:
+        return 1.0
+    return max(1.0 - late / request.deadline, _LEAST) if request.deadline else _LEAST

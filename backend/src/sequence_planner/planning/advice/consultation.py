@@ -24,7 +24,9 @@ from sequence_planner.planning.way_back import WaysBack
 
 # Of the time that is left, for one plan, for one without some goals, and for one way into the safe states.
 _PLAN, _PART, _WAY = 0.3, 0.15, 0.4
-_BESIDE = 0.3  # of what is left once something helps, for all that may be offered beside it
+# Of what is left once something helps, for all that may be offered beside it; and where that is done elsewhere than
+# where something is wrong.
+_BESIDE, _BETTER = 0.3, 0.6
 
 
 class Station(Immutable):
@@ -64,6 +66,7 @@ class Consultation:
         self.undecided = False
         self.goes_on = False  # as it is, towards all goals
         self.helped = False  # by an offer that reaches all goals, and does more than say so
+        self._mended = False  # by one that is done where something is wrong
         self.here = here
         self.prover = station.prover
         self.awaited = awaited
@@ -75,11 +78,13 @@ class Consultation:
         self._dead_ends: list[_DeadEnd] = []
         self._operations = station.prover.automaton.operations
 
-    def has_helped(self) -> None:
-        """Take note of an offer that reaches all goals, and does more than say so: who waits for it is told soon."""
-        if not self.helped:
-            self.helped = True
-            self.budget = self.budget.part(_BESIDE)
+    def has_helped(self, *, elsewhere: bool = False) -> None:
+        """Take note of an offer that reaches all goals, and does more than say so: who waits for it is told soon, and
+        somewhat later where there may be a better one, as this is done `elsewhere` than where something is wrong.
+        """
+        if not self.helped or (not elsewhere and not self._mended):
+            self.budget = self.budget.part(_BETTER if elsewhere else _BESIDE)
+        self.helped, self._mended = True, self._mended or not elsewhere
 
     def find(self, task: Task, share: float = _PLAN, *, last: bool = True, helped: bool = False) -> Finding:
         """A plan. What is not decided is asked again, unless this is the `last` time.
@@ -90,7 +95,7 @@ class Consultation:
         """
         self.budget.require()
         prover = self.prover.counting if helped else self.prover
-        finding = prover.find(task, self.budget.part(share))
+        finding = prover.find(task, self.budget.part_of_work(share))
         self.undecided = self.undecided or (last and not finding.decided)
         return finding
 

@@ -143,7 +143,7 @@ class FewestActs:
         self._found.append(frozenset(each.acts))
         offer = self._consultation.making.offer(each.kind, each.after, plan, each.acts)
         if not offer.only_if_checked:
-            self._consultation.has_helped()
+            self._consultation.has_helped(elsewhere=offer.effort.elsewhere > 0)
             self._repaired = self._repaired or self._helps(each) or returns(each.acts)
             self._number[each.way] += 1
             if self._number[each.way] >= self._most:

@@ -103,9 +103,14 @@ class Making:
         )
 
     def _helps(self, act: Act) -> bool:
-        """Whether it is done where something is wrong, as far as that is known."""
-        away = self._here.circumstances.offline
-        return not (self._awaited or away) or any(name in self._awaited for name, _ in act.values)
+        """Whether it is done where something is wrong, as far as that is known: at a device that does nothing, or whose
+        abilities were given up.
+        """
+        circumstances, variables = self._here.circumstances, self._automaton.variables
+        given_up = {self._automaton.abilities[name].resource for name in circumstances.barred}
+        if not (self._awaited or circumstances.offline or given_up):
+            return True
+        return any(name in self._awaited or variables[name].resource in given_up for name, _ in act.values)
 
     def restarts(self, ticks: Iterable[PlanTick]) -> bool:
         """Whether restart abilities start."""

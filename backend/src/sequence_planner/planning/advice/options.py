@@ -1,7 +1,8 @@
 """What a person could change: estimates that are wrong, what stands at a device, and what is out of service.
 
-The more plausible an act is, the lower its `rank`: most of all, what a device should have done by itself, and least of
-all, what would not stay: that a robot is on its way is nothing to see to, as it arrives by itself then.
+The more plausible an act is, the lower its `rank`: most of all, what a device should have done by itself, or that it is
+back; then what the model names as a fault, such as a person who takes over; and least of all, what would not stay: that
+a robot is on its way is nothing to see to, as it arrives by itself then.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ from sequence_planner.expressions.types import Value, contains
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.advice.situation import Situation
 
-_HAPPENS, _EXPECTED, _INITIAL, _CAN_BE, _ESTIMATED, _UNLIKELY, PASSING = range(7)
-LIKELY = _EXPECTED  # acts of this rank, or a lower one, are tried before anything that takes long
+_HAPPENS, _EXPECTED, _FAULT, _INITIAL, _CAN_BE, _ESTIMATED, _UNLIKELY, PASSING = range(8)
+LIKELY = _FAULT  # acts of this rank, or a lower one, are tried before anything that takes long
 
 
 class ActKind(StrEnum):
@@ -71,6 +72,7 @@ class Options:
     def _physical(self, here: Situation, fixed: frozenset[str]) -> Iterator[Act]:
         """For each value of a measured variable what effects would do with it too, and then that alone."""
         offline = here.circumstances.offline
+        given_up = {ability.partition("(")[0] for ability in here.circumstances.barred}
         for name in self._automaton.names(Kind.MEASURED):
             declared = self._automaton.variables[name]
             if name in fixed or declared.resource in offline:
@@ -79,7 +81,8 @@ class Options:
                 together: dict[frozenset[tuple[str, Value]], int] = {}
                 for effect, changed in self._effects:
                     if name in changed and changed.isdisjoint(fixed) and not self._touches(changed, offline):
-                        self._add(together, effect, name, value, here.state)
+                        awaited = effect.name.rpartition(".")[0] in given_up
+                        self._add(together, effect, name, value, here.state, awaited=awaited)
                 alone = frozenset({(name, value)})
                 together.setdefault(alone, _INITIAL if value == declared.initial and not together else _UNLIKELY)
                 for values, rank in together.items():
@@ -106,8 +109,12 @@ class Options:
         name: str,
         value: Value,
         state: State,
+        *,
+        awaited: bool,
     ) -> None:
-        """What `effect` writes where it gives `name` this value, be it enabled or not."""
+        """What `effect` writes where it gives `name` this value, be it enabled or not. One that is `awaited` has not
+        come for so long that its ability was given up.
+        """
         written = effect_writes(effect, state)
         if written is not None and written.get(name) == value:
             rank = _HAPPENS
@@ -115,7 +122,9 @@ class Options:
             written = self._shaped(effect, name, value, state)
             expected = {target(action): action.value for action in effect.actions}[name]
             follows = isinstance(expected, Variable) and state[expected.name] == value
-            rank = _EXPECTED if follows else _CAN_BE
+            rank = _EXPECTED if follows or awaited else _CAN_BE
+        if effect.fault:
+            rank = max(rank, _FAULT)
         if written is not None:
             changed = frozenset((n, v) for n, v in written.items() if state[n] is not None and state[n] != v)
             if (name, value) in changed:

@@ -6,8 +6,6 @@ looked at first: a plan that only needs repair, or a proof whose invariant holds
 
 from __future__ import annotations
 
-from itertools import count
-
 from sequence_planner.automaton.state_set import Supervisor
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.automaton.tick import initial_state, update_operations
@@ -27,9 +25,10 @@ from sequence_planner.planning.replaying.replay import missing
 from sequence_planner.planning.replaying.tightening import tightened
 
 # On stations the search is the fastest by far: 0.02 s for most plans of the truck engine station.
-LANE = Lane("advice", {Contract.FAST: ("search", "projection", "pdr", "goal by goal", "bmc")})
-
+_ENGINES = ("search", "projection", "pdr", "goal by goal", "bmc")
 _TURN = 0.15  # seconds at most for an engine before the next has its turn; in each further round twice as many
+LANE = Lane("advice", {Contract.FAST: _ENGINES}, first_turns=dict.fromkeys(_ENGINES, _TURN), by_work=True)
+
 _PREPARING = 5.0  # seconds
 _MORE = 0.5  # of the time, for the plan that may be one here too
 _MOST_PROOFS = 30
@@ -109,8 +108,7 @@ class Prover:
         if not attempt.answered and not self._relaxes(task):
             return Finding(refuted=True)
         if not attempt.answered:
-            turns = count()
-            for report in self._engines.work(task, budget, lambda: min(attempt.patience, _turn(next(turns)))):
+            for report in self._engines.work(task, budget, lambda: attempt.patience):
                 attempt.take(report)
                 if attempt.answered or budget.spent:
                     break
@@ -150,11 +148,6 @@ class Prover:
     def _keep(self, task: Task, proof: Proof) -> None:
         self._refuted.insert(0, _Refuted(task, _unknown(task.state), proof))
         del self._refuted[_MOST_PROOFS:]
-
-
-def _turn(number: int) -> float:
-    """The seconds of a turn, counted from 0."""
-    return float(_TURN * 2 ** (number // len(LANE.engines[Contract.FAST])))
 
 
 def _covers(refuted: _Refuted, task: Task) -> bool:

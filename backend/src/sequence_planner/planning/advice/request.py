@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import inf
 
 from sequence_planner.automaton.structure import State
 from sequence_planner.expressions.syntax import Expression
@@ -22,7 +23,8 @@ class AdviceRequest(Immutable):
     the others. `last` has what unknown measured variables were
     when they were known last. The formulas of `violated` goals were, and their operations must be reset first. No
     correction or physical change makes an `impossible` pair of values, and none is one of a `fixed` variable. `waiting`
-    are the goals of operations that become active as soon as their preconditions hold.
+    are the goals of operations that become active as soon as their preconditions hold. Whoever asks hears `until` that
+    moment on the clock of `time.monotonic`, also where work on it begins late.
     """
 
     state: State
@@ -36,6 +38,7 @@ class AdviceRequest(Immutable):
     violated: Goals = ()
     waiting: Goals = ()
     deadline: float = 1.8
+    until: float = inf
     longest: int = LONGEST
 
 

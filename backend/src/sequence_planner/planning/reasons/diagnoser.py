@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 from collections.abc import Callable, Iterator
 from multiprocessing.connection import Connection
 from queue import Empty, SimpleQueue
@@ -16,6 +17,7 @@ from sequence_planner.planning.racing.companion import Answered, Companion, Ende
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, diagnose
 from sequence_planner.planning.reasons.why import SupervisorFor
 
+_NICENESS = 5  # what to do comes before why nothing can be done by itself
 _SHARE = 0.9  # of the time, for the process: it says what it has found before nobody listens any more
 
 
@@ -33,6 +35,8 @@ def work(connection: Connection) -> None:
 
 
 def _prepared(model: Model) -> Callable[[Task, Budget], Iterator[Diagnosis]]:
+    os.nice(_NICENESS)
+
     def answer(task: Task, budget: Budget) -> Iterator[Diagnosis]:
         yield diagnose(model.automaton, model.supervisor, model.supervisor_for, task, budget)
 
