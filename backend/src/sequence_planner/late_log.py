@@ -22,6 +22,8 @@ class LateLog:
     def _say(self, level: str, event: str, values: dict[str, object]) -> None:
         from sequence_planner.lean_structlog import structlog  # noqa: PLC0415
 
-        if not structlog.is_configured():  # by a process with a log: what a command answers is on standard output
-            structlog.configure(logger_factory=structlog.PrintLoggerFactory(sys.stderr))
-        getattr(structlog.get_logger(self._name), level)(event, **values)
+        log = structlog.get_logger(self._name)
+        if not structlog.is_configured():  # by a process with a log: a command answers, and warns beside its answer
+            only_warnings = structlog.make_filtering_bound_logger("warning")
+            log = structlog.wrap_logger(structlog.PrintLogger(sys.stderr), wrapper_class=only_warnings)
+        getattr(log, level)(event, **values)
