@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from control.rig import Rig
 from sequence_planner.cli import app
-from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.vocabulary import PlanStatus
 from sequence_planner.expressions.parser import parse
 from sequence_planner.expressions.resolution import Scope, resolve_predicate
 from sequence_planner.station import prepare_station

@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from sequence_planner.analysis.analysis import analyses
+from sequence_planner.analysis.finding import analyses
 from sequence_planner.model.loading import DEFINITIONS, load_station
 from sequence_planner.station import ReadyStation, prepare_station
 from sequence_planner.workshop.comparison import Meant, behaviour_differences, differences, plan_differences

@@ -13,7 +13,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.offer_showing import diagnosis_view
 from sequence_planner.control.outside import Outside
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.history.recorder import RunRecorder
 from sequence_planner.planning.plan import Plan
 from sequence_planner.planning.planner import Planner

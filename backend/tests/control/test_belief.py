@@ -9,7 +9,8 @@ from sequence_planner.control.belief import Beliefs, beliefs_from
 from sequence_planner.control.conduct import Beginning
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import BeliefView, Mode
+from sequence_planner.control.view import BeliefView
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.expressions.types import Value
 
 from .corrected import NOW, WHY, Station

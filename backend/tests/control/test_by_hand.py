@@ -17,7 +17,7 @@ from sequence_planner.automaton.structure import State, target
 from sequence_planner.automaton.tick import apply_effects, initial_state
 from sequence_planner.control.by_hand import KIND, LATENCY, LONGEST, STAYS, ByHand, WentOn, on_its_way
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.expressions.types import Value
 
 MODELS = Path(__file__).parents[3] / "models"

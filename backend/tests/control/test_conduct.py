@@ -15,8 +15,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.happenings import CalledOff, ModeChanged
 from sequence_planner.control.heard import Heard
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode, PlanStatus
+from sequence_planner.control.vocabulary import Mode, PlanStatus, ServiceKind
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.immutable import replace
 from sequence_planner.planning.plan import Contract, Goal, Plan, PlanRequest

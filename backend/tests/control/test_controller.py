@@ -18,7 +18,7 @@ from sequence_planner.control.alarm_view import Priority
 from sequence_planner.control.commands import CommandRefused, SetMode, StartProduction
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.starting import start_when_alone
-from sequence_planner.control.view import Mode, PlanStatus, Production
+from sequence_planner.control.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.forking.starting import children
 from sequence_planner.pipelines.graph import StationPipelines

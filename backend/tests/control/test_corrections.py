@@ -13,7 +13,7 @@ from sequence_planner.control.command_base import CommandRefused
 from sequence_planner.control.correction_view import CorrectionPreview
 from sequence_planner.control.errand import Errand, ErrandKind
 from sequence_planner.control.restart_commands import ConfirmEstimates, UndoCorrection
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import replace
 from sequence_planner.planning.plan import Plan, PlanRequest

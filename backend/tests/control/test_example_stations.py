@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from control.rig import Acknowledging, Rig, at_once, never
-from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.vocabulary import PlanStatus
 
 MODELS = Path(__file__).parents[3] / "models"
 BUFFER, AGV = MODELS / "robots_with_buffer", MODELS / "docking_agv"

@@ -9,7 +9,7 @@ import pytest
 from control.rig import PAIRS, Rig, at_once, never
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.tasks import Task
-from sequence_planner.control.view import Mode, PlanStatus
+from sequence_planner.control.vocabulary import Mode, PlanStatus
 from sequence_planner.control.waiting import waits_for
 from sequence_planner.pipelines.running_outgoing import first_message
 

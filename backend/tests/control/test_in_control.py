@@ -25,7 +25,7 @@ from sequence_planner.control.commands import (
     WithdrawControl,
 )
 from sequence_planner.control.in_control import InControl
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production
 
 from .bench import Arm, Bench, bench
 

@@ -14,7 +14,7 @@ from core.budget import examples
 from sequence_planner.control.command_base import CommandRefused
 from sequence_planner.control.jobs import Job, Jobs
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.expressions.types import Value
 from sequence_planner.history import restoring
 from sequence_planner.history.codec import BEGUN, SNAPSHOT

@@ -15,8 +15,8 @@ from sequence_planner.control.job_desk import JobDesk
 from sequence_planner.control.job_waits import Around
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.tasks import TaskProblem
-from sequence_planner.control.view import Mode
 from sequence_planner.control.viewing_jobs import job_views
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.emulation.devices import EmulatedDevices
 
 

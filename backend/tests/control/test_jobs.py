@@ -19,8 +19,8 @@ from sequence_planner.control.command_base import CommandRefused
 from sequence_planner.control.commands import COMMAND
 from sequence_planner.control.job_commands import CommandJob, JobOperation, JobWait, SequenceJobs, SetByOrder, TakeJob
 from sequence_planner.control.kept_jobs import KeptJobs
-from sequence_planner.control.view import Mode
 from sequence_planner.control.viewing_jobs import job_views, why_idle
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.history import restoring
 from sequence_planner.immutable import replace
 from sequence_planner.synthesis.supervision import synthesise

@@ -18,7 +18,7 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.production_commands import TakeStep
 from sequence_planner.control.restart_commands import ConfirmEstimates, DecideOutputs
 from sequence_planner.control.starting import go_on, start_when_alone
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.journal import run_journal
 from sequence_planner.ros.memory import MemoryNetwork
 from sequence_planner.storage.address import SqliteFile

@@ -28,7 +28,7 @@ from sequence_planner.automaton.tick import (
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.vocabulary import PlanStatus
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.expressions.traces import satisfies
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value

@@ -22,10 +22,9 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.offer_view import OfferView
 from sequence_planner.control.offers import Offers
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_commands import GivenValue, TakeErrand
 from sequence_planner.control.standing_still import StandingStill
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.immutable import replace
 from sequence_planner.planning.advice.offer import Advice

@@ -13,8 +13,8 @@ from sequence_planner.automaton.tick import initial_state, synchronise
 from sequence_planner.control.alarm_view import AlarmState
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.outside import CHOOSE, Difference, Outside
-from sequence_planner.control.view import PlanStatus
 from sequence_planner.control.viewing_outside import way_back
+from sequence_planner.control.vocabulary import PlanStatus
 from sequence_planner.control.way_back_view import DifferenceView, SpecificationView, WayBackView
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.way_back import WaysBack

@@ -14,7 +14,7 @@ from control.test_ticks import NOW
 from core.building import Does, automaton
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
-from sequence_planner.control.view import Mode, PlanStatus
+from sequence_planner.control.vocabulary import Mode, PlanStatus
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.planning.plan import Circumstances, Contract, Plan, PlanAnswer, PlanRequest, PlanTick, Verdict
 

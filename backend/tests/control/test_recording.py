@@ -19,7 +19,8 @@ from sequence_planner.control.commands import (
     TakeControl,
 )
 from sequence_planner.control.recording import Recording
-from sequence_planner.control.view import Mode, Production, TaskView
+from sequence_planner.control.view import TaskView
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.journal.audit import read
 from sequence_planner.journal.entry import Outcome, Record
 from sequence_planner.storage.database import Database

@@ -8,7 +8,7 @@ from control.test_conduct import Station
 from sequence_planner.automaton.structure import State
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.release import Release
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 
 OUTPUTS = ("target", "drill")
 

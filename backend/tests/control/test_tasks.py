@@ -9,7 +9,7 @@ from sequence_planner.automaton.structure import State
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.tasks import Task, TaskDesk, TaskProblem
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 
 PLACE_1, PLACE_2 = (f"operator.place_bolt_pair({pair})" for pair in PAIRS[:2])
 ACKNOWLEDGED = "operator.acknowledged"

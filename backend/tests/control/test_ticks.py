@@ -13,7 +13,7 @@ from sequence_planner.automaton.state_set import StateSet, Supervisor
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.vocabulary import PlanStatus
 from sequence_planner.expressions.types import BOOLEAN
 from sequence_planner.planning.plan import Plan, PlanAnswer, PlanTick, Verdict
 from sequence_planner.planning.reasons.diagnosis import Diagnosis

@@ -13,7 +13,7 @@ from sequence_planner.automaton.structure import Automaton, HumanTask, Timeouts
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.timetable import Timetable, waiting_for_people
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.expressions.types import EnumerationType, Value
 from sequence_planner.immutable import replace
 from sequence_planner.planning.plan import Plan, PlanAnswer, PlanTick, Verdict

@@ -18,11 +18,10 @@ from sequence_planner.control.errand import ErrandKind
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.involving import Surroundings
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_commands import TryAbility
 from sequence_planner.control.trials import Trials
-from sequence_planner.control.view import Mode
 from sequence_planner.control.viewing_conduct import errand_view, last_errand_view
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType, Value
 from sequence_planner.history.codec import Codec
 from sequence_planner.history.memory import Memory

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from control.rig import Rig
-from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.vocabulary import ServiceKind
 from sequence_planner.emulation.devices import EmulatedDevices
 
 BUFFER = Path(__file__).parents[3] / "models" / "robots_with_buffer"

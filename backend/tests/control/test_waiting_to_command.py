@@ -12,7 +12,7 @@ from control.bench import CELL, COMMAND, COMMAND_TYPE, Arm, cell, until
 from sequence_planner.actor import SYSTEM
 from sequence_planner.control.commands import CommandRefused, StartProduction
 from sequence_planner.control.process import Running, control
-from sequence_planner.control.view import Production
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.ros import exclusivity
 from sequence_planner.ros.memory import MemoryNetwork
 from sequence_planner.ros.transport import QualityOfService, TransportError

@@ -7,7 +7,7 @@ from control.rig import Rig, never
 from sequence_planner.control.alarming.consequence import Consequences
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.vocabulary import ServiceKind
 from sequence_planner.control.who_can import WhoCan, at_once
 from sequence_planner.control.who_can_view import WhoCanView
 from sequence_planner.emulation.faults import Fault, FaultKind

@@ -19,8 +19,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.hindrances import HindranceKind, of_ability
 from sequence_planner.control.involving import Surroundings
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.control.why_not import WhyNot
 from sequence_planner.control.why_not_view import ConditionView, WhyNotView
 from sequence_planner.expressions.types import BOOLEAN

@@ -18,8 +18,7 @@ from sequence_planner.control.errand import Errand, ErrandKind
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.offer_showing import offer_title
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.immutable import replace

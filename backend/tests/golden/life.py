@@ -21,9 +21,10 @@ from sequence_planner.control.controller import Controller
 from sequence_planner.control.job_commands import CommandJob, TakeJob
 from sequence_planner.control.last_life import what_is_known
 from sequence_planner.control.offer_view import AdviceView, OfferView
-from sequence_planner.control.production_commands import EnterRestart, LeaveRestart, ServiceKind, SetMode, SetService
+from sequence_planner.control.production_commands import EnterRestart, LeaveRestart, SetMode, SetService
 from sequence_planner.control.restart_commands import CorrectEstimates, DecideOutputs, ForceVariable, TakeErrand
-from sequence_planner.control.view import Mode, StationIdentity, StationView
+from sequence_planner.control.view import StationIdentity, StationView
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.emulation.devices import EmulatedDevices
 from sequence_planner.emulation.faults import Fault, FaultKind
 from sequence_planner.emulation.faulty import FaultyDevices

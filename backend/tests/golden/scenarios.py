@@ -13,7 +13,7 @@ from golden.life import WHY, Life
 from sequence_planner.actor import SYSTEM
 from sequence_planner.automaton.structure import Kind
 from sequence_planner.control.job_commands import ForgetJob, JobOperation, JobWait, SequenceJobs, SetByOrder
-from sequence_planner.control.production_commands import EnterRestart, ServiceKind, SetStepping, TakeStep
+from sequence_planner.control.production_commands import EnterRestart, SetStepping, TakeStep
 from sequence_planner.control.restart_commands import (
     ConfirmEstimates,
     ReleaseForce,
@@ -21,7 +21,7 @@ from sequence_planner.control.restart_commands import (
     TryAbility,
     UndoCorrection,
 )
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.emulation.faults import FaultKind
 
 STATIONS: Final = Path(__file__).parents[3] / "models"

@@ -28,8 +28,7 @@ from sequence_planner.control.job_commands import (
 )
 from sequence_planner.control.job_desk import JobDesk
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.expressions.syntax import TRUE, Assignment, Constant, Expression, Variable
 from sequence_planner.expressions.types import Value
 from sequence_planner.history.model_digest import model_digest

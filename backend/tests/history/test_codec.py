@@ -16,7 +16,7 @@ from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.errand import Errand, ErrandKind
 from sequence_planner.control.happenings import ErrandTaken, ModeChanged, Ticked
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.expressions.syntax import Comparison, Constant, Variable
 from sequence_planner.expressions.types import BOOLEAN, EnumerationType
 from sequence_planner.history.codec import KINDS, TICKED, Codec, Senses, TickBook, kind_of

@@ -8,7 +8,7 @@ from control.bench import Arm, bench, cell
 from control.journalling import journal
 from core.actors import EVA
 from sequence_planner.control.commands import SetMode, TakeControl
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.history.codec import BEGUN
 from sequence_planner.history.replay import replay
 from sequence_planner.journal.whole_run import WholeRun

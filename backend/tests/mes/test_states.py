@@ -21,7 +21,7 @@ from sqlalchemy import Connection, delete, select
 
 from core.budget import examples
 from sequence_planner.actor import Actor, ActorKind
-from sequence_planner.control.job_view import JobState
+from sequence_planner.control.vocabulary import JobState
 from sequence_planner.control.work_master_view import WorkMastersView
 from sequence_planner.journal import audit
 from sequence_planner.mes import events, orders, responses

@@ -41,7 +41,8 @@ from sequence_planner.control.controller import Controller
 from sequence_planner.control.heard import Heard
 from sequence_planner.control.last_life import what_is_known
 from sequence_planner.control.restart_commands import DecideOutputs
-from sequence_planner.control.view import Production, StationIdentity
+from sequence_planner.control.view import StationIdentity
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.emulation.devices import EmulatedDevices
 from sequence_planner.planning.budget import Budget
 from sequence_planner.planning.plan import Contract, PlanRequest, WayBackRequest

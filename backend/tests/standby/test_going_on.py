@@ -21,7 +21,7 @@ from sequence_planner.control.preparation import Preparation
 from sequence_planner.control.process import _follows
 from sequence_planner.control.recording import Recording
 from sequence_planner.control.starting import go_on
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.journal.ending import Ending
 from sequence_planner.journal.last_word import Life
 from sequence_planner.standby.keeper import Keeper

@@ -7,8 +7,7 @@ import math
 import pytest
 
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.emulation.truck_station.poses import PAIRS
 from stations.simulated import HallRig
 

@@ -5,19 +5,16 @@ from __future__ import annotations
 from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.approval_commands import CorrectionAct
 from sequence_planner.control.approval_view import ApprovalState, ApprovalView
-from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
+from sequence_planner.control.job_view import JobStepState, JobStepView, JobView
 from sequence_planner.control.override_view import OverrideFieldView, OverrideView
 from sequence_planner.control.restart_view import ForceView, UndecidedOutputView
 from sequence_planner.control.view import (
     AbilityView,
     BeliefView,
-    Mode,
     OperationView,
     PackML,
-    PlanStatus,
     PlanStepView,
     PlanView,
-    Production,
     ResourceView,
     StationIdentity,
     StationStanding,
@@ -28,6 +25,7 @@ from sequence_planner.control.view import (
     VariableKind,
     VariableView,
 )
+from sequence_planner.control.vocabulary import JobState, Mode, PlanStatus, Production
 from sequence_planner.planning.plan import Contract
 
 

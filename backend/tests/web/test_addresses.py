@@ -10,8 +10,9 @@ import httpx
 import pytest
 
 from sequence_planner.actor import Actor, ActorKind
-from sequence_planner.control.production_commands import ServiceKind, SetService
+from sequence_planner.control.production_commands import SetService
 from sequence_planner.control.recording import entry_of
+from sequence_planner.control.vocabulary import ServiceKind
 from sequence_planner.identity.roles import Role
 from sequence_planner.journal.entry import LONGEST_SUBJECT
 

@@ -16,8 +16,8 @@ from sequence_planner.control.commands import CommandRefused, SetMode
 from sequence_planner.control.link import ControllerLink
 from sequence_planner.control.link_replies import MOST_ASKS
 from sequence_planner.control.pipeline_view import FlowsView, PipelinesView
-from sequence_planner.control.view import Mode
 from sequence_planner.control.view_part import View
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.web.controller_client import ControllerClient
 
 from .example_view import example_view

@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sequence_planner.control.override_view import OverrideFieldView
-from sequence_planner.control.view import Mode, Production, StationView, VariableView
+from sequence_planner.control.view import StationView, VariableView
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.web.difference import MAPS, difference
 from sequence_planner.web.stream_messages import Delta, StationChange
 

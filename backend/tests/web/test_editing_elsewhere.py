@@ -15,7 +15,7 @@ import httpx
 import pytest
 
 from sequence_planner.control.production_commands import SetMode
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.forking.starting import children
 from sequence_planner.identity.roles import Role
 from sequence_planner.model import reading

@@ -22,7 +22,8 @@ from sequence_planner.control.lines import read_lines
 from sequence_planner.control.link import ControllerLink
 from sequence_planner.control.link_messages import LONGEST_COMMAND
 from sequence_planner.control.unix_socket import SocketTakenError, listen_on
-from sequence_planner.control.view import Mode, StationView
+from sequence_planner.control.view import StationView
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.web.controller_client import ControllerClient
 
 from .example_view import example_view

@@ -17,8 +17,9 @@ from prometheus_client.samples import Sample
 
 from sequence_planner.control.asks import Ask, AskFigures
 from sequence_planner.control.link import ControllerLink
-from sequence_planner.control.view import Production, StationView
+from sequence_planner.control.view import StationView
 from sequence_planner.control.view_part import View
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.parts_file import write_restarts
 from sequence_planner.storage.address import SqliteFile

@@ -11,7 +11,6 @@ from sequence_planner.control.commands import Command
 from sequence_planner.control.production_commands import (
     EnterRestart,
     LeaveRestart,
-    ServiceKind,
     SetMode,
     SetService,
     SetStepping,
@@ -19,7 +18,7 @@ from sequence_planner.control.production_commands import (
     TakeStep,
 )
 from sequence_planner.control.restart_commands import ForceVariable, ReleaseForce
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.identity.roles import Role
 
 from .running import Controller, Server

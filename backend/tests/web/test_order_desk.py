@@ -11,9 +11,9 @@ import pytest
 
 from sequence_planner.control.commands import Command, CommandRefused
 from sequence_planner.control.job_commands import CommandJob, ForgetJob, TakeJob
-from sequence_planner.control.job_view import JobState, JobView
+from sequence_planner.control.job_view import JobView
 from sequence_planner.control.link import ControllerLink
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import JobState, Mode
 from sequence_planner.mes import orders
 from sequence_planner.mes.states import OrderState
 from sequence_planner.web import order_dispatch

@@ -9,8 +9,8 @@ import httpx
 import pytest
 
 from sequence_planner.control.job_commands import SequenceJobs, TakeJob
-from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
-from sequence_planner.control.view import Mode
+from sequence_planner.control.job_view import JobStepState, JobStepView, JobView
+from sequence_planner.control.vocabulary import JobState, Mode
 from sequence_planner.control.work_master_view import WorkMasterView, WorkOperationView
 from sequence_planner.mes.sequencing.known_times import KnownTimes
 from sequence_planner.web import order_of_work

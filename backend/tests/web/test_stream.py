@@ -13,7 +13,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed
 from websockets.sync.client import ClientConnection
 
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 
 from .example_view import example_view
 from .running import Controller, Server, listen, until

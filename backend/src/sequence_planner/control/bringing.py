@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from sequence_planner.automaton.structure import Ability, Automaton, State, WorkMaster, target
 from sequence_planner.control.conduct import Conduct
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.expressions.syntax import Constant
 from sequence_planner.expressions.types import Value
 

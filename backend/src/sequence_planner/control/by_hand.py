@@ -20,7 +20,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.happenings import Ticked
 from sequence_planner.control.heard import Heard, TickOutcome
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import Production
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.expressions.types import Value
 from sequence_planner.pipelines.goal_states import GOAL_ON_ITS_WAY

@@ -13,8 +13,7 @@ from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.control.errand import Errand
 from sequence_planner.control.jobs import Jobs
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production, ServiceKind
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import Immutable, replace
 from sequence_planner.planning.plan import Circumstances

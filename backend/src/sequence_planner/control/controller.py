@@ -57,9 +57,10 @@ from sequence_planner.control.release import Release
 from sequence_planner.control.standing_notes import StandingNotes
 from sequence_planner.control.tasks import TaskDesk
 from sequence_planner.control.trials import Trials
-from sequence_planner.control.view import Production, StationIdentity, StationView
+from sequence_planner.control.view import StationIdentity, StationView
 from sequence_planner.control.view_part import View
 from sequence_planner.control.viewing import Doubts, Viewing
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.control.who_can import in_thread
 from sequence_planner.control.why_not import WhyNot
 from sequence_planner.control.work_masters import work_masters_view

@@ -27,7 +27,7 @@ from sequence_planner.control.restart_commands import (
     UndoCorrection,
 )
 from sequence_planner.control.restart_view import LastCorrectionView
-from sequence_planner.control.view import Production
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.resolution import suggestion
 from sequence_planner.expressions.types import Value, contains

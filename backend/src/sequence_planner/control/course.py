@@ -23,7 +23,7 @@ from sequence_planner.control.live_plan import LivePlan, Present
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.pursued import Pursued
 from sequence_planner.control.timeouts import after_another_try, overdue, to_call_off
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import replace

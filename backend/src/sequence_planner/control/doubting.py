@@ -16,7 +16,7 @@ from sequence_planner.control.contradictions import Contradictions, contradictio
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.restart_view import QuestionView, UndecidedOutputView
 from sequence_planner.control.undecided import Undecided
-from sequence_planner.control.view import Production
+from sequence_planner.control.vocabulary import Production
 
 LOG = structlog.get_logger(__name__)
 

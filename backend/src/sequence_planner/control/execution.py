@@ -44,8 +44,7 @@ from sequence_planner.control.happenings import (
 from sequence_planner.control.heard import Heard, TickOutcome
 from sequence_planner.control.jobs import Job, JobAct, Waits
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production, ServiceKind
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import replace
 from sequence_planner.planning.plan import Contract, PlanAnswer, PlanRequest

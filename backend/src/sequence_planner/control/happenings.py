@@ -11,8 +11,7 @@ from collections.abc import Mapping
 from sequence_planner.control.errand import Errand
 from sequence_planner.control.jobs import JobAct, Waits
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.expressions.types import Value
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.plan import Contract, PlanAnswer

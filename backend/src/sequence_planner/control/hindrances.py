@@ -9,8 +9,7 @@ from enum import StrEnum
 from sequence_planner.automaton.structure import Ability, State
 from sequence_planner.automaton.tick import reverts, start, supervised_start, synchronise
 from sequence_planner.control.execution import Execution
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production, ServiceKind
 from sequence_planner.expressions.evaluation import evaluate, holds
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import TRUE, Expression, conjunction, conjuncts, variables

@@ -5,22 +5,7 @@ from __future__ import annotations
 from enum import StrEnum
 
 from sequence_planner.control.view_part import View
-
-
-class JobState(StrEnum):
-    """Where a job stands."""
-
-    WAITING = "waiting"  # taken, but what its product brings is not there yet
-    RUNNING = "running"
-    PAUSED = "paused"  # none of its operations is active
-    ENDED = "ended"  # all its operations are completed
-    STOPPED = "stopped"  # ended by an order to begin nothing more
-    ABORTED = "aborted"
-
-    @property
-    def is_over(self) -> bool:
-        """Whether it never changes any more."""
-        return self in (JobState.ENDED, JobState.STOPPED, JobState.ABORTED)
+from sequence_planner.control.vocabulary import JobState
 
 
 class JobStepState(StrEnum):

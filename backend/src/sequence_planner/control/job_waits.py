@@ -15,7 +15,7 @@ from sequence_planner.control.jobs import Job
 from sequence_planner.control.start_order import Step
 from sequence_planner.control.tasks import Task, TaskProblem
 from sequence_planner.control.timeouts import overdue
-from sequence_planner.control.view import Mode, PlanStatus, Production
+from sequence_planner.control.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import Expression, conjunction, conjuncts

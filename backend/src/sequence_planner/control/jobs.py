@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterable, Mapping
 from enum import StrEnum
 
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.control.job_view import JobState
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.vocabulary import JobState
 from sequence_planner.immutable import Immutable, replace
 
 Step = tuple[str, str]  # a job, and an operation of it

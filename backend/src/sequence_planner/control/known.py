@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from sequence_planner.control.alarming.keeping import PutAside
 from sequence_planner.control.conduct import Beginning
 from sequence_planner.control.control_view import ControlView
-from sequence_planner.control.view import BeliefView, DeploymentView, Mode
+from sequence_planner.control.view import BeliefView, DeploymentView
+from sequence_planner.control.vocabulary import Mode
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,8 @@ from sequence_planner.control.conduct import Beginning
 from sequence_planner.control.happenings import ProductionStarted
 from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import BeliefView, Mode, Production
+from sequence_planner.control.view import BeliefView
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.history.codec import BEGUN, SNAPSHOT, kind_of
 from sequence_planner.history.recorder import SNAPSHOT_EVERY
 from sequence_planner.history.restoring import beginning, last_mode

@@ -17,7 +17,7 @@ from sequence_planner.control.moment import Moment
 from sequence_planner.control.plan_reasons import why_new, why_none, why_violated
 from sequence_planner.control.pursued import Pursued
 from sequence_planner.control.start_order import StartOrder, Step
-from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.vocabulary import PlanStatus
 from sequence_planner.planning.goals.pursuit import Goals, moved
 from sequence_planner.planning.plan import Circumstances, Contract, Plan, PlanAnswer, PlanRequest, Verdict
 from sequence_planner.planning.reasons.diagnosis import Diagnosis, DiagnosisRequest

@@ -10,14 +10,13 @@ from sequence_planner.control.outside import Outside
 from sequence_planner.control.production_commands import (
     EnterRestart,
     LeaveRestart,
-    ServiceKind,
     SetMode,
     SetService,
     SetStepping,
     TakeStep,
 )
 from sequence_planner.control.restart_commands import StopErrand
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production, ServiceKind
 
 ModeCommand = SetMode | EnterRestart | LeaveRestart | SetStepping | TakeStep | SetService | StopErrand
 

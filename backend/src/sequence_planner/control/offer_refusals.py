@@ -10,7 +10,7 @@ from sequence_planner.control.errand import Errand
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.offer_showing import diagnosis_view, needs_restart
 from sequence_planner.control.restart_commands import TakeErrand
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.advice.offer import Offer
 

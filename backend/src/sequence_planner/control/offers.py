@@ -24,11 +24,10 @@ from sequence_planner.control.offer_refusals import errand_under_way, no_plan, r
 from sequence_planner.control.offer_showing import diagnosis_view, offer_title, offer_view
 from sequence_planner.control.offer_view import AdviceView, OfferView
 from sequence_planner.control.predicates import read_predicate
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_commands import CorrectEstimates, TakeErrand
 from sequence_planner.control.standing_still import StandingStill
 from sequence_planner.control.timeouts import overdue
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production, ServiceKind
 from sequence_planner.expressions.evaluation import holds
 from sequence_planner.expressions.syntax import Expression
 from sequence_planner.immutable import replace

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.vocabulary import PlanStatus
 from sequence_planner.counting import counted
 from sequence_planner.expressions.printing import print_expression
 from sequence_planner.expressions.syntax import TRUE

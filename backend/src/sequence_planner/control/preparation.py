@@ -21,17 +21,15 @@ from sequence_planner.control.control_view import ControlView
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.view import (
     DeploymentView,
-    Mode,
     PackML,
-    PlanStatus,
     PlanView,
-    Production,
     StandbyView,
     StationIdentity,
     StationStanding,
     StationView,
     TaskView,
 )
+from sequence_planner.control.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.model.source import Finding
 from sequence_planner.synthesis.guards import Guard
 

@@ -32,8 +32,9 @@ from sequence_planner.control.production_commands import Deploy
 from sequence_planner.control.recording import Recording
 from sequence_planner.control.shown import Shown
 from sequence_planner.control.starting import go_on, start_when_alone
-from sequence_planner.control.view import Mode, StationIdentity, StationView
+from sequence_planner.control.view import StationIdentity, StationView
 from sequence_planner.control.view_part import View
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.emulation.possible import emulation_findings
 from sequence_planner.journal.ending import Ending
 from sequence_planner.journal.last_word import LastWord, last_word_file

@@ -2,22 +2,13 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from typing import ClassVar, Literal
 
 from pydantic import Field
 
 from sequence_planner.control.command_base import CommandBase
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.journal.entry import LONGEST_REASON
-
-
-class ServiceKind(StrEnum):
-    """What can be taken out of service."""
-
-    RESOURCE = "resource"
-    ABILITY = "ability"
-    OPERATION = "operation"
 
 
 class SetMode(CommandBase):

@@ -16,7 +16,7 @@ from sequence_planner.automaton.structure import Automaton, State, target
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.happenings import CalledOff, ErrandTaken, Happening, ModeChanged, ProductionStarted
 from sequence_planner.control.heard import Heard, TickOutcome
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.expressions.types import Value
 
 

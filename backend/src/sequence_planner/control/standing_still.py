@@ -16,7 +16,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.happenings import Ticked
 from sequence_planner.control.heard import Heard
 from sequence_planner.control.timeouts import overdue
-from sequence_planner.control.view import Production
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.planning.advice.stalling import changes_something
 

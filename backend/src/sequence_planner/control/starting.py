@@ -11,7 +11,7 @@ from sequence_planner.actor import SYSTEM
 from sequence_planner.control.commands import CommandRefused, StartProduction
 from sequence_planner.control.controller import Controller
 from sequence_planner.control.link import Handle
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.emulation.node import NODE as EMULATED_DEVICES
 
 LOG = structlog.get_logger(__name__)

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 from sequence_planner.automaton.structure import Ability, Automaton
 from sequence_planner.control.conduct import Conduct, OutOfService
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.start_order import StartOrder, Step
+from sequence_planner.control.vocabulary import ServiceKind
 from sequence_planner.immutable import replace
 
 

@@ -17,7 +17,7 @@ from sequence_planner.automaton.cone import read_variables
 from sequence_planner.automaton.structure import Automaton, target
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.start_order import StartOrder, Step
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.expressions.syntax import variables
 from sequence_planner.immutable import Immutable
 from sequence_planner.planning.advice.offer import expected_seconds

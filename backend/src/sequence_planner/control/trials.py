@@ -17,7 +17,7 @@ from sequence_planner.control.involving import Surroundings
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.offer_refusals import errand_under_way
 from sequence_planner.control.restart_commands import TryAbility
-from sequence_planner.control.view import Mode, Production
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.expressions.syntax import TRUE
 from sequence_planner.planning.plan import Plan, PlanTick
 

@@ -26,18 +26,10 @@ from sequence_planner.control.restart_view import (
 )
 from sequence_planner.control.task_commands import ProblemKind
 from sequence_planner.control.view_part import Value, View
+from sequence_planner.control.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.control.way_back_view import WayBackView
 from sequence_planner.control.who_can_view import WhoCanView
 from sequence_planner.planning.plan import Contract
-
-
-class Mode(StrEnum):
-    """How the station executes (see `docs/semantics.md`)."""
-
-    AUTOMATIC = "automatic"
-    PAUSED = "paused"  # what runs may finish, nothing is started
-    HOLD = "hold"  # paused, and what runs was called off where it can be
-    RESTART = "restart"  # operations are paused; errands are carried out one by one
 
 
 class PackML(StrEnum):
@@ -53,14 +45,6 @@ class PackML(StrEnum):
     STOPPED = "stopped"
     ABORTED = "aborted"
     CLEARING = "clearing"
-
-
-class Production(StrEnum):
-    """Whether outputs may be published: nothing is, until a person has started production."""
-
-    PREPARING = "preparing"  # the safe set is being computed, or the links are being checked
-    WAITING = "waiting"  # ready; waits for a person to start production
-    STARTED = "started"
 
 
 class StationStanding(StrEnum):
@@ -91,16 +75,6 @@ class StepStatus(StrEnum):
     RUNNING = "running"
     NEXT = "next"
     PLANNED = "planned"
-
-
-class PlanStatus(StrEnum):
-    """What can be said about the plan."""
-
-    IDLE = "idle"  # no operation is active, so there is nothing to plan
-    PLANNING = "planning"  # none yet, a worker is at it
-    FOLLOWED = "followed"
-    BROKEN = "broken"  # the state departed from it; a new one is being looked for
-    NONE = "none"  # no plan was found
 
 
 class StationIdentity(View):

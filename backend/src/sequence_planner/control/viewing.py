@@ -16,7 +16,6 @@ from sequence_planner.control.control_view import ControlView
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.heard import TickOutcome
-from sequence_planner.control.job_view import JobState
 from sequence_planner.control.job_waits import Around
 from sequence_planner.control.jobs import Jobs
 from sequence_planner.control.live_plan import Replacement
@@ -25,7 +24,6 @@ from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.offer_showing import diagnosis_view
 from sequence_planner.control.outside import Outside
 from sequence_planner.control.override_view import OverrideView
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_view import LastCorrectionView, QuestionView, UndecidedOutputView
 from sequence_planner.control.start_order import Step
 from sequence_planner.control.tasks import TaskDesk, TaskProblem
@@ -38,7 +36,6 @@ from sequence_planner.control.view import (
     PackML,
     PlanStepView,
     PlanView,
-    Production,
     ReplacementView,
     ResourceView,
     StationIdentity,
@@ -63,6 +60,7 @@ from sequence_planner.control.viewing_conduct import (
 from sequence_planner.control.viewing_jobs import job_views
 from sequence_planner.control.viewing_jobs import waits_for as job_waits_for
 from sequence_planner.control.viewing_outside import way_back
+from sequence_planner.control.vocabulary import JobState, Production, ServiceKind
 from sequence_planner.control.waiting import waits_for
 from sequence_planner.control.who_can_view import WhoCanView
 from sequence_planner.expressions.printing import print_expression

@@ -10,9 +10,9 @@ from sequence_planner.control.conduct import Conduct
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.offer_showing import end_text
 from sequence_planner.control.outside import Outside
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_view import ErrandView, ForceView, LastErrandView, ServiceView
-from sequence_planner.control.view import Mode, PackML, PlanStatus, Production, StationStanding
+from sequence_planner.control.view import PackML, StationStanding
+from sequence_planner.control.vocabulary import Mode, PlanStatus, Production, ServiceKind
 
 _ENDING = {Mode.PAUSED: (PackML.HOLDING, PackML.HELD), Mode.HOLD: (PackML.STOPPING, PackML.STOPPED)}
 

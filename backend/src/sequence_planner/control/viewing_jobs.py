@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
-from sequence_planner.control.job_view import JobState, JobStepState, JobStepView, JobView
+from sequence_planner.control.job_view import JobStepState, JobStepView, JobView
 from sequence_planner.control.job_waits import Around, of_running
 from sequence_planner.control.jobs import Job, Jobs
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.vocabulary import JobState
 
 
 def job_views(execution: Execution, jobs: Jobs | None = None, around: Around | None = None) -> dict[str, JobView]:

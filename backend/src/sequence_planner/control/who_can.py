@@ -16,7 +16,7 @@ import structlog
 
 from sequence_planner.automaton.structure import Automaton, State
 from sequence_planner.control.execution import Execution
-from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.vocabulary import ServiceKind
 from sequence_planner.control.who_can_view import AbsenceReason, AbsenceView, DoableView, NobodyView, WhoCanView
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.planning.relaxed.remaining import Absent, Remaining

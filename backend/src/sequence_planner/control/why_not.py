@@ -18,9 +18,9 @@ from sequence_planner.control.involving import Involving, Surroundings
 from sequence_planner.control.offer_showing import diagnosis_view, plan_preview
 from sequence_planner.control.offer_view import PlanPreviewView
 from sequence_planner.control.predicates import read_predicate
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import DiagnosisView, Mode
+from sequence_planner.control.view import DiagnosisView
 from sequence_planner.control.viewing_jobs import why_idle
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.control.waiting import right_moment
 from sequence_planner.control.why_not_view import WhyNotView
 from sequence_planner.expressions.evaluation import evaluate

@@ -20,7 +20,7 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.live_plan import Question, Replacement
 from sequence_planner.control.pursued import Pursued
 from sequence_planner.control.start_order import Step
-from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.vocabulary import PlanStatus
 from sequence_planner.history.codec import Codec, Document
 from sequence_planner.history.shapes import UnreadableError
 from sequence_planner.planning.plan import Plan, PlanAnswer, PlanRequest

@@ -15,8 +15,7 @@ from sequence_planner.control.conduct import Beginning, OutOfService
 from sequence_planner.control.happenings import Confirmed
 from sequence_planner.control.jobs import Jobs
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.expressions.printing import print_value
 from sequence_planner.expressions.types import Value, contains
 from sequence_planner.history.codec import BEGUN, SNAPSHOT, Codec, kind_of

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from pydantic import JsonValue
 
 from sequence_planner.automaton.structure import Automaton
-from sequence_planner.control.job_view import JobState
 from sequence_planner.control.jobs import Job, Jobs, Waits
 from sequence_planner.control.moment import Moment
+from sequence_planner.control.vocabulary import JobState
 from sequence_planner.history.codec import Codec
 from sequence_planner.history.shapes import UnreadableError
 from sequence_planner.immutable import replace

@@ -11,7 +11,7 @@ from sequence_planner.automaton.structure import Kind
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.tasks import Task, TaskDesk
-from sequence_planner.control.view import Production
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.emulation.devices import EmulatedDevices
 from sequence_planner.expressions.types import Value
 from sequence_planner.planning.planner import Planner, PlannerError

@@ -8,8 +8,9 @@ from pydantic import JsonValue
 
 from sequence_planner.control.job_view import JobView
 from sequence_planner.control.restart_view import ErrandView, ForceView, ServiceView
-from sequence_planner.control.view import Mode, PackML, PlanStatus, Production, StepStatus
+from sequence_planner.control.view import PackML, StepStatus
 from sequence_planner.control.view_part import Value, View
+from sequence_planner.control.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.immutable import Immutable
 from sequence_planner.journal.run_journal import RunRecord
 

@@ -12,7 +12,7 @@ from typing import Final
 from pydantic import JsonValue
 from sqlalchemy import Connection, delete, insert, select
 
-from sequence_planner.control.job_view import JobState
+from sequence_planner.control.vocabulary import JobState
 from sequence_planner.control.work_master_view import WorkMastersView
 from sequence_planner.history.codec import BEGUN, SNAPSHOT
 from sequence_planner.journal import run_journal

@@ -13,8 +13,8 @@ from typing import Final
 
 from pydantic import BaseModel, ConfigDict
 
-from sequence_planner.control.job_view import JobState
 from sequence_planner.control.view_part import Value
+from sequence_planner.control.vocabulary import JobState
 from sequence_planner.control.work_master_view import WorkMastersView
 from sequence_planner.journal.run_journal import RunRecord
 from sequence_planner.mes.responses import AbilityMade, CorrectionMade, Deviation, OperationMade

@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
 
-from sequence_planner.control.view import Mode, Production, StationView
+from sequence_planner.control.view import StationView
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.control.work_master_view import WorkMastersView
 from sequence_planner.mes.order import JobOrder
 from sequence_planner.mes.order_of_work import OrderOfWork, order_of_work

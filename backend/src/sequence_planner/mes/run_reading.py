@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from sequence_planner.control.happenings import Corrected, ServiceChanged
-from sequence_planner.control.job_view import JobState
+from sequence_planner.control.vocabulary import JobState
 from sequence_planner.history.codec import BEGUN, KINDS, SNAPSHOT, TICKED, kind_of
 from sequence_planner.history.line import ALARM
 from sequence_planner.journal.run_journal import RunRecord

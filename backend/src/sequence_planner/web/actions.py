@@ -23,7 +23,7 @@ from sequence_planner.web.problems import ProblemFound, refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller, live_view
 
 LARGEST_REVISION = 2**53 - 1  # the largest whole number that every JSON reader keeps
-OPERATOR = allowed(Role.OPERATOR)
+OPERATOR, ENGINEER = allowed(Role.OPERATOR), allowed(Role.ENGINEER)
 
 router = interface(tags=["actions"], dependencies=[JSON_ONLY], responses=refused(409, 504))
 bodiless = interface(tags=["actions"], responses=refused(409, 504))

@@ -14,7 +14,7 @@ from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
-OPERATOR = allowed(Role.OPERATOR)
+OPERATOR, ENGINEER = allowed(Role.OPERATOR), allowed(Role.ENGINEER)
 router = interface("/control", tags=["control"], responses=refused(409, 504))
 
 

@@ -28,7 +28,7 @@ from sequence_planner.web.interface import interface
 from sequence_planner.web.problems import refused
 from sequence_planner.web.request_parts import JSON_ONLY, Actor, Controller
 
-OPERATOR = allowed(Role.OPERATOR)
+OPERATOR, ENGINEER = allowed(Role.OPERATOR), allowed(Role.ENGINEER)
 
 router = interface(tags=["corrections"], dependencies=[JSON_ONLY, OPERATOR], responses=refused(404, 409, 422, 504))
 

@@ -13,7 +13,8 @@ from prometheus_client.core import CounterMetricFamily, GaugeMetricFamily, Histo
 
 from sequence_planner.control.alarm_view import AlarmState, Priority
 from sequence_planner.control.figures_view import DistributionView, FiguresView
-from sequence_planner.control.view import Mode, PackML, Production, StationView
+from sequence_planner.control.view import PackML, StationView
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.version import VERSION
 from sequence_planner.web.noting import Noted
 from sequence_planner.web.readiness import ReadinessCheck

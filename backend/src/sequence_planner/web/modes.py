@@ -16,7 +16,6 @@ from sequence_planner.control.job_commands import SetByOrder
 from sequence_planner.control.production_commands import (
     EnterRestart,
     LeaveRestart,
-    ServiceKind,
     SetMode,
     SetService,
     SetStepping,
@@ -24,7 +23,7 @@ from sequence_planner.control.production_commands import (
     TakeStep,
 )
 from sequence_planner.control.restart_commands import ForceVariable, GivenValue, ReleaseForce, Why
-from sequence_planner.control.view import Mode
+from sequence_planner.control.vocabulary import Mode, ServiceKind
 from sequence_planner.identity.roles import Role
 from sequence_planner.web.access import allowed
 from sequence_planner.web.body import Body, Reason

@@ -19,7 +19,8 @@ from starlette.concurrency import run_in_threadpool
 from sequence_planner.actor import Actor
 from sequence_planner.control.asks import AboutWorkMasters
 from sequence_planner.control.commands import CommandRefused
-from sequence_planner.control.view import Production, StationView
+from sequence_planner.control.view import StationView
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.control.work_master_view import WorkMastersView
 from sequence_planner.mes import orders
 from sequence_planner.mes.following import Following

@@ -15,8 +15,9 @@ from starlette.concurrency import run_in_threadpool
 from sequence_planner.actor import SYSTEM, Actor
 from sequence_planner.control.commands import CommandRefused
 from sequence_planner.control.job_commands import CommandJob, ForgetJob, TakeJob
-from sequence_planner.control.job_view import JobState, JobView
+from sequence_planner.control.job_view import JobView
 from sequence_planner.control.view import StationView
+from sequence_planner.control.vocabulary import JobState
 from sequence_planner.mes import orders
 from sequence_planner.mes.order import JobOrder
 from sequence_planner.mes.states import OrderState, Wish

@@ -9,7 +9,7 @@ from enum import StrEnum
 import structlog
 from anyio import to_thread
 
-from sequence_planner.control.view import Production
+from sequence_planner.control.vocabulary import Production
 from sequence_planner.storage.database import Database
 from sequence_planner.storage.error import StorageError
 from sequence_planner.web.controller_client import ControllerClient

@@ -25,11 +25,9 @@ from sequence_planner.control.restart_view import (
 from sequence_planner.control.view import (
     AbilityView,
     DeploymentView,
-    Mode,
     OperationView,
     PackML,
     PlanView,
-    Production,
     ResourceView,
     StandbyView,
     StationIdentity,
@@ -38,6 +36,7 @@ from sequence_planner.control.view import (
     TopicView,
     VariableView,
 )
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.control.who_can_view import WhoCanView
 from sequence_planner.identity.roles import Role, Scope
 from sequence_planner.web.access import allowed

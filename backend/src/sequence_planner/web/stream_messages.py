@@ -31,11 +31,9 @@ from sequence_planner.control.restart_view import (
 from sequence_planner.control.view import (
     AbilityView,
     DeploymentView,
-    Mode,
     OperationView,
     PackML,
     PlanView,
-    Production,
     ResourceView,
     StandbyView,
     StationIdentity,
@@ -45,6 +43,7 @@ from sequence_planner.control.view import (
     TopicView,
     VariableView,
 )
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.control.way_back_view import WayBackView
 from sequence_planner.control.who_can_view import WhoCanView
 

@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, Field, RootModel
 
-from sequence_planner.control.view import Mode, StationStanding, TaskView
+from sequence_planner.control.view import StationStanding, TaskView
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.identity.watches import WatchState
 from sequence_planner.web.body import Body, Name
 from sequence_planner.web.looking_messages import Silence

@@ -14,7 +14,7 @@ from sequence_planner.automaton.structure import State
 from sequence_planner.control.execution import Execution
 from sequence_planner.control.heard import Heard
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.view import PlanStatus
+from sequence_planner.control.vocabulary import PlanStatus
 from sequence_planner.expressions.types import Value
 from sequence_planner.history.simulated import SimulatedStation
 from sequence_planner.planning.planner import Planner

@@ -8,8 +8,8 @@ from sequence_planner.control.alarm_view import AlarmState, AlarmView, Priority
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.restart_view import QuestionView
-from sequence_planner.control.view import Mode
 from sequence_planner.control.viewing_conduct import failing
+from sequence_planner.control.vocabulary import Mode
 from sequence_planner.emulation.faults import Clear, Fault, FaultKind
 
 ROBOT_IS_STILL = "still:robot"

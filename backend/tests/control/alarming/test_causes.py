@@ -13,11 +13,10 @@ from sequence_planner.control.conduct import LastErrand, OutOfService
 from sequence_planner.control.heard import TickOutcome
 from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.restart_view import QuestionView
 from sequence_planner.control.task_commands import ProblemKind
 from sequence_planner.control.tasks import TaskProblem
-from sequence_planner.control.view import Mode, PlanStatus
+from sequence_planner.control.vocabulary import Mode, PlanStatus, ServiceKind
 from sequence_planner.immutable import replace
 
 

@@ -20,7 +20,7 @@ from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
-from sequence_planner.control.production_commands import ServiceKind
+from sequence_planner.control.vocabulary import ServiceKind
 from sequence_planner.emulation.devices import EmulatedDevices
 from sequence_planner.planning.planner import Planner
 from sequence_planner.ros.transport import Endpoint, QualityOfService, Sample, TransportError

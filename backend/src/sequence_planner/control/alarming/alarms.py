@@ -30,8 +30,8 @@ from sequence_planner.control.known import Known
 from sequence_planner.control.moment import Moment
 from sequence_planner.control.network_watch import NetworkWatch
 from sequence_planner.control.outside import Outside
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.standing_still import StandingStill
+from sequence_planner.control.vocabulary import ServiceKind
 from sequence_planner.control.who_can import Run, WhoCan, at_once
 
 Tell = Callable[[str, Mapping[str, JsonValue]], None]

@@ -6,7 +6,7 @@ from collections.abc import Collection, Iterable
 
 from sequence_planner.automaton.structure import Automaton
 from sequence_planner.control.execution import Execution
-from sequence_planner.control.view import Mode, PlanStatus, Production
+from sequence_planner.control.vocabulary import Mode, PlanStatus, Production
 from sequence_planner.control.who_can import WhoCan
 from sequence_planner.expressions.evaluation import evaluate
 from sequence_planner.expressions.syntax import variables

@@ -16,11 +16,10 @@ from sequence_planner.control.execution import Execution
 from sequence_planner.control.feeds import Feeds
 from sequence_planner.control.offer_showing import end_text
 from sequence_planner.control.plan_reasons import violation
-from sequence_planner.control.production_commands import ServiceKind
 from sequence_planner.control.standing_still import StandingStill
 from sequence_planner.control.timeouts import in_the_past, overdue
 from sequence_planner.control.value_text import value_text
-from sequence_planner.control.view import PlanStatus, Production
+from sequence_planner.control.vocabulary import PlanStatus, Production, ServiceKind
 from sequence_planner.control.waiting import idle_since, waits_for
 from sequence_planner.control.who_can import WhoCan
 from sequence_planner.expressions.syntax import variables

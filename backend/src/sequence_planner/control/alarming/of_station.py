@@ -17,7 +17,8 @@ from sequence_planner.control.restart_view import QuestionView
 from sequence_planner.control.task_commands import ProblemKind
 from sequence_planner.control.tasks import TaskProblem
 from sequence_planner.control.value_text import value_text
-from sequence_planner.control.view import DeploymentView, Mode, Production
+from sequence_planner.control.view import DeploymentView
+from sequence_planner.control.vocabulary import Mode, Production
 from sequence_planner.expressions.printing import print_value
 
 _UNJOURNALLED = "unjournalled"

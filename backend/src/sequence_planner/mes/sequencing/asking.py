@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import Final
 
-from sequence_planner.control.job_view import JobState, JobStepState, JobView
+from sequence_planner.control.job_view import JobStepState, JobView
 from sequence_planner.control.view import StationView
+from sequence_planner.control.vocabulary import JobState
 from sequence_planner.control.work_master_view import WorkMastersView, WorkMasterView
 from sequence_planner.mes.order import JobOrder
 from sequence_planner.mes.order_of_work import order_of_work
